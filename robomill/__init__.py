@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from robomill.io.projects import load_setup as load_setup
     from robomill.io.robots import load_robot as load_robot
     from robomill.io.robots import robot_names as robot_names
+    from robomill.io.samples import copy_samples as copy_samples
+    from robomill.io.samples import samples as samples
     from robomill.io.tool_tables import read_tool_table as read_tool_table
     from robomill.io.writers import write_gcode as write_gcode
     from robomill.io.writers import write_material as write_material
@@ -128,6 +130,8 @@ _PUBLIC = {
     "load_setup": "robomill.io.projects",
     "load_robot": "robomill.io.robots",
     "robot_names": "robomill.io.robots",
+    "copy_samples": "robomill.io.samples",
+    "samples": "robomill.io.samples",
     "read_tool_table": "robomill.io.tool_tables",
     "write_gcode": "robomill.io.writers",
     "write_material": "robomill.io.writers",

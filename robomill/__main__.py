@@ -1,14 +1,81 @@
-"""``robomill`` and ``python -m robomill`` are the command line."""
+"""``robomill`` and ``python -m robomill`` are the command line, and this is its process: signals, code pages, crashes.
+
+Exit codes beside those of the verbs: 130 interrupted at any time, 70 a mistake of robomill's own (``EX_SOFTWARE``).
+"""
+
+import signal
+import sys
+from types import FrameType
+
+INTERRUPTED, CRASHED = 130, 70
+DEBUG = "ROBOMILL_DEBUG"
+_heard: list[int] = []  # signals that came in, whatever became of their exceptions on the way
 
 
 def main() -> int:
-    """Run it; whoever interrupts while it loads gets its exit code, too."""
+    """Run the command line; returns the exit code, also of whoever interrupts while it loads, and of a crash."""
+    _heard.clear()
+    signal.signal(signal.SIGINT, _interrupt)
     try:
-        from robomill.cli import main as run
-
-        return run()
+        code = _run()
     except KeyboardInterrupt:
-        return 130
+        code = INTERRUPTED
+    except Exception as exc:
+        code = CRASHED
+        if not _heard:  # some libraries make another exception of an interrupt
+            _tell(exc)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is done or given up: nothing is left to be interrupted
+    return INTERRUPTED if _heard else code
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    _heard.append(number)
+    raise KeyboardInterrupt
+
+
+def _run() -> int:
+    from robomill.console import put, refuse, speak_plainly
+
+    speak_plainly(sys.stdout, sys.stderr)
+    from robomill.cli import main as run
+    from robomill.errors import RobomillError
+
+    try:
+        code = run([word for word in sys.argv[1:] if word != "--debug"])
+    except SystemExit as left:  # help, the version, and argparse's refusals
+        code = left.code if isinstance(left.code, int) else 0
+    try:
+        put("", sys.stdout)
+    except RobomillError as exc:
+        refuse(exc)
+        code = 2
+    return code
+
+
+def _tell(exc: Exception) -> None:
+    """A sentence for whoever sees it, and the details in a file, or shown where that is asked for."""
+    import os
+    import tempfile
+    import traceback
+
+    from robomill.console import refuse
+
+    details = "".join(traceback.format_exception(exc))
+    if "--debug" in sys.argv[1:] or os.environ.get(DEBUG, "0") not in ("", "0"):
+        sys.stderr.write(details)
+        where = "The details stand above."
+    else:
+        try:
+            descriptor, name = tempfile.mkstemp(prefix="robomill-crash-", suffix=".txt")
+            with open(descriptor, "w", encoding="utf-8", errors="backslashreplace") as file:
+                file.write(f"{sys.argv!r}\nPython {sys.version}\n\n{details}")
+            where = f"The details are in {name}; please send them to its makers."
+        except OSError:
+            where = f"Run it again with {DEBUG}=1 to see the details."
+    if isinstance(exc, MemoryError):
+        refuse(f"there is not enough memory for this; take coarser cells or steps. {where}")
+    else:
+        refuse(f"this is a mistake of robomill's own ({type(exc).__name__}), not of what you gave it. {where}")
 
 
 if __name__ == "__main__":

@@ -60,6 +60,11 @@ def read_file(
     return data
 
 
+def name_of(path: str | Path) -> str:
+    """The name of a file as text that can be kept and written; bytes that are none are marked."""
+    return os.fsencode(Path(path).name).decode("utf-8", "replace")
+
+
 def check_size(size: int, kind: FileKind, error: type[RobomillError], place: str) -> None:
     """Refuse what is larger than its kind may be."""
     if size > kind.most:

@@ -220,6 +220,14 @@ def format_short_count(count: int) -> str:
     return f"{count / 1e3:.0f}k" if count < 999_500 else f"{count / 1e6:.1f}M"
 
 
+def format_bytes(count: int) -> str:
+    """The size of a file: ``format_bytes(7_905_084) == "7.9 MB"``."""
+    for label, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= size:
+            return f"{count / size:.1f} {label}"
+    return format_count(count, "byte")
+
+
 def format_times(times: SupportsFloat, digits: int = 2) -> str:
     """How many times larger something is drawn, by its leading digits: ``× 1,200``."""
     return f"× {rounded(times, digits):,.12g}"

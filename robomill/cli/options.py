@@ -1,8 +1,7 @@
-"""What the options say: numbers, joint coordinates, the points of an axis, a program's file; refused by their name."""
+"""What the options say: numbers, joint coordinates, the points of an axis; refused by their name."""
 
 import argparse
 import math
-from pathlib import Path
 from typing import Any
 
 from robomill.errors import RobomillError
@@ -49,24 +48,3 @@ def axis(text: str, option: str) -> Any:
     words = text.split(":")
     low, *rest = numbers(",".join(words), option, 3 if len(words) != 1 else 1, "low:high:step or one number, in mm")
     return to_si(axis_points(low, rest[0], rest[1], option), "mm") if rest else to_si(low, "mm")
-
-
-def program(name: str) -> Path | bytes:
-    """The file of a program; where that is a stream, which can be read once, what comes out of it (``-``: stdin)."""
-    from robomill.errors import GCodeError
-    from robomill.files import PROGRAM, read_file
-
-    file = Path("/dev/stdin" if name == "-" else name)
-    return file if file.is_file() else read_file(file, PROGRAM, GCodeError)
-
-
-def reads_as_apt(source: Path | bytes) -> bool:
-    from robomill.toolpath.apt import is_apt
-
-    if isinstance(source, bytes):
-        return is_apt(source)
-    try:
-        with source.open("rb") as stream:
-            return is_apt(stream.read(200_000))
-    except OSError:
-        return False  # the interpreter says what is wrong with the file

@@ -10,25 +10,32 @@ FIRST_S, EACH_S = 0.5, 0.2  # nothing is said of what is done sooner
 
 
 class ProgressLine:
-    """A line on ``stream``, if that is a terminal."""
+    """A line on ``stream``, if that is a terminal; elsewhere nothing is said."""
 
-    def __init__(self, stream: TextIO) -> None:
-        self._stream, self._next = stream, time.monotonic() + FIRST_S
+    def __init__(self, stream: TextIO | None) -> None:
+        self._stream = stream if stream is not None and stream.isatty() else None
+        self._next = time.monotonic() + FIRST_S
         self._shown = 0
+
+    def announce(self, words: str) -> None:
+        """Say at once what is about to take long."""
+        self._put(f"{words} ...")
 
     def say(self, now: Progress) -> None:
         """Show the stage and its share, at most some times a second."""
-        if time.monotonic() < self._next or not self._stream.isatty():
-            return
-        self._next = time.monotonic() + EACH_S
-        text = f"{now.stage}: {format_percent(now.share)}"
-        self._stream.write(f"\r{text:<{self._shown}}")
-        self._stream.flush()
-        self._shown = len(text)
+        if time.monotonic() >= self._next:
+            self._next = time.monotonic() + EACH_S
+            self._put(f"{now.stage}: {format_percent(now.share)}")
+
+    def _put(self, text: str) -> None:
+        if self._stream is not None:
+            self._stream.write(f"\r{text:<{self._shown}}")
+            self._stream.flush()
+            self._shown = len(text)
 
     def clear(self) -> None:
         """Take the line away."""
         if self._shown:
-            self._stream.write(f"\r{'':<{self._shown}}\r")
-            self._stream.flush()
+            self._put("")
+            print(end="\r", file=self._stream, flush=True)
             self._shown = 0

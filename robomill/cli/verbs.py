@@ -1,19 +1,12 @@
 """What each verb does: read, compute, print the record; everything is imported by the verb that needs it."""
 
-from collections.abc import Sequence
+import sys
 from pathlib import Path
 from typing import Any
 
-from robomill.cli import options
-
-
-def say(arguments: Any, record: dict[str, Any], lines: Sequence[str], code: int = 0) -> int:
-    """Print the record as JSON, or its lines for a person; returns the exit code."""
-    from robomill.io.results import json_text
-    from robomill.report.records import jsonable
-
-    print(json_text(jsonable(record)).rstrip("\n") if arguments.json else "\n".join(lines))
-    return code
+from robomill.cli import given, options
+from robomill.cli.saying import Written, say
+from robomill.console import put
 
 
 def run_robots(arguments: Any) -> int:
@@ -40,39 +33,43 @@ def run_ik(arguments: Any) -> int:
 
     from robomill.arrays import check_place
     from robomill.errors import RobomillError
-    from robomill.io.robots import load_robot
     from robomill.kinematics.inverse import inverse_kinematics
     from robomill.kinematics.transforms import pose_from_world
     from robomill.report.plain import ik_lines
     from robomill.report.records import ik_record
     from robomill.units import to_si
 
-    robot = load_robot(arguments.robot)
+    robot = given.robot(arguments.robot)
     values = np.array(options.numbers(arguments.pose, "--pose", 5, "X,Y,Z,A,B in mm and degrees"))
     x_M = np.append(to_si(values[:3], "mm"), to_si(values[3:], "deg"))
     check_place(x_M[:3], "--pose", RobomillError)
     record = ik_record(robot, inverse_kinematics(robot, pose_from_world(x_M)))
-    return say(arguments, record, ik_lines(record))
+    return say(arguments, record, ik_lines(record), 0 if record["reached"] else 1)
 
 
 def run_gcode(arguments: Any) -> int:
-    from robomill.io.tool_tables import read_tool_table
+    from robomill.report.assumed import assumed_of_program, assumed_of_tools
     from robomill.report.plain import gcode_lines
     from robomill.report.records import path_record
     from robomill.toolpath.apt import read_apt
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 
-    source = options.program(arguments.file)
-    if options.reads_as_apt(source):
-        record = path_record(read_apt(source))
+    source = given.program(arguments.file)
+    files = Written.before([Path(arguments.moves)] if arguments.moves else [])
+    if given.is_apt(source):
+        path = read_apt(source)
+        record, assumed, files = path_record(path), assumed_of_program(path.findings), []
     else:
-        tools = read_tool_table(arguments.tools, unit=arguments.tools_unit) if arguments.tools else None
+        tools = given.tools(arguments.tools, arguments.tools_unit) if arguments.tools else None
         program = interpret(source, dialect=arguments.dialect, tools=tools)
-        record = gcode_report(program)
-        record["findings"] += [finding.record() for finding in tools.findings] if tools is not None else []
+        record, assumed = gcode_report(program), assumed_of_program(program.findings)
+        if tools is not None:
+            record["findings"] += [finding.record() for finding in tools.findings]
+            assumed += assumed_of_tools(tools, tools)
         if arguments.moves:
             write_moves_jsonl(program, arguments.moves)
-    return say(arguments, record, gcode_lines(record))
+    record["assumed"] = [each.record() for each in assumed]
+    return say(arguments, record, gcode_lines(record), files=files)
 
 
 def run_map(arguments: Any) -> int:
@@ -88,99 +85,64 @@ def run_map(arguments: Any) -> int:
     A, B = to_si(arguments.a_deg, "deg"), to_si(arguments.b_deg, "deg")
     everything = compliance_map(robot, grid, A, B)
     fields = [everything.field(name) for name in ",".join(arguments.quantity).split(",")]
+    files = Written.before([Path(arguments.out)] if arguments.out else [])
     if arguments.out:
         write_map(arguments.out, fields)
     record = map_record(fields)
-    return say(arguments, record, map_lines(record))
+    return say(arguments, record, map_lines(record), files=files)
 
 
-def run_identify(arguments: Any) -> int:
-    import tomli_w
+def run_samples(arguments: Any) -> int:
+    from robomill.errors import ProjectError
+    from robomill.io.samples import copy_samples, samples
+    from robomill.report.plain import sample_lines
 
-    from robomill.identification.estimate import identify
-    from robomill.identification.models import Model
-    from robomill.identification.plan import next_best
-    from robomill.identification.record import identification_record
-    from robomill.identification.treatment import AUTO, BENDING_JOINTS, Treatment
-    from robomill.io.declared import kind_to_table
-    from robomill.io.load_test_sheets import measuring_sheet
-    from robomill.io.load_tests import read_load_tests
-    from robomill.io.results import write_file
-    from robomill.io.robots import load_robot, robot_to_toml
-    from robomill.report.plain import identification_lines
-
-    robot = load_robot(arguments.robot)
-    tests = read_load_tests(Path(arguments.tests), robot)
-    bending: Any = BENDING_JOINTS if arguments.bending is None else arguments.bending
-    model = Model(arguments.model)
-    if arguments.bending not in (None, AUTO):
-        bending = options.wholes(arguments.bending, "--bending")
-        model = model.bending_at(bending, turned=False) if model.has("joint") else model
-    treatment = Treatment(
-        bending,
-        arguments.fit_points,
-        arguments.robust,
-        options.wholes(arguments.exclude, "--exclude") if arguments.exclude else (),
-        arguments.weights,
-        arguments.leave_out,
-    )
-    result = identify(robot, tests, model.name, treatment)
-    record, findings = identification_record(robot, tests, result)
-    record["findings"] = [finding.record() for finding in findings]
-    record["springs"] = [kind_to_table(spring) for spring in result.springs(robot)]
-    lines = identification_lines(record)
-    if arguments.out:
-        write_file(arguments.out, robot_to_toml(result.adopted(robot, Path(arguments.tests).name, robot, ())[0]))
-        if record["springs"]:
-            lines += [
-                "a robot's file holds its joints only; for the set-up, beside them:",
-                tomli_w.dumps({"springs": record["springs"]}).rstrip(),
-            ]
-    if arguments.sheet:
-        plan = next_best(robot, tests, result, count=arguments.next)
-        record["next"] = plan.rows()
-        write_file(arguments.sheet, measuring_sheet(plan, Path(arguments.tests).name))
+    chosen = [each for each in samples() if not arguments.names or each.name in arguments.names]
+    unknown = [name for name in arguments.names if name not in {each.name for each in chosen}]
+    if unknown:
+        raise ProjectError(f"{unknown[0]!r:.80}: there is no such sample; 'robomill samples' lists them.")
+    rows = [{"kind": each.kind, "name": each.name, "title": each.title, "path": str(each.path)} for each in chosen]
+    record: dict[str, Any] = {"samples": rows}
+    lines = sample_lines(record)
+    if arguments.copy:
+        copies = copy_samples(arguments.copy, arguments.names)
+        record["copied"] = [str(copy) for copy in copies]
+        lines.append(f"copied    {len(copies)} files to {Path(arguments.copy)}")
     return say(arguments, record, lines)
 
 
-def run_simulate(arguments: Any) -> int:
-    from robomill.io.programs import read_program
-    from robomill.io.projects import load_setup
-    from robomill.io.results import json_text, write_files
-    from robomill.report.plain import simulation_lines
-    from robomill.report.records import jsonable
-    from robomill.report.simulation_record import simulation_record
-    from robomill.report.tables import csv_text
+def run_reproduce(arguments: Any) -> int:
+    from robomill.report.plain import reproduction_lines
+    from robomill.report.reproduction import reproduction
+    from robomill.report.reproduction_row import reproduction_record
+
+    evidence = _evidence()
+    record = reproduction_record(reproduction(evidence), evidence.robot)
+    return say(arguments, record, reproduction_lines(record), 0 if record["holds"] else 1)
+
+
+def _evidence() -> Any:
+    """The paper's test and robot, and the (synthetic) load tests, computed."""
+    from robomill.identification.estimate import identify
+    from robomill.io.materials import sample_materials
+    from robomill.io.robots import load_robot
+    from robomill.report.reproduction_row import Evidence
     from robomill.simulation.run import simulate
-    from robomill.units import to_si
 
-    setup = load_setup(arguments.setup, arguments.allow_outside)
-    if arguments.program:
-        setup = setup.replace(source=read_program(arguments.program))
-    if arguments.tol is not None:
-        setup = setup.replace(tolerance=to_si(arguments.tol, "mm"), floor_tolerance=None)
-    setup = setup.replace(robot=_with_set(setup.robot, arguments))
-    result = simulate(setup)
-    record = simulation_record(result)
-    if arguments.out:
-        from robomill.io.meshes import mesh_bytes
+    robot, setup = load_robot("slavkovic_5r"), given.setup("paper_flute", False)
+    nine, single = (identify(robot, given.load_tests(n, None)[0]) for n in ("nine_points", "one_joint_at_a_time"))
+    other = setup.replace(robot=setup.robot.with_compliance_set("table_3"))
+    return Evidence(robot, simulate(setup), simulate(other), nine, single, tuple(sample_materials()))
 
-        files: dict[str, str | bytes] = {
-            "result.json": json_text(jsonable(record)),
-            "deviation.csv": csv_text(result.columns()),
-            "sections.csv": csv_text(result.sections.columns()),
-            "machined.stl": mesh_bytes(result.machined, "stl"),
-        }
-        write_files(Path(arguments.out), files)
-    return say(arguments, record, simulation_lines(record), 1 if result.verdict.red else 0)
+
+def run_completion(arguments: Any) -> int:
+    import argcomplete
+
+    put(argcomplete.shellcode(["robomill"], shell=arguments.shell), sys.stdout)
+    return 0
 
 
 def _robot(arguments: Any) -> Any:
     """The robot asked for, with the compliance set asked for."""
-    from robomill.io.robots import load_robot
-
-    return _with_set(load_robot(arguments.robot), arguments)
-
-
-def _with_set(robot: Any, arguments: Any) -> Any:
+    robot = given.robot(arguments.robot)
     return robot.with_compliance_set(arguments.compliance_set) if arguments.compliance_set else robot

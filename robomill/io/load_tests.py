@@ -35,6 +35,7 @@ from robomill.identification.suspicion import suspicions
 from robomill.io.columns import Columns, frame_columns, read_columns
 from robomill.io.load_test_columns import LAYOUT, POSTURE, XYZ, axes, group, head_of, kind_of
 from robomill.io.load_test_poses import ABC, WPR, force_and_points, gauges, poses, rotation_vector
+from robomill.io.samples import find_sample
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.units import from_si
@@ -53,8 +54,8 @@ def read_load_tests(path_or_text: str | Path | bytes | DataFrame, robot: Robot |
     Parameters
     ----------
     path_or_text : str, Path, bytes or pandas.DataFrame
-        A CSV file, its text, or the same table as a DataFrame, whose ``attrs`` stand for the remarks ``# key: value``
-        of a file and whose index (where it holds whole numbers) numbers the rows.
+        A CSV file, a sample's name, the text of such a file, or the same table as a DataFrame, whose ``attrs`` stand
+        for the remarks ``# key: value`` of a file and whose index (where it holds whole numbers) numbers the rows.
     robot : Robot, optional
         The arm that was loaded. With it, poses are checked against its limits and those given in the world are solved.
 
@@ -88,6 +89,8 @@ def read_load_tests(path_or_text: str | Path | bytes | DataFrame, robot: Robot |
 
 
 def _read(given: str | Path | bytes | DataFrame, robot: Robot | None, name: str = "") -> LoadTests | JointTests:
+    if isinstance(given, str | Path):
+        given = find_sample("load tests", given) or given
     table, name = frame_columns(given, LAYOUT) if is_frame(given) else read_columns(given, LAYOUT, name)
     if any(key in table for key in COMPLIANCES):
         tests: LoadTests | JointTests = _compliances(table, robot)

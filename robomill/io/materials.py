@@ -8,7 +8,7 @@ from robomill.cutting.materials import Material
 from robomill.errors import CuttingError, RobomillError
 from robomill.files import MATERIAL
 from robomill.io.declared import read_quantity, write_quantity
-from robomill.io.samples import samples_dir
+from robomill.io.samples import sample_names, samples_dir
 from robomill.io.tables import Table, parse_toml, toml_value
 from robomill.io.texts import read_text
 from robomill.quantities import quantities
@@ -19,7 +19,7 @@ LAWS = [model.takes for model in FORCES.values() if model.takes is not None]
 
 def material_names() -> list[str]:
     """Names of the sample materials, sorted."""
-    return sorted(path.stem for path in (samples_dir() / "materials").glob("*.toml"))
+    return sample_names("material")
 
 
 def sample_materials() -> list[Material]:

@@ -9,15 +9,17 @@ from robomill.files import TABLE
 from robomill.identification.measured_field import MeasuredField
 from robomill.io.beside import Beside
 from robomill.io.load_tests import read_measured_map
+from robomill.io.samples import find_sample
 from robomill.io.tables import Table
 from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 
 
 def map_from_table(table: Table, robot: Robot, beside: Beside) -> MeasuredField:
-    """A map from its ``file`` of measurements, or from the points and matrices in the table itself."""
+    """A map from its ``file`` of measurements (or a sample's name), or from the points and matrices in the table."""
     if table.has("file"):
-        data, name = beside.read(table, "file", TABLE)
+        sample = find_sample("load tests", table.text("file"))
+        data, name = beside.read(table, "file", TABLE) if sample is None else (sample.read_bytes(), sample.name)
         field = read_measured_map(data, robot, name)
     else:
         p = _rows(table, "p", 3, ("m", "mm"))

@@ -19,12 +19,16 @@ from robomill.units import format_si, from_si, to_si
 
 HEAD = b"robomill, millimetres".ljust(80)
 FORMATS = ("stl", "ply", "glb", "vtp")
+FEW_TRIANGLES, MOST_TRIANGLES = 150_000, 2_000_000  # of a solid that is taken away: an STL below 10 MB, and all of it
+WALLS, TRIES = 1.33, 6  # with its walls a solid has at most so many times the triangles asked for: 199 500 are 9.98 MB
 UNITS_OF_STL = {"mm": "millimetres", "in": "inches", "cm": "centimetres", "m": "metres"}
 # A part shorter than this many numbers, or longer than this, was hardly meant: such a stock is questioned.
 SMALLEST_MM, LARGEST = 25.0, 5.0  # mm, m
 
 
-def mesh_bytes(zmap: ZMap, kind: str = "stl", *, error: FloatArray | None = None, max_faces: int = 2_000_000) -> bytes:
+def mesh_bytes(
+    zmap: ZMap, kind: str = "stl", *, error: FloatArray | None = None, max_faces: int = MOST_TRIANGLES
+) -> bytes:
     """The part as a closed solid in a file's bytes; ``kind`` is one of FORMATS.
 
     ``error`` (nx, ny) m, if given, goes along as a field in um: as scalars in VTP, ignored by the other formats.
@@ -33,9 +37,9 @@ def mesh_bytes(zmap: ZMap, kind: str = "stl", *, error: FloatArray | None = None
     name = kind.lower().lstrip(".")
     if name not in FORMATS:
         raise SurfaceError(f"Mesh format {kind!r} is not known: use {', '.join(FORMATS)}.")
-    mesh = to_mesh(zmap, max_faces=max_faces)
+    mesh, aimed = _solid(zmap, max_faces)
     if name == "vtp":
-        return _vtp(zmap, mesh, error, max_faces)
+        return _vtp(zmap, mesh, error, aimed)
     if name == "stl":
         return _stl(mesh)
     import trimesh
@@ -43,6 +47,17 @@ def mesh_bytes(zmap: ZMap, kind: str = "stl", *, error: FloatArray | None = None
     solid = trimesh.Trimesh(from_si(mesh.vertices, "mm"), mesh.faces, process=False)
     data = solid.export(file_type=name)
     return data if isinstance(data, bytes) else str(data).encode()
+
+
+def _solid(zmap: ZMap, max_faces: int) -> tuple[Mesh, int]:
+    """The solid, and the triangles aimed at in its skin: fewer than ``max_faces`` where its walls need many."""
+    aimed, mesh = max_faces, to_mesh(zmap, max_faces=max_faces)
+    for _ in range(TRIES):
+        if len(mesh.faces) <= WALLS * max_faces:
+            break
+        aimed = int(0.95 * aimed * WALLS * max_faces / len(mesh.faces))
+        mesh = to_mesh(zmap, max_faces=aimed)
+    return mesh, aimed
 
 
 def _stl(mesh: Mesh) -> bytes:

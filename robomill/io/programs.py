@@ -3,13 +3,15 @@
 from pathlib import Path
 
 from robomill.errors import ProjectError
-from robomill.files import PROGRAM, check_size, read_file
+from robomill.files import PROGRAM, check_size, name_of, read_file
+from robomill.io.samples import find_sample
 from robomill.toolpath.source import GCodeSource
 
 
 def read_program(path: str | Path, dialect: str = "auto") -> GCodeSource:
-    """A program's file as a source; refused where it is missing, too large or not text."""
-    return program_from_bytes(read_file(path, PROGRAM, ProjectError), Path(path).name, dialect)
+    """A program's file, or a sample's by its name, as a source; refused where it is missing, too large or not text."""
+    file = find_sample("program", path) or path
+    return program_from_bytes(read_file(file, PROGRAM, ProjectError), name_of(file), dialect)
 
 
 def program_from_bytes(data: bytes, name: str, dialect: str = "auto") -> GCodeSource:

@@ -21,6 +21,7 @@ from robomill.io.points import POINTS, points_from_table, points_to_table
 from robomill.io.programs import program_from_bytes
 from robomill.io.robot_reader import ANGLE
 from robomill.io.robots import load_robot, read_robot, robot_from_toml, robot_names, robot_to_toml
+from robomill.io.samples import find_sample
 from robomill.io.sketches import sketch_from_table, sketch_to_table
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.io.texts import read_text
@@ -50,11 +51,12 @@ NUMERICS = tuple(name for name in NUMBERS if name not in ALLOWED)  # in [numeric
 
 
 def load_setup(path: str | Path, allow_outside: bool = False) -> SimulationSetup:
-    """A set-up from its TOML file; the files it names lie beside it or below, elsewhere only with ``allow_outside``.
+    """A set-up from its TOML file, its folder, or the name of a sample (``"heart"``, ``"paper_flute/setup_process"``).
 
-    Raises ProjectError (or the error of the part that is wrong) with the file and the key.
+    The files it names lie beside it or below, elsewhere only with ``allow_outside``. Raises ProjectError (or the error
+    of the part that is wrong) with the file and the key.
     """
-    file = Path(path)
+    file = find_sample("set-up", path) or Path(path)
     if file.is_dir():
         file = file / "setup.toml"
     if file.suffix.lower() in SUFFIXES and file.suffix.lower() != ".txt":  # which a set-up may end in, too

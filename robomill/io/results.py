@@ -1,12 +1,15 @@
 """A run's results as files."""
 
 import json
+import re
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 
 from robomill.errors import ProjectError
 from robomill.files import written
+
+_HALVES = re.compile("[\ud800-\udfff]")  # names of files hold them for bytes that are no text
 
 
 def write_files(folder: Path, files: Mapping[str, str | bytes]) -> None:
@@ -27,5 +30,7 @@ def write_file(path: str | Path, content: str) -> None:
         place.write_text(content, encoding="utf-8")
 
 
-def json_text(record: object) -> str:
-    return json.dumps(record, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+def json_text(record: object, ascii_only: bool = False) -> str:
+    """A record as one JSON object; other characters escaped with ``ascii_only``, halves of one always."""
+    text = json.dumps(record, indent=1, ensure_ascii=ascii_only, allow_nan=False) + "\n"
+    return _HALVES.sub(lambda half: f"\\u{ord(half[0]):04x}", text)

@@ -5,10 +5,10 @@ from functools import lru_cache
 from pathlib import Path
 
 from robomill.errors import RobotError
-from robomill.files import ROBOT, read_file
+from robomill.files import ROBOT, name_of, read_file
 from robomill.io.robot_reader import robot_from_toml
 from robomill.io.robot_writer import robot_to_toml
-from robomill.io.samples import samples_dir
+from robomill.io.samples import sample_names, samples_dir
 from robomill.io.texts import read_text
 from robomill.io.urdf import read_urdf
 from robomill.robot.model import Robot
@@ -33,7 +33,7 @@ def robot_folder() -> Path:
 
 def robot_names() -> list[str]:
     """Names of the robots that come with robomill, as ``load_robot`` takes them."""
-    return sorted(path.stem for path in robot_folder().glob("*.toml"))
+    return sample_names("robot")
 
 
 @lru_cache(maxsize=1)
@@ -52,12 +52,12 @@ def load_robot(name_or_path: str | Path, *, tip: str | None = None) -> Robot:
     if not path.exists():
         presets = ", ".join(robot_names())
         raise RobotError(f"Robot {text!r:.80}: no such preset or file; the presets are {presets}.", where=text)
-    data = read_file(path, ROBOT, RobotError)
+    data, name = read_file(path, ROBOT, RobotError), name_of(path)
     if tip is None:
-        return read_robot(data, path.name)
-    if not is_urdf(path.name):
-        raise RobotError(f"Robot {path.name!r:.80}: only a URDF has links; leave tip={tip!r:.40} out.", where="tip")
-    return read_urdf(data, tip=tip, where=path.name)
+        return read_robot(data, name)
+    if not is_urdf(name):
+        raise RobotError(f"Robot {name!r:.80}: only a URDF has links; leave tip={tip!r:.40} out.", where="tip")
+    return read_urdf(data, tip=tip, where=name)
 
 
 def is_urdf(name: str) -> bool:

@@ -1,6 +1,34 @@
-"""Where the samples lie: beside the package in a checkout, inside it in an installed wheel."""
+"""The samples: where they lie (beside the package in a checkout, inside it in an installed wheel), and their names."""
 
+import shutil
+import tomllib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Literal
+
+from robomill.errors import ProjectError
+
+SampleKind = Literal["set-up", "robot", "program", "load tests", "material"]
+TITLED: tuple[SampleKind, ...] = ("set-up", "robot", "material")  # TOML files, which say what they are called
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A file that comes with robomill: ``name`` is what commands take for it."""
+
+    kind: SampleKind
+    name: str
+    path: Path
+
+    @property
+    def title(self) -> str:
+        """What it is called in its own words; the name of its file where it has none."""
+        if self.kind not in TITLED:
+            return self.path.name
+        data = tomllib.loads(self.path.read_text(encoding="utf-8"))
+        return str(data.get("title") or data.get("name") or self.path.name)
 
 
 def app_dir() -> Path:
@@ -13,3 +41,71 @@ def app_dir() -> Path:
 def samples_dir() -> Path:
     """Folder of the samples: robots/, materials/ and one folder a case."""
     return app_dir() / "samples"
+
+
+@cache
+def samples() -> tuple[Sample, ...]:
+    """All of them, by kind and name. A case is called as its folder, other set-ups of it ``folder/file``."""
+    return tuple(_found(samples_dir()))
+
+
+def _found(folder: Path) -> Iterator[Sample]:
+    for path in sorted(folder.glob("*/setup*.toml")):
+        case = path.parent.name
+        yield Sample("set-up", case if path.stem == "setup" else f"{case}/{path.stem}", path)
+    for path in sorted(folder.glob("*/*.nc")):
+        yield Sample("program", path.parent.name, path)
+    kinds: tuple[tuple[SampleKind, str], ...] = (
+        ("robot", "robots/*.toml"),
+        ("load tests", "load_tests/*.csv"),
+        ("material", "materials/*.toml"),
+    )
+    for kind, pattern in kinds:
+        for path in sorted(folder.glob(pattern)):
+            yield Sample(kind, path.stem, path)
+
+
+def sample_names(kind: SampleKind) -> list[str]:
+    """Names of the samples of a kind."""
+    return [sample.name for sample in samples() if sample.kind == kind]
+
+
+def find_sample(kind: SampleKind, name: str | Path) -> Path | None:
+    """The file of a sample by its name; None where ``name`` is none, or is a file or folder that stands there."""
+    called = str(name)
+    found = next((sample.path for sample in samples() if sample.kind == kind and sample.name == called), None)
+    return None if found is None or Path(called).exists() else found
+
+
+def copy_samples(folder: str | Path, names: Sequence[str] = ()) -> list[Path]:
+    """Copy the samples called ``names`` (none: all) with what lies beside them into ``folder``, as they lie here.
+
+    Returns the copies. What is there already and is the same stays; raises ProjectError, before anything is copied,
+    for a name that is none, and for a file that is there and is another.
+    """
+    here, there = samples_dir(), Path(folder)
+    chosen = {path: there / path.relative_to(here) for path in _to_copy(here, names)}
+    for path, copy in chosen.items():
+        if copy.exists() and not (copy.is_file() and copy.read_bytes() == path.read_bytes()):
+            raise ProjectError(f"{copy}: another file stands there already and is not replaced; give another folder.")
+    try:
+        for path, copy in chosen.items():
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, copy)
+    except OSError as exc:
+        raise ProjectError(f"{there}: cannot write there ({exc.strerror}); give another folder.") from None
+    return list(chosen.values())
+
+
+def _to_copy(here: Path, names: Sequence[str]) -> list[Path]:
+    """Whole folders of cases; of robots, load tests and materials the file alone."""
+    if not names:
+        return sorted(path for path in here.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+    files: set[Path] = set()
+    for name in names:
+        found = [sample for sample in samples() if sample.name == name]
+        if not found:
+            raise ProjectError(f"{name!r:.80}: there is no such sample; 'robomill samples' lists them.")
+        for sample in found:
+            files.update(sample.path.parent.glob("*.*") if sample.kind == "set-up" else [sample.path])
+    return sorted(files)

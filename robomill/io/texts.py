@@ -4,7 +4,7 @@ import codecs
 from pathlib import Path
 
 from robomill.errors import RobomillError
-from robomill.files import FileKind, check_size, read_file
+from robomill.files import FileKind, check_size, name_of, read_file
 
 
 def read_text(given: str | Path | bytes, error: type[RobomillError], kind: FileKind, name: str = "") -> tuple[str, str]:
@@ -20,7 +20,7 @@ def read_text(given: str | Path | bytes, error: type[RobomillError], kind: FileK
         raw = given
         check_size(len(raw), kind, error, name or "This file")
     else:
-        name = name or Path(given).name or str(given)
+        name = name or name_of(given) or str(given)
         raw = read_file(given, kind, error)
     try:
         text = raw.decode("utf-16" if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else "utf-8-sig")

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from robomill.provenance import Finding, named
+from robomill.report.reproduction_row import WORDS as WORDS_OF_STATUS
 from robomill.simulation.strays import WORDS
 from robomill.surface.section_law import MEASURES
 from robomill.units import format_beside, format_limit, format_percent, format_share, format_value, from_si, to_si
@@ -15,11 +16,48 @@ SECTIONS = {kind: kind if kind != "unknown" else "-" for kind in MEASURES}
 
 def matrix_lines(rows: Sequence[Sequence[float]]) -> list[str]:
     """A matrix with aligned columns."""
-    return ["  " + " ".join(f"{v:10.4f}" for v in row) for row in rows]
+    return ["  " + " ".join(f"{_settled(v):10.4f}" for v in row) for row in rows]
+
+
+def _settled(value: float) -> float:
+    """To the four decimals that are shown, without a negative zero."""
+    return round(value, 4) + 0.0
 
 
 def robot_lines(record: dict[str, Any]) -> list[str]:
-    return [f"{robot['name']:18} {robot['joints']} joints  {robot['title']}" for robot in record["robots"]]
+    lines = []
+    for robot in record["robots"]:
+        lines.append(f"{robot['name']:18} {robot['joints']} joints  {robot['title']}")
+        lines += [f"{'':18} {line}" for line in assumed_lines(robot["assumed"])]
+    return lines
+
+
+def assumed_lines(assumed: Sequence[dict[str, str]]) -> list[str]:
+    """One line for what a record lists as assumed; none where nothing is."""
+    return [f"assumed   {'; '.join(each['what'] for each in assumed)}"] if assumed else []
+
+
+def sample_lines(record: dict[str, Any]) -> list[str]:
+    """The samples by kind, each with the name that commands take."""
+    lines: list[str] = []
+    kinds = dict.fromkeys(each["kind"] for each in record["samples"])
+    for kind in kinds:
+        lines.append(f"{kind}s" if kind != "load tests" else kind)
+        lines += [f"  {each['name']:32} {each['title']}" for each in record["samples"] if each["kind"] == kind]
+    return lines
+
+
+def reproduction_lines(record: dict[str, Any]) -> list[str]:
+    """Of each statement of the paper: what it gives, what is found here, and how the two stand."""
+    lines = []
+    for row in record["rows"]:
+        words = WORDS_OF_STATUS[row["status"]]
+        end = f"gap       {row['reason']}" if row["status"] == "gap" else f"holds     {words}: {row['reason']}"
+        if not row["holds"]:
+            end = f"DOES NOT HOLD ({words}): {row['reason']}"
+        lines += [row["of_the_paper"], f"  paper     {row['paper']}", f"  robomill  {row['robomill']}", f"  {end}"]
+    broken = [row["of_the_paper"] for row in record["rows"] if not row["holds"]]
+    return [*lines, record["summary"], *([f"does not hold: {', '.join(broken)}"] if broken else [])]
 
 
 def pose_lines(record: dict[str, Any]) -> list[str]:
@@ -37,7 +75,7 @@ def pose_lines(record: dict[str, Any]) -> list[str]:
 def ik_lines(record: dict[str, Any]) -> list[str]:
     if not record["reached"]:
         return [f"not reached: {record['reason']}"]
-    angles = ", ".join(f"{v:.4f}" for v in record["theta_deg"])
+    angles = ", ".join(f"{_settled(v):.4f}" for v in record["theta_deg"])
     return [f"theta (deg)  {angles}", f"residual     {record['residual_m']:.1e} m"]
 
 

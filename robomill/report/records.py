@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.kinematics.inverse import IKResult
+from robomill.report.assumed import assumed_of_program, assumed_of_robot
 from robomill.report.settled import settled
 from robomill.robot.model import Robot
 from robomill.toolpath.path import Toolpath
@@ -54,6 +55,7 @@ def robots_record(robots: Sequence[Robot]) -> dict[str, Any]:
                 "compliance_sets": sorted(robot.compliance_sets),
                 "compliance_set": robot.compliance_set,
                 "provenance": said_of(robot),
+                "assumed": [each.record() for each in assumed_of_robot(robot)],
             }
             for robot in robots
         ]
@@ -85,6 +87,7 @@ def pose_record(pose: PoseReport) -> dict[str, Any]:
         "C_um_per_N": shown(pose.C, "um/N"),
         "joint_share_um_per_N": shown(pose.C_joint, "um/N"),
         "provenance": said_of(robot),
+        "assumed": [each.record() for each in assumed_of_robot(robot)],
     }
 
 
@@ -97,14 +100,16 @@ def ik_record(robot: Robot, ik: IKResult) -> dict[str, Any]:
         "residual_m": float(ik.residual),
         "reason": ik.reason(),
         "provenance": said_of(robot),
+        "assumed": [each.record() for each in assumed_of_robot(robot, compliances=False)],
     }
 
 
 def map_record(fields: Sequence[Field]) -> dict[str, Any]:
     """Maps over one grid: the axes in mm, each quantity's values (nx, ny, nz) in its unit, null where not reached."""
-    grid = fields[0].grid
+    grid, robot = fields[0].grid, fields[0].robot
     return {
-        "robot": fields[0].robot.name,
+        "robot": robot.name,
+        "compliance_set": robot.compliance_set,
         **{f"{axis}_mm": shown(getattr(grid, axis), "mm") for axis in "xyz"},
         "a_deg": float(from_si(fields[0].A, "deg")),
         "b_deg": float(from_si(fields[0].B, "deg")),
@@ -120,6 +125,8 @@ def map_record(fields: Sequence[Field]) -> dict[str, Any]:
             }
             for field in fields
         ],
+        "provenance": said_of(robot),
+        "assumed": [each.record() for each in assumed_of_robot(robot)],
     }
 
 
@@ -139,4 +146,5 @@ def path_record(path: Toolpath) -> dict[str, Any]:
         "units": path.units,
         "findings": [finding.record() for finding in path.findings],
         "ok": all(finding.level != "error" for finding in path.findings),
+        "assumed": [each.record() for each in assumed_of_program(path.findings)],
     }

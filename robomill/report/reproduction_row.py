@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from robomill.cutting.materials import Material
 from robomill.identification.result import IdentificationResult
 from robomill.lazy import cached_property
+from robomill.report.assumed import assumed_of_robot
 from robomill.report.paper import Statement, Status
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
@@ -78,6 +79,29 @@ def columns(rows: Sequence[Row]) -> dict[str, list[str]]:
         "status": [WORDS[r.statement.status] for r in rows],
         "reason": [r.reason for r in rows],
         "quotation": [" … ".join(r.statement.quotations) for r in rows],
+    }
+
+
+def reproduction_record(rows: Sequence[Row], robot: Robot) -> dict[str, Any]:
+    """The rows as JSON carries them; ``holds``: whether every check that stands behind a status does."""
+    return {
+        "rows": [
+            {
+                "code": row.statement.code,
+                "of_the_paper": row.statement.where,
+                "paper": row.statement.gives,
+                "robomill": row.found,
+                "status": row.statement.status,
+                "holds": row.holds,
+                "reason": row.reason,
+                "quotations": list(row.statement.quotations),
+                "numbers": {name: float(value) for name, value in row.numbers.items()},
+            }
+            for row in rows
+        ],
+        "holds": all(row.holds for row in rows),
+        "summary": summary(rows),
+        "assumed": [each.record() for each in assumed_of_robot(robot)],
     }
 
 

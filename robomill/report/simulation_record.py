@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.report.assumed import assumed_of_setup
 from robomill.report.paper_lengths import TRIED, over_lengths
 from robomill.report.records import shown
 from robomill.simulation.result import SimulationResult
@@ -61,6 +62,7 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "tolerance_mm": shown(result.setup.tolerance, "mm"),
         "notes": [note.sentence for note in noticed],
         "findings": [finding.record() for finding in (*result.setup.toolpath.findings, *noticed)],
+        "assumed": [each.record() for each in assumed_of_setup(result.setup)],
         "digest": result.setup.digest(),
     }
 

@@ -1,11 +1,12 @@
 """Where the numbers of a set-up come from, in words: one row a block."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from robomill.provenance import Provenance
-from robomill.robot.model import USER_SET
+from robomill.robot.model import USER_SET, Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.units import format_limit, format_many, format_si, format_significant, from_si, unit_label
 
@@ -24,21 +25,10 @@ class Source:
 
 def sources(setup: SimulationSetup, length: str = "mm") -> list[Source]:
     """One row for each block that the result rests on, the assumed ones among them; lengths in ``length``."""
-    robot, given = setup.robot, {**setup.robot.provenance, **setup.provenance}
-    unit = "1e-7 rad/(N m)"
-    compliances = format_many(robot.C_theta, unit, 2)
-    name = robot.compliance_set.replace("_", " ").capitalize() if robot.compliance_set != USER_SET else "Edited"
-    set_source = given.get(f"compliance.{robot.compliance_set}", Provenance("user", "entered by hand"))
-    lengths = ", ".join(format_significant(from_si(v, length)) for v in _lengths(setup))
+    given = {**setup.robot.provenance, **setup.provenance}
     path = setup.toolpath
     return [
-        Source("Joint compliances", f"{name}: {compliances}", set_source),
-        Source("D-H table", f"{robot.rows} joints, {robot.convention}", given.get("geometry", NOT_STATED)),
-        Source(
-            "Link lengths", f"{lengths} {unit_label(length)}", given.get("lengths", given.get("geometry", NOT_STATED))
-        ),
-        Source("Joint limits", f"{robot.n} ranges", given.get("limits", NOT_STATED)),
-        Source("Tool in the last axis", _tool(setup, length), given.get("tool", NOT_STATED)),
+        *robot_sources(setup.robot, given, length),
         Source("Path", f"{format_si(float(path.s[-1]), length, 0)} at feed", given.get("path", NOT_STATED)),
         Source("Cutter", setup.cutter.called(length), given.get("cutter", NOT_STATED)),
         Source("Force", setup.force.numbers, given.get("force", setup.force.provenance)),
@@ -48,13 +38,33 @@ def sources(setup: SimulationSetup, length: str = "mm") -> list[Source]:
     ]
 
 
-def _lengths(setup: SimulationSetup) -> list[float]:
-    robot = setup.robot
-    return [float(v) for v in np.concatenate([robot.a, robot.d]) if v != 0.0]
+def robot_sources(robot: Robot, given: Mapping[str, Provenance], length: str = "mm") -> list[Source]:
+    """The rows of a robot: of each block what is ``given`` of it."""
+    compliances = format_many(robot.C_theta, "1e-7 rad/(N m)", 2)
+    own = robot.compliance_set == USER_SET
+    name = "Edited" if own else robot.compliance_set.replace("_", " ").capitalize()
+    by_hand = Provenance("user", "entered by hand")
+    of_set = given.get("compliance" if own else f"compliance.{robot.compliance_set}", by_hand)
+    lengths = ", ".join(format_significant(from_si(v, length)) for v in robot_lengths(robot).values())
+    geometry = given.get("geometry", NOT_STATED)
+    return [
+        Source("Joint compliances", f"{name}: {compliances}", of_set),
+        Source("D-H table", f"{robot.rows} joints, {robot.convention}", geometry),
+        Source("Link lengths", f"{lengths} {unit_label(length)}", given.get("lengths", geometry)),
+        Source("Joint limits", f"{robot.n} ranges", given.get("limits", NOT_STATED)),
+        Source("Tool in the last axis", _tool(robot, length), given.get("tool", NOT_STATED)),
+    ]
 
 
-def _tool(setup: SimulationSetup, length: str) -> str:
-    tip, k = setup.robot.T_tool[:3, 3], setup.robot.T_tool[:3, 2]
+def robot_lengths(robot: Robot) -> dict[str, float]:
+    """Its link lengths that are not zero, m, by their symbols: ``a_2``, ``d_4``."""
+    rows = enumerate(zip(robot.a, robot.d, strict=True), 1)
+    named = {f"{symbol}_{i}": float(v) for i, row in rows for symbol, v in zip("ad", row, strict=True)}
+    return {name: value for name, value in named.items() if value != 0.0}
+
+
+def _tool(robot: Robot, length: str) -> str:
+    tip, k = robot.T_tool[:3, 3], robot.T_tool[:3, 2]
     direction = ", ".join(format_significant(float(v) + 0.0) for v in np.round(k, 4))
     return f"tip {format_many(tip, length, 1)}, z_T along ({direction})"
 

@@ -27,6 +27,7 @@ STOREYS = [
         "lazy",
         "files",
         "compiled",
+        "console",
         "provenance",
         "quantities",
         "spelled",

@@ -10,13 +10,12 @@ import pytest
 import streamlit as st
 import trimesh
 
-from robomill.io.meshes import mesh_bytes
+from robomill.io.meshes import FEW_TRIANGLES, mesh_bytes
 from robomill.report.records import jsonable, shown
 from robomill.report.settled import settled
 from robomill.report.tables import csv_text
 from robomill.simulation.run import simulate
 from robomill.ui import pieces, session
-from robomill.ui.milling.pictures import FEW_TRIANGLES
 from robomill.ui.project import preset_setup
 
 

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import streamlit as st
 
-from robomill.io.meshes import FORMATS, mesh_bytes
+from robomill.io.meshes import FEW_TRIANGLES, FORMATS, MOST_TRIANGLES, mesh_bytes
 from robomill.report.tables import csv_text
 from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
@@ -23,7 +23,6 @@ PLACE = "milling.picture"
 STANDING = frozenset({"tool", "arm"})
 SIZE = (1360, 720)
 FULL = "milling.get.full"
-FEW_TRIANGLES, MOST_TRIANGLES = 150_000, 2_000_000  # of a solid that is taken away: an STL below 10 MB, and all of it
 # s on a desktop of 2024, measured: a picture; a sample's row; a cell of a solid, with its error, and one with a wall.
 DRAWING_S, ROW_S, CELL_S, FIELD_S, WALL_S = 1.0, 3e-5, 3e-7, 4e-7, 6e-6
 

@@ -1,0 +1,103 @@
+"""What a command is given by name: a file, a sample, or what comes in by standard input (``-``)."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+from robomill.errors import GCodeError, LoadTestError, ProjectError, RobomillError, RobotError
+from robomill.files import PROGRAM, ROBOT, SETUP, TABLE, TOOLS, FileKind, check_size, name_of, read_file
+from robomill.io.samples import find_sample
+
+STDIN, CALLED = "-", "standard input"
+
+
+def check_once(arguments: Any) -> None:
+    """Refuse standard input for two things, and as a place to write to. Raises RobomillError."""
+    said = {name for name, value in vars(arguments).items() if value == STDIN}
+    if said & {"out", "sheet", "moves", "copy"}:
+        raise RobomillError(f"{STDIN!r} is standard input, which cannot be written to; give the name of a file.")
+    if len(said) > 1:
+        raise RobomillError(f"{STDIN!r} stands for standard input, which can be read once; name a file for the others.")
+
+
+def stdin(kind: FileKind, error: type[RobomillError]) -> bytes:
+    """All that comes in, up to what its ``kind`` may hold."""
+    stream = getattr(sys.stdin, "buffer", None)
+    data: bytes = b"" if stream is None else stream.read(kind.most + 1)
+    check_size(len(data), kind, error, CALLED)
+    if not data.strip():
+        raise error(f"{CALLED}: nothing came in; expected {kind.expected}.")
+    return data
+
+
+def robot(name: str) -> Any:
+    """The robot called so, of a file, or of standard input."""
+    from robomill.io.robots import load_robot, read_robot
+
+    if name != STDIN:
+        return load_robot(name)
+    data = stdin(ROBOT, RobotError)
+    return read_robot(data, "stdin.urdf" if data.lstrip().startswith(b"<") else "stdin.toml")
+
+
+def setup(name: str, allow_outside: bool) -> Any:
+    """The set-up of a sample, a file, or standard input, which names files in the folder in which one stands."""
+    from robomill.io.beside import Beside
+    from robomill.io.projects import load_setup, setup_from_toml
+    from robomill.io.texts import read_text
+
+    if name != STDIN:
+        return load_setup(name, allow_outside)
+    text, _ = read_text(stdin(SETUP, ProjectError), ProjectError, SETUP, CALLED)
+    return setup_from_toml(text, CALLED, Beside(Path.cwd(), allow_outside))
+
+
+def program(name: str) -> Path | bytes:
+    """The file of a program; where that is a stream, which can be read once, what comes out of it."""
+    if name == STDIN:
+        return stdin(PROGRAM, GCodeError)
+    file = find_sample("program", name) or Path(name)
+    return file if file.is_file() else read_file(file, PROGRAM, GCodeError)
+
+
+def source(name: str) -> Any:
+    """A program as the path of a set-up."""
+    from robomill.io.programs import program_from_bytes, read_program
+
+    if name == STDIN:
+        return program_from_bytes(stdin(PROGRAM, ProjectError), "stdin.nc")
+    return read_program(name)
+
+
+def load_tests(name: str, robot: Any) -> tuple[Any, str]:
+    """Load tests, and what they are called."""
+    from robomill.io.load_tests import read_load_tests
+    from robomill.io.texts import read_text
+
+    if name == STDIN:
+        text, _ = read_text(stdin(TABLE, LoadTestError), LoadTestError, TABLE, CALLED)
+        return read_load_tests(f"{text}\n", robot), CALLED
+    return read_load_tests(name, robot), name_of(find_sample("load tests", name) or name)
+
+
+def tools(name: str, unit: str) -> Any:
+    """A tool table."""
+    from robomill.errors import CuttingError
+    from robomill.io.tool_tables import read_tool_table
+
+    if name == STDIN:
+        return read_tool_table(stdin(TOOLS, CuttingError), unit=unit, name=CALLED)
+    return read_tool_table(name, unit=unit)
+
+
+def is_apt(source: Path | bytes) -> bool:
+    """Whether a program is a cutter location file."""
+    from robomill.toolpath import apt
+
+    if isinstance(source, bytes):
+        return apt.is_apt(source)
+    try:
+        with source.open("rb") as stream:
+            return apt.is_apt(stream.read(200_000))
+    except OSError:
+        return False  # the interpreter says what is wrong with the file

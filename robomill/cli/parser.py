@@ -1,0 +1,185 @@
+"""The verbs and their options, with what ``--help`` and the completion of shells tell of them: quick to load."""
+
+import argparse
+import textwrap
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from typing import Any
+
+from robomill import __version__
+from robomill.cli.options import whole
+from robomill.cli.serve import serve_options
+
+EXIT_CODES = (
+    "exit codes: 0 done; 1 a red verdict, not judged or not reached; 2 refused, with a sentence on standard error; "
+    "70 a mistake of robomill's own; 130 interrupted"
+)
+# Of each verb one line that runs as it stands, in any folder.
+EXAMPLES = {
+    "robots": "robomill robots",
+    "pose": "robomill pose slavkovic_5r --theta-deg 0,0,0,0,0",
+    "ik": 'robomill ik slavkovic_5r --pose "0,-1300,0,0,0"',
+    "gcode": "robomill gcode heart",
+    "map": "robomill map slavkovic_5r --quantity C_yy --z 0 --x -600:600:100 --y -1600:-1000:100 --out map.csv",
+    "identify": "robomill identify slavkovic_5r nine_points --out identified.toml",
+    "simulate": "robomill simulate paper_flute --out result",
+    "samples": "robomill samples --copy samples",
+    "reproduce": "robomill reproduce",
+    "completion": "robomill completion bash",
+    "serve": "robomill serve --port 8502",
+}
+NOTES = {
+    "ik": "Exits 1 where the pose is not reached.",
+    "simulate": "Exits 1 where the verdict is red, and where nothing or not all can be judged: never 0 on a number "
+    "that is not known.",
+    "reproduce": "Exits 1 where a claim of the paper that should hold does not.",
+    "completion": "For bash, write it to ~/.local/share/bash-completion/completions/robomill; for zsh, to a file "
+    "_robomill in a folder of $fpath; for fish, to ~/.config/fish/completions/robomill.fish.",
+}
+SHELLS = ("bash", "zsh", "fish", "powershell")
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """The verbs and their options."""
+    top = argparse.ArgumentParser(
+        prog="robomill", description="Path deviation of a milling robot. Without a verb: the app.", epilog=EXIT_CODES
+    )
+    top.add_argument("--version", action="version", version=f"robomill {__version__}")
+    top.add_argument("--debug", action="store_true", help="show the traceback of a crash (or set ROBOMILL_DEBUG=1)")
+    verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
+
+    def verb(name: str, text: str, **more: Any) -> argparse.ArgumentParser:
+        said = textwrap.fill(f"{text} {NOTES.get(name, '')}", 79)
+        sub = verbs.add_parser(
+            name,
+            help=text,
+            description=said,
+            epilog=f"example:\n  {EXAMPLES[name]}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        sub.set_defaults(run=partial(_run, name), **more)
+        return sub
+
+    def told(name: str, text: str) -> argparse.ArgumentParser:
+        sub = verb(name, text)
+        sub.add_argument("--json", action="store_true", help="one JSON object on stdout")
+        return sub
+
+    told("robots", "List the robots that come with robomill.")
+    _pose_options(told("pose", "Pose, Jacobian and compliance at a configuration."))
+    ik = told("ik", "Joint coordinates for a pose.")
+    _robot(ik)
+    ik.add_argument("--pose", required=True, help='"X,Y,Z,A,B" in mm and degrees')
+    _gcode_options(told("gcode", "Read a program: moves, lengths, extents, findings."))
+    _map_options(told("map", "A quantity over a plane or a box, NaN where the robot cannot reach."))
+    _identify_options(told("identify", "Joint compliances from load tests, with their intervals."))
+    _simulate_options(told("simulate", "Run a set-up: deviation, groove, verdict."))
+    given = told("samples", "List the samples, or copy them to work on.")
+    _named(given, "names", "samples to list or copy (all)", "any", nargs="*")
+    given.add_argument("--copy", metavar="DIR", help="copy them there; what is there and differs is never replaced")
+    told("reproduce", "Every table, figure and claim of the paper: what it gives, and what comes out here.")
+    shell = verb("completion", "Print what a shell needs to complete verbs, options, samples and robots.", json=False)
+    shell.add_argument("shell", choices=SHELLS)
+    serve_options(
+        verb("serve", "Serve the app to others: no error details for visitors, work kept within bounds.", json=False)
+    )
+    return top
+
+
+def _run(name: str, arguments: Any) -> int:
+    """Load the verb's own module and run it."""
+    module = {"simulate": "simulate", "identify": "identify", "serve": "serve"}.get(name, "verbs")
+    run: Callable[[Any], int] = getattr(import_module(f"robomill.cli.{module}"), f"run_{name}")
+    return run(arguments)
+
+
+def _named(sub: argparse.ArgumentParser, name: str, text: str, kind: str, **more: Any) -> None:
+    """An argument that takes a file, a sample's name, or - for standard input."""
+    action = sub.add_argument(name, help=text, **more)
+    action.completer = partial(_completed, kind)  # type: ignore[attr-defined]
+
+
+def _completed(kind: str, prefix: str, **_: Any) -> list[str]:
+    """Names of samples of a ``kind`` and files that begin with ``prefix``."""
+    from argcomplete.completers import FilesCompleter
+
+    from robomill.io.samples import samples
+
+    names = [sample.name for sample in samples() if kind in (sample.kind, "any")]
+    files = [] if kind == "any" else FilesCompleter()(prefix)
+    return [*(name for name in dict.fromkeys(names) if name.startswith(prefix)), *files]
+
+
+def _robot(sub: argparse.ArgumentParser, name: str = "robot") -> None:
+    _named(sub, name, "name of a robot, a .toml or .urdf file, or - for standard input", "robot")
+
+
+def _pose_options(pose: argparse.ArgumentParser) -> None:
+    _robot(pose)
+    pose.add_argument("--theta-deg", required=True, help="joint coordinates, comma separated (mm for sliding joints)")
+    pose.add_argument("--compliance-set", help="one of the robot's compliance sets")
+
+
+def _gcode_options(gcode: argparse.ArgumentParser) -> None:
+    _named(gcode, "file", "a program, a sample's name, or - for standard input", "program")
+    gcode.add_argument("--tools", help="tool table: LinuxCNC's .tbl, CSV tool,diameter_mm,length_mm,..., TOML")
+    gcode.add_argument("--tools-unit", default="mm", choices=("mm", "in"), help="unit of a .tbl, which does not say it")
+    gcode.add_argument("--moves", metavar="OUT.jsonl", help="write the canonical moves, one a line")
+    gcode.add_argument("--dialect", default="auto", help="auto, linuxcnc, fanuc, grbl or sinumerik")
+
+
+def _map_options(grid: argparse.ArgumentParser) -> None:
+    _robot(grid)
+    grid.add_argument("--quantity", action="append", required=True, help="C_yy, det_J, ...; several with commas")
+    for axis in "xyz":
+        grid.add_argument(f"--{axis}", required=True, metavar="LOW:HIGH:STEP", help="mm, or one number")
+    grid.add_argument("--a-deg", type=float, default=0.0, help="tool tilt A")
+    grid.add_argument("--b-deg", type=float, default=0.0, help="tool tilt B")
+    grid.add_argument("--compliance-set", help="one of the robot's compliance sets")
+    grid.add_argument("--out", help="write the map there: .csv, .parquet or .vti; an older file is replaced")
+
+
+def _identify_options(fit: argparse.ArgumentParser) -> None:
+    _robot(fit)
+    _named(fit, "tests", "load tests (.csv), a sample's name, or - for standard input", "load tests")
+    fit.add_argument(
+        "--model", default="joints", help="joints, joints+bending, joints+tool, joints+bending+tool or constant"
+    )
+    fit.add_argument(
+        "--bending",
+        "--bending-joints",
+        default=None,
+        help="joints with bending springs (2,3 in models with bending), or auto: none or those that cross-validation "
+        "chooses",
+    )
+    fit.add_argument("--fit-points", default="none", help="points to fit too: none (default), force, gauge or both")
+    fit.add_argument("--robust", action="store_true", help="weigh down tests that do not fit")
+    fit.add_argument("--weights", default="equal", help="equal (default), or size: every test by its relative error")
+    fit.add_argument("--leave-out", default="pose", help="cross-validation by pose (default) or by neighbours")
+    fit.add_argument("--exclude", default="", metavar="ROWS", help="rows of the file to leave out, with commas")
+    fit.add_argument(
+        "--out", metavar="ROBOT.toml", help="write the robot with these compliances there; an older file is replaced"
+    )
+    fit.add_argument("--sheet", metavar="SHEET.csv", help="write the tests to do next there, to be filled in")
+    fit.add_argument(
+        "--next", type=partial(whole, 100), default=3, metavar="TESTS", help="how many tests to do next (default 3)"
+    )
+
+
+def _simulate_options(run: argparse.ArgumentParser) -> None:
+    _named(run, "setup", "a set-up (.toml), its folder, a sample's name, or - for standard input", "set-up")
+    _named(run, "--program", "another program than the set-up's", "program")
+    _named(run, "--robot", "another robot than the set-up's: a name or a file", "robot")
+    run.add_argument("--tol", type=float, metavar="MM", help="another tolerance of walls and floors, mm")
+    run.add_argument("--compliance-set", help="another of the robot's compliance sets")
+    run.add_argument(
+        "--out",
+        metavar="DIR",
+        help="write the result there: JSON, CSV tables, pictures, an STL below 10 MB, and a copy of the set-up that "
+        "runs again from there; what an earlier run wrote is replaced, other files stay",
+    )
+    run.add_argument("--full-stl", action="store_true", help="with --out: an STL of every cell, however large")
+    run.add_argument(
+        "--allow-outside", action="store_true", help="let the set-up name files that are not in its own folder or below"
+    )

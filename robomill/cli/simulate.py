@@ -1,0 +1,137 @@
+"""``robomill simulate``: run a set-up, say the verdict, and write the result to a folder from which it runs again."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from robomill.cli import given
+from robomill.cli.saying import Written, say
+from robomill.errors import ProjectError, RobomillError, SetupError, SurfaceError
+
+SETUP, RECORD, SOLID = "setup.toml", "result.json", "machined.stl"
+TABLES = ("deviation.csv", "sections.csv")
+PICTURES = ("deviation.png", "section.png")
+NAMES = (SETUP, RECORD, *TABLES, SOLID, *PICTURES)
+OF_ROBOT = ("geometry", "lengths", "limits", "base", "tool", "compliance")
+
+
+def run_simulate(arguments: Any) -> int:
+    """Run; 1 where the verdict is red or nothing can be judged."""
+    from robomill.report.plain import simulation_lines
+    from robomill.report.simulation_record import simulation_record
+    from robomill.simulation.run import simulate
+
+    if arguments.out:
+        _check_folder(Path(arguments.out), arguments)
+    result = simulate(_asked(arguments))
+    record = simulation_record(result)
+    lines, files = simulation_lines(record), []
+    if arguments.out:
+        pictures, lost = _pictures(result)
+        files = _write(Path(arguments.out), {**_contents(result, record, arguments.full_stl), **pictures})
+        record["not_written"] = [{"name": name, "why": why} for name, why in lost.items()]
+        lines += [f"not written: {name}. {why}" for name, why in lost.items()]
+    return say(arguments, record, lines, 1 if result.verdict.red else 0, files)
+
+
+def _asked(arguments: Any) -> Any:
+    """The set-up with what the options say in its stead, and who said so."""
+    from robomill.provenance import Provenance
+    from robomill.units import to_si
+
+    setup = given.setup(arguments.setup, arguments.allow_outside)
+    said = dict(setup.provenance)
+    changes: dict[str, Any] = {}
+    if arguments.program:
+        changes["source"] = given.source(arguments.program)
+        said["path"] = Provenance("user", f"program {changes['source'].name}")
+        force = said.get("force", setup.force.provenance)
+        if force.kind in ("paper", "measured"):  # on one cut; on another it is an assumption
+            said["force"] = replace(force.carried(setup.name), carried_from="")
+    if arguments.robot:
+        if setup.measured_map is not None:
+            raise SetupError("--robot: the set-up's compliances were measured on its own robot ([measured_map]).")
+        changes["robot"] = given.robot(arguments.robot)
+        said = {block: each for block, each in said.items() if block.partition(".")[0] not in OF_ROBOT}
+    if arguments.tol is not None:
+        changes |= {"tolerance": to_si(arguments.tol, "mm"), "floor_tolerance": None}
+        said["tolerance"] = Provenance("user", "--tol")
+    robot = changes.get("robot", setup.robot)
+    if arguments.compliance_set:
+        changes["robot"] = robot.with_compliance_set(arguments.compliance_set)
+    return setup.replace(**changes, provenance=said)
+
+
+def _check_folder(folder: Path, arguments: Any) -> None:
+    """Refuse, before anything is computed, a folder that is none, and one in which other work would be replaced."""
+    if folder.exists() and not folder.is_dir():
+        raise ProjectError(f"--out {folder}: this is a file; give a folder.")
+    read = {Path(name).resolve() for name in (arguments.setup, arguments.program, arguments.robot) if name}
+    if {folder / name for name in NAMES} & read or {(folder / name).resolve() for name in NAMES} & read:
+        raise ProjectError(f"--out {folder}: what this run reads stands there and would be replaced; give another.")
+    if (folder / SETUP).exists() and not (folder / RECORD).exists():
+        raise ProjectError(
+            f"--out {folder}: a set-up stands there that no earlier run wrote ({SETUP}); give another folder."
+        )
+
+
+def _contents(result: Any, record: Mapping[str, Any], every_cell: bool) -> dict[str, str | bytes]:
+    """The files by name, but for pictures."""
+    from robomill.io.meshes import FEW_TRIANGLES, MOST_TRIANGLES, mesh_bytes
+    from robomill.io.projects import setup_to_toml
+    from robomill.io.results import json_text
+    from robomill.report.records import jsonable
+    from robomill.report.tables import csv_text
+
+    return {
+        SETUP: setup_to_toml(result.setup),
+        RECORD: json_text(jsonable(record)),
+        TABLES[0]: csv_text(result.columns()),
+        TABLES[1]: csv_text(result.sections.columns()),
+        SOLID: mesh_bytes(result.machined, "stl", max_faces=MOST_TRIANGLES if every_cell else FEW_TRIANGLES),
+    }
+
+
+def _pictures(result: Any) -> tuple[dict[str, str | bytes], dict[str, str]]:
+    """The pictures by name, and of those that cannot be drawn why."""
+    drawn: dict[str, str | bytes] = {}
+    lost = {}
+    for name, draw in zip(PICTURES, (_deviation, _section), strict=True):
+        try:
+            drawn[name] = draw(result)
+        except RobomillError as exc:
+            lost[name] = str(exc)
+    return drawn, lost
+
+
+def _deviation(result: Any) -> bytes:
+    from robomill.viz.deviation import components_figure
+    from robomill.viz.plotted import png
+
+    return png(components_figure(result, "mm", dark=False), [result.setup.name, result.verdict.sentence])
+
+
+def _section(result: Any) -> bytes:
+    """The section at the largest deviation, or the first that there is."""
+    from robomill.units import format_si
+    from robomill.viz.plotted import png
+    from robomill.viz.sections import section_figure
+    from robomill.viz.views import section_drawing
+
+    worst = [result.groove(float(result.path.s[result.worst]))] if result.worst >= 0 else []
+    drawable = [each for each in (*worst, *result.sections) if len(each.w) and each.kind != "unknown"]
+    if not drawable:
+        raise SurfaceError(f"No section can be drawn: {result.sections[0].note}.")
+    place = format_si(drawable[0].station, "mm", 1)
+    words = f"Section after {place} of cut{', at the largest deviation' * (drawable[:1] == worst)}"
+    words += "; looking along the feed"
+    return png(section_figure(section_drawing(drawable[0], "mm"), dark=False), [result.setup.name, words])
+
+
+def _write(folder: Path, contents: Mapping[str, str | bytes]) -> list[Written]:
+    from robomill.io.results import write_files
+
+    files = Written.before([folder / name for name in contents])
+    write_files(folder, contents)
+    return files

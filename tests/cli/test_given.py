@@ -1,0 +1,129 @@
+"""What a command is given by name: files, samples, standard input."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from robomill.cli import main
+from robomill.io.robots import load_robot, robot_to_toml
+from robomill.io.samples import samples_dir
+from robomill.io.urdf_writer import robot_to_urdf
+
+FLUTE = samples_dir() / "paper_flute"
+TESTS = samples_dir() / "load_tests" / "nine_points.csv"
+POSE = ("--theta-deg", "0,0,0,0,0")
+
+
+@pytest.fixture
+def come_in(monkeypatch):
+    """Standard input holds these bytes."""
+
+    def put(data: bytes) -> None:
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+
+    return put
+
+
+def record(capsys, *words: object) -> dict:
+    code = main([*map(str, words), "--json"])
+    out, err = capsys.readouterr()
+    assert code == 0, err
+    return json.loads(out)
+
+
+def refusal(capsys, *words: object) -> str:
+    assert main([*map(str, words)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    return err
+
+
+def test_a_setup_by_its_name_is_the_samples(capsys) -> None:
+    named = record(capsys, "simulate", "paper_flute")
+    assert named == record(capsys, "simulate", FLUTE)
+    other = record(capsys, "simulate", "paper_flute/setup_measured_map")
+    assert other["digest"] == record(capsys, "simulate", FLUTE / "setup_measured_map.toml")["digest"]
+
+
+def test_what_stands_there_goes_before_a_sample(capsys, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "heart").mkdir()
+    assert "heart/setup.toml" in refusal(capsys, "simulate", "heart")
+
+
+def test_a_program_and_load_tests_by_name(capsys) -> None:
+    assert record(capsys, "gcode", "heart") == record(capsys, "gcode", samples_dir() / "heart" / "heart.nc")
+    by_name = record(capsys, "simulate", "paper_flute", "--program", "paper_flute")
+    assert by_name["deviation_mm"] == record(capsys, "simulate", "paper_flute")["deviation_mm"]
+    tests = record(capsys, "identify", "slavkovic_5r", "nine_points")
+    assert tests["C_theta"] == record(capsys, "identify", "slavkovic_5r", TESTS)["C_theta"]
+
+
+def test_a_program_comes_in(capsys, come_in) -> None:
+    text = (FLUTE / "path.nc").read_bytes()
+    come_in(text)
+    assert record(capsys, "gcode", "-")["length_mm"]["feed"] == pytest.approx(100.0)
+    come_in(text)
+    assert record(capsys, "simulate", "paper_flute", "--program", "-")["max_deviation_mm"] == pytest.approx(0.251, 1e-2)
+
+
+def test_a_setup_comes_in_with_files_of_the_folder_one_stands_in(capsys, come_in, monkeypatch) -> None:
+    monkeypatch.chdir(FLUTE)
+    come_in((FLUTE / "setup.toml").read_bytes())
+    assert record(capsys, "simulate", "-") == record(capsys, "simulate", "paper_flute")
+
+
+def test_load_tests_come_in(capsys, come_in) -> None:
+    come_in(TESTS.read_bytes())
+    found = record(capsys, "identify", "slavkovic_5r", "-")
+    assert found["C_theta"] == record(capsys, "identify", "slavkovic_5r", TESTS)["C_theta"]
+
+
+@pytest.mark.parametrize("write", [robot_to_toml, robot_to_urdf], ids=["toml", "urdf"])
+def test_a_robot_comes_in_as_either_file(write, capsys, come_in) -> None:
+    robot = load_robot("slavkovic_5r")
+    come_in(write(robot).encode())
+    T = record(capsys, "pose", "-", *POSE)["T_MT"]
+    for row, other in zip(T, record(capsys, "pose", "slavkovic_5r", *POSE)["T_MT"], strict=True):
+        assert row == pytest.approx(other, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("gcode", "-"), "standard input: nothing came in; expected a program"),
+        (("simulate", "-"), "standard input: nothing came in; expected a set-up"),
+        (("pose", "-", *POSE), "standard input: nothing came in; expected a robot"),
+        (("identify", "slavkovic_5r", "-"), "standard input: nothing came in; expected a CSV table"),
+        (("simulate", "-", "--program", "-"), "can be read once"),
+        (("simulate", "heart", "--out", "-"), "cannot be written to"),
+        (("identify", "-", "-"), "can be read once"),
+    ],
+)
+def test_standard_input_that_cannot_be_is_refused(words, sentence: str, capsys, come_in) -> None:
+    come_in(b" \n")
+    assert sentence in refusal(capsys, *words)
+
+
+def test_no_standard_input_at_all(capsys, monkeypatch) -> None:
+    monkeypatch.setattr(sys, "stdin", None)
+    assert "nothing came in" in refusal(capsys, "gcode", "-")
+
+
+def test_names_of_bytes_that_are_no_text(capsys, tmp_path: Path) -> None:
+    """A file of a Latin-1 system, named in bytes that are no UTF-8: it is read, and its name harms no record."""
+    file = tmp_path / "fr\udce4se.nc"
+    try:
+        file.write_bytes((FLUTE / "path.nc").read_bytes())
+    except OSError:
+        pytest.skip("this file system takes text only")
+    out = tmp_path / "out\udcff"
+    found = record(capsys, "simulate", "paper_flute", "--program", file, "--out", out)
+    assert found["files"][0]["path"].endswith("out\udcff/setup.toml")
+    assert record(capsys, "simulate", out)["digest"] == found["digest"]

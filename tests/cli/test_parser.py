@@ -1,0 +1,98 @@
+"""What --help says, that its examples run, and what shells complete."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import shlex
+import subprocess
+import sys
+from contextlib import redirect_stdout
+from pathlib import Path
+
+import argcomplete
+import pytest
+
+from robomill.cli import main, serve
+from robomill.cli.parser import EXAMPLES, SHELLS, make_parser
+from robomill.console import speak_plainly
+from robomill.io.samples import sample_names
+
+ROOT = Path(__file__).resolve().parents[2]
+VERBS = next(a for a in make_parser()._actions if isinstance(a, argparse._SubParsersAction)).choices
+
+
+def ran(words: list[str]) -> tuple[int, str]:
+    """Exit code and output on a console of ASCII alone."""
+    stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    speak_plainly(stream)
+    with redirect_stdout(stream):
+        try:
+            code = main(words)
+        except SystemExit as left:
+            code = int(left.code or 0)
+    stream.flush()
+    return code, stream.buffer.getvalue().decode("ascii")
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_has_help_with_its_example_for_every_console(verb: str) -> None:
+    code, said = ran([verb, "--help"])
+    assert code == 0
+    assert f"example:\n  {EXAMPLES[verb]}\n" in said
+    assert max(map(len, said.splitlines())) <= 120
+
+
+@pytest.mark.parametrize("verb", EXAMPLES)
+def test_every_example_runs_in_an_empty_folder(verb, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(serve, "_become", lambda command, environment: 0)
+    monkeypatch.setattr(serve, "_can_listen", lambda address, port: None)
+    words = shlex.split(EXAMPLES[verb])
+    assert words[:2] == ["robomill", verb]
+    code, said = ran(words[1:])
+    assert code == 0
+    assert said or verb == "serve"
+
+
+def test_the_exit_codes_stand_in_the_help() -> None:
+    assert "130 interrupted" in " ".join(ran(["--help"])[1].split())
+    said = " ".join(ran(["simulate", "--help"])[1].split())
+    assert "Exits 1 where the verdict is red, and where nothing or not all can be judged" in said
+
+
+def completed(line: str) -> set[str]:
+    """What a shell is told for a line that ends at its cursor."""
+    finder = argcomplete.CompletionFinder(make_parser(), always_complete_options="long")
+    words = shlex.split(line)
+    before, prefix = (words, "") if line.endswith(" ") else (words[:-1], words[-1])
+    return {word.strip() for word in finder._get_completions(before, prefix, "", None)}
+
+
+def test_shells_complete_verbs_options_samples_and_robots(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "heather.toml").write_text("")
+    assert {"simulate", "samples"} <= completed("robomill s")
+    assert completed("robomill simulate he") == {"heart", "heather.toml"}
+    assert completed("robomill pose sl") == {"slavkovic_5r"}
+    assert set(sample_names("load tests")) <= completed("robomill identify slavkovic_5r ")
+    assert completed("robomill simulate heart --robot kuka_kr5") == {"kuka_kr500"}
+    assert "--program" in completed("robomill simulate --pr")
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_each_shell_gets_a_script_that_asks_robomill(shell: str, capsys) -> None:
+    assert main(["completion", shell]) == 0
+    said = capsys.readouterr().out
+    assert "robomill" in said
+    assert "_ARGCOMPLETE" in said
+
+
+def test_a_shell_that_asks_is_answered_before_anything_else(tmp_path: Path) -> None:
+    answer = tmp_path / "answer"
+    told = {"_ARGCOMPLETE": "1", "_ARGCOMPLETE_IFS": "\n", "_ARGCOMPLETE_STDOUT_FILENAME": str(answer)}
+    told |= {"COMP_LINE": "robomill simulate hea", "COMP_POINT": "21", "COMP_TYPE": "9", "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "robomill", "simulate", "hea"]
+    subprocess.run(command, env={**os.environ, **told}, cwd=tmp_path, timeout=60, check=True)
+    assert answer.read_text().split() == ["heart"]
