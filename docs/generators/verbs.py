@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 import os
 
-from robomill.cli import parser
+from robomill.cli.parser import make_parser
 
 
 def pages() -> dict[str, str]:
     """The generated piece by name."""
     os.environ["COLUMNS"] = "96"
-    top = parser()
+    top = make_parser()
     verbs = next(each for each in top._actions if isinstance(each, argparse._SubParsersAction))
     short = {each.dest: each.help or "" for each in verbs._choices_actions}
     listed = ["| verb | what it does |", "|---|---|"]

@@ -12,7 +12,7 @@ import sys
 import pytest
 
 import robomill as rm
-from robomill.cli import parser
+from robomill.cli.parser import make_parser
 from tests.docs.documents import DOCS, ROOT
 
 # What a page would fetch when it is opened, as against what it links to.
@@ -59,7 +59,7 @@ def test_every_public_name_stands_in_the_api(built):
 
 def test_every_verb_and_option_stands_in_the_command_line(built):
     page = text_of(built, "command_line")
-    verbs = next(each for each in parser()._actions if isinstance(each, argparse._SubParsersAction))
+    verbs = next(each for each in make_parser()._actions if isinstance(each, argparse._SubParsersAction))
     for name, verb in verbs.choices.items():
         assert f"robomill {name}" in page
         for action in verb._actions:
