@@ -67,6 +67,11 @@ class Readings(ReadOnly):
         area = self.length * self.height
         return self._share(tolerance, area) * float(area.sum()), float(area.sum())
 
+    def histogram(self, edges: FloatArray) -> FloatArray:
+        """(bins,) m^2, by length and height, between ``edges`` (bins + 1,) m; the outer bins hold what is beyond."""
+        inside = np.clip(self.error, edges[0], edges[-1])
+        return np.histogram(inside, bins=edges, weights=self.length * self.height)[0]
+
     def _share(self, tolerance: float, weight: FloatArray) -> float:
         out, total = np.abs(self.error) > tolerance, float(weight.sum())
         if not out.any():

@@ -58,12 +58,6 @@ class Deviation(Value):
         """Root mean square error over the cut cells, m."""
         return float(np.sqrt(np.mean(self.values**2))) if self.values.size else 0.0
 
-    def histogram(self, bins: int = 60, limit: float | None = None) -> tuple[FloatArray, FloatArray]:
-        """Bin edges (bins + 1,) m and area (bins,) m^2; errors beyond +-limit are counted in the outer bins."""
-        reach = max(*np.abs(self.worst), 1e-9) if limit is None else limit
-        count, edges = np.histogram(np.clip(self.values, -reach, reach), bins=bins, range=(-reach, reach))
-        return frozen(edges), frozen(count * self.cell_area)
-
 
 def deviation(ideal: ZMap, machined: ZMap, *, reach: float = 1e-3) -> Deviation:
     """Compare two height maps of one grid.

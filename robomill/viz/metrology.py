@@ -1,5 +1,6 @@
 """The measuring room's figures: the groove's middle line and floor along its length, and how its error is spread."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +9,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.units import decimals, unit_label
 from robomill.viz.along import Along
 from robomill.viz.chart import Chart
-from robomill.viz.theme import DIVERGING, axis, figure, palette, rgba, say
+from robomill.viz.theme import axis, figure, palette, rgba, say
 
 CLIPPED = 2.0  # tolerances: what is further out would press the rest of the curve flat
 
@@ -78,36 +79,35 @@ def _limits(walls: float, floors: float) -> list[tuple[float, str]]:
 
 
 def histogram_figure(
-    edges: FloatArray, share: FloatArray, tolerances: FloatArray, unit: str = "um", *, dark: bool
+    edges: FloatArray, share: Mapping[str, FloatArray], tolerances: FloatArray, unit: str = "mm", *, dark: bool
 ) -> Chart:
-    """Share of the cut area (%) by signed error (``unit``: um or thou), in the colours of the surface; ``tolerances``
-    of walls and floors marked."""
+    """Share (%) of all walls and floors by signed error (``unit``), ``share`` of each stacked; ``tolerances`` of walls
+    and floors marked."""
     p, label = palette(dark), unit_label(unit)
     walls, floors = map(float, tolerances)
     middle = 0.5 * (edges[1:] + edges[:-1])
-    fig = figure(dark=dark, height=320, revision="histogram", margin={"l": 8, "r": 16, "t": 30, "b": 8}, bargap=0.04)
-    fig.add(
-        "bar",
-        x=middle,
-        y=share,
-        width=np.diff(edges),
-        name="area",
-        showlegend=False,
-        marker={
-            "color": middle,
-            "colorscale": DIVERGING,
-            "cmin": -walls,
-            "cmax": walls,
-            "line": {"width": 0.6, "color": p.line},
-        },
-        hovertemplate=f"%{{x:+.{decimals(unit, None)}f}} {label}<br>%{{y:.1f}} % of the area<extra></extra>",
-    )
+    margin = {"l": 8, "r": 16, "t": 30, "b": 8}
+    fig = figure(dark=dark, height=320, revision="histogram", margin=margin, bargap=0.04, barmode="stack")
+    for (name, value), colour in zip(share.items(), (p.accent, p.muted), strict=True):
+        fig.add(
+            "bar",
+            x=middle,
+            y=value,
+            width=np.diff(edges),
+            name=name,
+            marker={"color": colour, "line": {"width": 0.6, "color": p.line}},
+            hovertemplate=f"{name} %{{x:+.{decimals(unit, None)}f}} {label}<br>%{{y:.1f}} %<extra></extra>",
+        )
     for place, words in _limits(walls, floors):
         fig.upright(x=place, line={"color": p.muted, "width": 1.2})
         say(fig, words, place, 1.0, p.muted, yref="paper", yanchor="bottom")
     reach = max(1.12 * walls, 1.12 * floors, float(np.abs(edges).max()) * 1.04)
     fig.lay_out(
-        xaxis=axis(f"Signed error, {label} (− too deep, + material left)", dark=dark, range=[-reach, reach]),
-        yaxis=axis("Share of the cut area, %", dark=dark, rangemode="tozero"),
+        xaxis=axis(
+            f"Error, {label} (walls: + to the left of the feed; floors: + material left)",
+            dark=dark,
+            range=[-reach, reach],
+        ),
+        yaxis=axis("Share of walls and floors, %", dark=dark, rangemode="tozero"),
     )
     return fig

@@ -467,3 +467,15 @@ def test_floors_of_a_sample_stand_for_its_length_together_and_so_does_each_wall(
         assert found.walls.area_out(1.0)[1] == pytest.approx(
             2 * 2e-3 * length[places > 0].sum()
         )  # the slots are 2 mm deep
+
+
+def test_the_histogram_of_a_straight_slot_is_its_two_walls_and_its_floor():
+    """Pushed left by 0.1 mm and down by 0.05 mm: the 2 x 60 mm of wall, 2 mm high, and 60 x 8 mm of floor."""
+    found = gauge(pushed(run("G0 X-40 Y0", "G0 Z-2", "G1 X40 F600"), left=1e-4, up=-5e-5))
+    edges = np.array([-2e-4, -7.5e-5, -2.5e-5, 7.5e-5, 1.25e-4])
+    walls, floors = found.walls.histogram(edges), found.floors.histogram(edges)
+    assert walls.sum() == pytest.approx(walls[-1])
+    assert floors.sum() == pytest.approx(floors[1])
+    assert walls[-1] == pytest.approx(2 * 60e-3 * 2e-3, rel=0.15)
+    assert floors[1] == pytest.approx(60e-3 * 8e-3, rel=0.15)
+    assert found.walls.histogram(edges / 4)[-1] == walls[-1], "what is beyond is in the outer bin"

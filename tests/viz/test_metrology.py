@@ -49,8 +49,10 @@ def test_a_curve_without_a_number_is_left_out():
 
 
 def test_the_histogram_counts_in_the_unit_of_the_view():
-    edges, share, limits = np.linspace(-12.0, 12.0, 9), np.full(8, 12.5), np.array([11.8, 11.8])
-    fig = histogram_figure(edges, share, limits, "thou", dark=False)
-    assert "thou" in fig.layout["xaxis"]["title"]["text"]
-    assert "thou" in fig.traces[0]["hovertemplate"]
-    assert "µm" not in str(fig.layout) + fig.traces[0]["hovertemplate"]
+    edges, limits = np.linspace(-0.012, 0.012, 9), np.array([0.0118, 0.0118])
+    share = {"walls": np.full(8, 10.0), "floors": np.full(8, 2.5)}
+    fig = histogram_figure(edges, share, limits, "in", dark=False)
+    assert [trace["name"] for trace in fig.traces] == ["walls", "floors"]
+    assert "Error, in " in fig.layout["xaxis"]["title"]["text"]
+    assert " in<br>" in fig.traces[0]["hovertemplate"]
+    assert "mm" not in str(fig.layout) + fig.traces[0]["hovertemplate"]

@@ -92,7 +92,10 @@ def milling_figures(result: SimulationResult, dark: bool) -> dict[str, Any]:
         "engagement": engagement_figure(result, "mm", dark=dark),
         "profile": profile_figure(profile, np.arange(21), 50.0, dark=dark),
         "histogram": histogram_figure(
-            np.linspace(-300, 300, 11), np.full(10, 10.0), np.array([300.0, 200.0]), dark=dark
+            np.linspace(-0.3, 0.3, 11),
+            {"walls": np.full(10, 8.0), "floors": np.full(10, 2.0)},
+            np.array([0.3, 0.2]),
+            dark=dark,
         ),
         "evidence": evidence_figure(CLAIMS, "mm", dark=dark),
     }

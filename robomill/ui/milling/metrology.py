@@ -25,6 +25,7 @@ STATIONS, FEW_STATIONS = 21, 13
 MANY_SAMPLES = 20_000  # a section takes every move into account, so long programs are measured at fewer places
 MEASURED = "milling.profile"
 MAX_PROFILE_MB = 10
+BINS = 48  # of the histogram of errors
 WHAT = {
     "groove": "Groove: two walls that one pass leaves.",
     "step": "Step: one wall; on the other side the cut is open.",
@@ -230,7 +231,7 @@ def _take(data: bytes, name: str) -> None:
 
 
 def spread_panel(result: SimulationResult, dark: bool) -> None:
-    """How the error is spread over the cut area: histogram, volumes, share out of tolerance."""
+    """How the error is spread over walls and floors: the verdict's own readings, volumes, share out of tolerance."""
     walls, floors = (each.tolerance for each in (result.verdict.wall, result.verdict.floor))
     try:
         error = pieces.underway(error_of, result)
@@ -239,23 +240,26 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
         return
     if error is None:
         return
-    largest = float(np.abs(error.worst).max())
+    gauge, unit = result.gauge, session.project().view.length
+    largest = float(np.abs(np.concatenate([gauge.walls.error, gauge.floors.error])).max(initial=0.0))
     limit = min(max(1.15 * floors, 1.15 * walls, 1.05 * largest), 3.0 * max(floors, walls))
-    edges, area = error.histogram(48, limit)
-    share = 100.0 * area / error.cut_area if error.cut_area else area
-    small = session.project().view.of("um")
+    edges = np.linspace(-limit, limit, BINS + 1)
+    area = {"walls": gauge.walls.histogram(edges), "floors": gauge.floors.histogram(edges)}
+    total = max(float(sum(each.sum() for each in area.values())), 1e-300)
+    share = {name: 100.0 * each / total for name, each in area.items()}
     pieces.figure(
-        histogram_figure(from_si(edges, small), share, from_si(np.array([walls, floors]), small), small, dark=dark),
+        histogram_figure(from_si(edges, unit), share, from_si(np.array([walls, floors]), unit), unit, dark=dark),
         "histogram",
         name="error-histogram",
         table=lambda: {
             "from_um": from_si(edges[:-1], "um"),
             "to_um": from_si(edges[1:], "um"),
-            "area_mm2": from_si(area, "mm2"),
-            "share_percent": share,
+            **{f"{name}_mm2": from_si(each, "mm2") for name, each in area.items()},
         },
-        caption="Shortest distance of the machined surface to the ideal one, over the cut area seen from above.",
-        alt=f"Histogram of the signed error over the cut area; RMS {format_si(error.rms, small)}.",
+        caption="Walls and floors as a gauge reads them, each by its own area: what the verdict rests on.",
+        alt="Histogram of the errors of walls and floors by their area; "
+        + "; ".join(remark for _, _, remark in _out_of_tolerance(result))
+        + ".",
     )
     pieces.facts([*_out_of_tolerance(result), *_volumes(error)])
     for finding in result.surface_notes:
