@@ -18,7 +18,7 @@ PART = 0.1  # of the deviation: what takes less of it away has not cleaned it up
 Mark = Literal["wall", "floor", "feed"]
 WORDS = {
     "stays": "what it leaves there stays on the part",
-    "cleaned": "a later pass cleans it up",
+    "cleaned": "a later pass cleans that place up",
     "none": "nothing stands beside the tool there to bear its mark",
     "feed": "mostly along the feed, which leaves no mark on a straight cut",
 }
