@@ -1,9 +1,13 @@
-"""The start page: what this is, a program to be checked, the reference groove finished before anyone has clicked."""
+"""The app. Streamlit serves it as ``app`` says (``robomill/ui/front.py``), and runs this file itself as start page."""
+
+from pathlib import Path
 
 import streamlit as st
+from streamlit.starlette import App
 
 from robomill import ui
 from robomill.simulation.stations import nearest_judged
+from robomill.ui import front
 from robomill.ui.arm import arm_at
 from robomill.ui.start import carved, story
 from robomill.ui.toolpath.program import take_program
@@ -12,42 +16,51 @@ from robomill.units import format_limit
 
 HEIGHT = 285
 
-project = ui.begin("Start")
-story.onward()
-setup, unit, dark = project.setup, project.view.length, ui.dark()
-result = ui.attempt(ui.result, setup)
-story.purpose()
-if result is None:
-    ui.headline(setup.name, "Nothing is computed yet.")
-    ui.note(
-        "Where numbers above were refused, undo the last change, or mend it on the Robot, Toolpath or Milling page."
-    )
-    story.doors(take_program)
-    st.stop()
 
-ui.headline(setup.name, ui.verdict_sentence(result, unit), story.cause(result, unit))
-ui.open_question(result)
-ui.tiles(ui.verdict_tiles(result, unit))
+def start() -> None:
+    """What this is, a program to be checked, the reference groove finished before anyone has clicked."""
+    project = ui.begin("Start")
+    story.onward()
+    setup, unit, dark = project.setup, project.view.length, ui.dark()
+    result = ui.attempt(ui.result, setup)
+    story.purpose()
+    if result is None:
+        ui.headline(setup.name, "Nothing is computed yet.")
+        ui.note(
+            "Where numbers above were refused, undo the last change, or mend it on the Robot, Toolpath or Milling page."
+        )
+        story.doors(take_program)
+        st.stop()
 
-left, middle, right = ui.split([1, 1.2, 0.8], "finished", gap="small")
-with left, st.container(border=True, height="stretch"):
-    index = nearest_judged(result, project.view.station * float(result.path.s[-1]))
-    if index >= 0:
-        arm_at(result, index, "start-arm", HEIGHT)
-with middle, st.container(border=True, height="stretch"):
-    story.groove_picture(result, project.view, HEIGHT, dark)
-with right:
-    story.doors(take_program)
+    ui.headline(setup.name, ui.verdict_sentence(result, unit), story.cause(result, unit))
+    ui.open_question(result)
+    ui.tiles(ui.verdict_tiles(result, unit))
 
-carved.strip(unit)
-
-with st.expander(story.why(setup, unit), key="start.open.why"):
-    left, right = ui.split([1.55, 1], "rests", gap="large")
-    with left:
-        story.where_from(setup)
+    left, middle, right = ui.split([1, 1.2, 0.8], "finished", gap="small")
+    with left, st.container(border=True, height="stretch"):
+        index = nearest_judged(result, project.view.station * float(result.path.s[-1]))
+        if index >= 0:
+            arm_at(result, index, "start-arm", HEIGHT)
+    with middle, st.container(border=True, height="stretch"):
+        story.groove_picture(result, project.view, HEIGHT, dark)
     with right:
-        story.beside_the_paper(project)
-    ui.note(
-        f"{NOT_COUNTED} Robot: {setup.robot.title or setup.robot.name}. Tolerance "
-        f"{format_limit(setup.tolerance, unit)}. Fingerprint of this run: {setup.digest()[:12]}."
-    )
+        story.doors(take_program)
+
+    carved.strip(unit)
+
+    with st.expander(story.why(setup, unit), key="start.open.why"):
+        left, right = ui.split([1.55, 1], "rests", gap="large")
+        with left:
+            story.where_from(setup)
+        with right:
+            story.beside_the_paper(project)
+        ui.note(
+            f"{NOT_COUNTED} Robot: {setup.robot.title or setup.robot.name}. Tolerance "
+            f"{format_limit(setup.tolerance, unit)}. Fingerprint of this run: {setup.digest()[:12]}."
+        )
+
+
+if __name__ == "__main__":
+    start()
+else:
+    app = App(Path(__file__).resolve(), middleware=front.MIDDLEWARE, lifespan=front.opened)

@@ -2,7 +2,6 @@
 
 import sys
 import threading
-from pathlib import Path
 
 import streamlit as st
 
@@ -21,7 +20,6 @@ from robomill.viz.theme import palette
 
 MAX_PROJECT_MB = 25
 BYTE_S = 4e-8  # s that a byte of a project takes to be written
-CSS = f"<style>\n{Path(__file__).with_name('style.css').read_text(encoding='utf-8')}</style>"
 LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="190" height="36" viewBox="0 0 190 36">
 <g fill="none" stroke="{accent}" stroke-width="3.2" stroke-linecap="round" stroke-linejoin="round">
 <path d="M6 30 L10 11 L25 8 L28 20"/></g>
@@ -74,7 +72,7 @@ def begin(title: str) -> Project:
     if menu.group_pages():
         st.rerun()
     p = palette(dark())
-    st.html(f"{CSS}<style>:root {{ --rm-ground: {p.background}; --rm-accent: {p.accent}; }}</style>")
+    st.html(f"<style>:root {{ --rm-ground: {p.background}; --rm-accent: {p.accent}; }}</style>")
     rendered.queue().worker.start()
     if not _ready.is_set():
         if compiled.missing():

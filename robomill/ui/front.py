@@ -1,0 +1,131 @@
+"""What serves the app: Streamlit, with its files sent compressed and the style there before the first paint.
+
+Streamlit sends its own front end as it is on disk, 8 MB for a first visit, so as not to compress it anew for everyone,
+and learns from the first run of a page how the page is laid out. Here each file that never changes is compressed once
+and kept; the style stands in the page itself, so nothing moves when a page has run, and no run sends it again.
+"""
+
+import gzip
+import webbrowser
+from collections.abc import AsyncIterator, MutableMapping
+from contextlib import asynccontextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import streamlit
+from anyio import to_thread
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.middleware import Middleware
+from starlette.responses import Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from streamlit import config
+from streamlit.web.server import server_util
+
+STYLE = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
+PLACE = b'<div id="root">'  # in the body: a style in the head would come before Streamlit's own, and lose to it
+TITLE = b"<title>Streamlit</title>"
+# A page of ours is never asked whether it is still that of the file on disk: the style may have changed.
+ASKED_AGAIN = {b"if-none-match", b"if-modified-since"}
+SMALL = 500  # bytes: what is smaller is sent as it is
+# What our pages are made of. Streamlit loads each kind of element when the first of its kind is drawn, and shows a grey
+# line meanwhile, from which the page then grows: asked for at once, they are there before the page has run.
+ELEMENTS = ("Html", "BidiComponent", "Button", "ButtonGroup", "Checkbox", "DownloadButton", "FileUploader", "PageLink")
+ELEMENTS += ("Progress", "Selectbox", "Slider", "TextInput")
+FILES = Path(streamlit.__file__).parent / "static" / "static" / "js"
+
+
+@cache
+def beginning() -> bytes:
+    """What a page begins with: the style, and the elements that it will be made of."""
+    files = sorted(file.name for kind in ELEMENTS for file in FILES.glob(f"{kind}.*.js"))
+    asked = "".join(f'import("./static/js/{name}");' for name in files)
+    return f'<style>\n{STYLE}</style>\n<script type="module">{asked}</script>\n'.encode()
+
+
+def styled(page: bytes) -> bytes:
+    """Streamlit's page with our beginning and name in it."""
+    return page.replace(PLACE, beginning() + PLACE, 1).replace(TITLE, b"<title>robomill</title>", 1)
+
+
+class Front:
+    """ASGI middleware: what never changes is compressed once and kept, pages carry the style, all else goes through."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+        self.kept: dict[str, Response] = {}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer one request."""
+        if scope["type"] != "http" or scope["method"] != "GET":
+            await self.app(scope, receive, send)
+            return
+        packs = "gzip" in Headers(scope=scope).get("accept-encoding", "")
+        answer = self.kept.get(scope["path"]) if packs else None
+        if answer is None:
+            held = _Held(send)
+            fresh = [each for each in scope["headers"] if each[0] not in ASKED_AGAIN]
+            await self.app({**scope, "headers": fresh}, receive, held.take)
+            if not held.start:
+                return
+            answer = await self._answer(held, packs)
+            if packs and held.lasts:
+                self.kept[scope["path"]] = answer
+        await answer(scope, receive, send)
+
+    async def _answer(self, held: "_Held", packs: bool) -> Response:
+        headers, body = MutableHeaders(raw=held.start["headers"]), held.body
+        if headers.get("content-encoding") == "gzip":  # Streamlit compresses some pages itself
+            body = gzip.decompress(body)
+            del headers["content-encoding"]
+        if not held.lasts:
+            body = styled(body)
+        for name in ("etag", "last-modified", "accept-ranges"):
+            del headers[name]
+        if packs and len(body) >= SMALL and not _is_packed(headers):
+            body = await to_thread.run_sync(gzip.compress, body)
+            headers["content-encoding"] = "gzip"
+        headers["vary"] = "Accept-Encoding"
+        headers["content-length"] = str(len(body))
+        answer = Response(body)
+        answer.raw_headers = headers.raw
+        return answer
+
+
+def _is_packed(headers: Headers) -> bool:
+    return headers.get("content-type", "").startswith(("font/woff", "image/png", "image/webp"))
+
+
+class _Held:
+    """Takes the answer to one request: a whole page or file that lasts is held, anything else goes on at once."""
+
+    def __init__(self, send: Send) -> None:
+        self.send = send
+        self.start: MutableMapping[str, Any] = {}
+        self.body = b""
+        self.lasts = False
+
+    async def take(self, message: Message) -> None:
+        """One message of the answer."""
+        if message["type"] == "http.response.start":
+            headers = Headers(raw=message["headers"])
+            self.lasts = "immutable" in headers.get("cache-control", "")
+            whole = message["status"] == 200 and (self.lasts or headers.get("content-type", "").startswith("text/html"))
+            self.start = message if whole else {}
+        if not self.start:
+            await self.send(message)
+        elif message["type"] == "http.response.body":
+            self.body += message.get("body", b"")
+
+
+@asynccontextmanager
+async def opened(_app: Any) -> AsyncIterator[None]:
+    """While the server runs; at its beginning a browser opens, unless it was started without one."""
+    if not config.get_option("server.headless"):
+        said = config.is_manually_set("browser.serverAddress")
+        name = config.get_option("browser.serverAddress" if said else "server.address") or "localhost"
+        webbrowser.open(server_util.get_url(server_util.get_display_address(name)))
+    yield
+
+
+MIDDLEWARE = (Middleware(Front),)
