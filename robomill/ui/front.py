@@ -7,7 +7,7 @@ and kept; the style stands in the page itself, so nothing moves when a page has 
 
 import gzip
 import webbrowser
-from collections.abc import AsyncIterator, MutableMapping
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import cache
 from pathlib import Path
@@ -17,7 +17,6 @@ import streamlit
 from anyio import to_thread
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.middleware import Middleware
-from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from streamlit import config
 from streamlit.web.server import server_util
@@ -32,6 +31,7 @@ SMALL = 500  # bytes: what is smaller is sent as it is
 # line meanwhile, from which the page then grows: asked for at once, they are there before the page has run.
 ELEMENTS = ("Html", "BidiComponent", "Button", "ButtonGroup", "Checkbox", "DownloadButton", "FileUploader", "PageLink")
 ELEMENTS += ("Progress", "Selectbox", "Slider", "TextInput")
+Answer = tuple[Message, Message]  # its beginning, its body
 FILES = Path(streamlit.__file__).parent / "static" / "static" / "js"
 
 
@@ -53,7 +53,7 @@ class Front:
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
-        self.kept: dict[str, Response] = {}
+        self.kept: dict[str, Answer] = {}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer one request."""
@@ -71,9 +71,10 @@ class Front:
             answer = await self._answer(held, packs)
             if packs and held.lasts:
                 self.kept[scope["path"]] = answer
-        await answer(scope, receive, send)
+        for message in answer:
+            await send(message)
 
-    async def _answer(self, held: "_Held", packs: bool) -> Response:
+    async def _answer(self, held: "_Held", packs: bool) -> Answer:
         headers, body = MutableHeaders(raw=held.start["headers"]), held.body
         if headers.get("content-encoding") == "gzip":  # Streamlit compresses some pages itself
             body = gzip.decompress(body)
@@ -87,9 +88,7 @@ class Front:
             headers["content-encoding"] = "gzip"
         headers["vary"] = "Accept-Encoding"
         headers["content-length"] = str(len(body))
-        answer = Response(body)
-        answer.raw_headers = headers.raw
-        return answer
+        return {**held.start, "headers": headers.raw}, {"type": "http.response.body", "body": body}
 
 
 def _is_packed(headers: Headers) -> bool:
@@ -101,7 +100,7 @@ class _Held:
 
     def __init__(self, send: Send) -> None:
         self.send = send
-        self.start: MutableMapping[str, Any] = {}
+        self.start: Message = {}
         self.body = b""
         self.lasts = False
 
