@@ -6,6 +6,7 @@ and kept; the style stands in the page itself, so nothing moves when a page has 
 """
 
 import gzip
+import re
 import webbrowser
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -32,20 +33,30 @@ SMALL = 500  # bytes: what is smaller is sent as it is
 ELEMENTS = ("Html", "BidiComponent", "Button", "ButtonGroup", "Checkbox", "DownloadButton", "FileUploader", "PageLink")
 ELEMENTS += ("Progress", "Selectbox", "Slider", "TextInput")
 Answer = tuple[Message, Message]  # its beginning, its body
+IMPORTED = re.compile(r'(?:from|import)"\./([\w.-]+\.js)"')
 FILES = Path(streamlit.__file__).parent / "static" / "static" / "js"
 
 
 @cache
-def beginning() -> bytes:
-    """What a page begins with: the style, and the elements that it will be made of."""
-    files = sorted(file.name for kind in ELEMENTS for file in FILES.glob(f"{kind}.*.js"))
-    asked = "".join(f'import("./static/js/{name}");' for name in files)
-    return f'<style>\n{STYLE}</style>\n<script type="module">{asked}</script>\n'.encode()
+def elements() -> tuple[list[str], list[str]]:
+    """Files of Streamlit's with the elements that pages are made of, and with what these need."""
+    made = sorted(file.name for kind in ELEMENTS for file in FILES.glob(f"{kind}.*.js"))
+    needed = list(made)
+    for name in needed:  # which grows
+        text = (FILES / name).read_text(encoding="utf-8")
+        needed += [found for found in dict.fromkeys(IMPORTED.findall(text)) if found not in needed]
+    return made, needed
 
 
 def styled(page: bytes) -> bytes:
-    """Streamlit's page with our beginning and name in it."""
-    return page.replace(PLACE, beginning() + PLACE, 1).replace(TITLE, b"<title>robomill</title>", 1)
+    """Streamlit's page with our name, our style, and the elements of our pages asked for at once."""
+    made, needed = elements()
+    early = [f'<link rel="modulepreload" crossorigin href="./static/js/{name}">' for name in needed]
+    head = "\n".join(link for link in early if link.encode() not in page)
+    asked = "".join(f'import("./static/js/{name}");' for name in made)
+    body = f'<style>\n{STYLE}</style>\n<script type="module">{asked}</script>\n'
+    named = page.replace(TITLE, b"<title>robomill</title>\n" + head.encode(), 1)
+    return named.replace(PLACE, body.encode() + PLACE, 1)
 
 
 class Front:

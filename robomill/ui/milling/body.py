@@ -133,8 +133,10 @@ def waiting(dark: bool) -> None:
 
 
 def picture_place() -> Any:
-    """Where the picture stands: it has its room before it is there."""
-    return st.container(key="milling-look")
+    """Where the picture stands: it has its room before it is there (a container of nothing would have none)."""
+    place = st.container(key="milling-look")
+    place.html('<i class="rm-room"></i>')
+    return place
 
 
 def _numbers(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
