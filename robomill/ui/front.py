@@ -30,8 +30,8 @@ ASKED_AGAIN = {b"if-none-match", b"if-modified-since"}
 SMALL = 500  # bytes: what is smaller is sent as it is
 # What our pages are made of. Streamlit loads each kind of element when the first of its kind is drawn, and shows a grey
 # line meanwhile, from which the page then grows: asked for at once, they are there before the page has run.
-ELEMENTS = ("Html", "BidiComponent", "Button", "ButtonGroup", "Checkbox", "DownloadButton", "FileUploader", "PageLink")
-ELEMENTS += ("Progress", "Selectbox", "Slider", "TextInput")
+ELEMENTS: tuple[str, ...] = ("Html", "BidiComponent", "Button", "ButtonGroup", "Checkbox", "DownloadButton")
+ELEMENTS += ("FileUploader", "PageLink", "Progress", "Selectbox", "Slider", "TextInput")
 Answer = tuple[Message, Message]  # its beginning, its body
 IMPORTED = re.compile(r'(?:from|import)"\./([\w.-]+\.js)"')
 FILES = Path(streamlit.__file__).parent / "static" / "static" / "js"
