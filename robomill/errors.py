@@ -13,6 +13,15 @@ class RobomillError(ValueError):
 
     ``where`` names the place (file, line, cell, joint, field) as data, for whoever wants to jump there. A word of
     hundreds of characters is not quoted to its end.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> try:
+    ...     rm.load_robot("nobody")
+    ... except rm.RobomillError as refusal:
+    ...     print(refusal.where)
+    nobody
     """
 
     def __init__(self, message: str, *, where: str | None = None) -> None:

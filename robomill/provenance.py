@@ -21,6 +21,12 @@ class Provenance:
 
     ``carried_from`` names the set-up in which they were stated, where they now stand beside another path and nobody has
     said yet that they hold there.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.Provenance("measured", "load tests of 3 May").record()
+    {'kind': 'measured', 'source': 'load tests of 3 May'}
     """
 
     kind: Kind
@@ -51,6 +57,12 @@ class Finding:
     """What was noticed. ``code`` says which kind it is, for code; ``message`` is for people and nothing branches on it.
 
     ``line`` is the 1-based source line (0: the whole), ``count`` how often it was noticed.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.Finding("warning", "the feed is high.", line=7).sentence
+    'Line 7: the feed is high.'
     """
 
     level: Level

@@ -18,7 +18,15 @@ from robomill.robot.model import Robot
 
 @dataclass(frozen=True, eq=False)
 class PoseReport:
-    """The arm at the configuration theta (n,) rad (m where prismatic); every number NaN where theta is NaN."""
+    """The arm at the configuration theta (n,) rad (m where prismatic); every number NaN where theta is NaN.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> rm.at_pose(robot, robot.home).C_joint.shape
+    (5, 3, 3)
+    """
 
     robot: Robot
     theta: FloatArray
@@ -121,7 +129,32 @@ class PoseReport:
 
 
 def at_pose(robot: Robot, theta: ArrayLike) -> PoseReport:
-    """What holds at theta (n,). Raises KinematicsError where theta is not one entry a free joint."""
+    """All that holds of an arm at one configuration: pose, Jacobian, compliance and its shares.
+
+    Parameters
+    ----------
+    robot : Robot
+        The arm, with n free joints.
+    theta : array_like, (n,)
+        Joint coordinates, rad (m where a joint slides).
+
+    Returns
+    -------
+    PoseReport
+        In SI and in {M}, eqs. (4) to (14).
+
+    Raises
+    ------
+    KinematicsError
+        Where theta is not one entry a free joint.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> rm.at_pose(robot, robot.home).C.shape
+    (3, 3)
+    """
     one = as_floats(theta, f"theta of {robot.name!r}", (robot.n,), error=KinematicsError, finite=False)
     if one.ndim != 1:
         raise KinematicsError(f"theta of {robot.name!r}: expected one configuration, found shape {one.shape}.")

@@ -11,10 +11,32 @@ from robomill.robot.model import Robot
 
 
 def joint_contributions(J_v: ArrayLike, C_theta: ArrayLike) -> FloatArray:
-    """C_joint (..., n, 3, 3) m/N: what each joint gives, C_theta,i J_i J_i^T. Eqs. (13), (14).
+    """What each joint gives to the compliance of the tip: C_theta,i J_i J_i^T, eqs. (13), (14).
 
-    J_v (..., 3, n) m/rad, the linear rows of the Jacobian; C_theta (..., n) rad/(N m). Their sum over the joint axis is
-    the translational compliance C.
+    Parameters
+    ----------
+    J_v : array_like, (..., 3, n)
+        Linear rows of the geometric Jacobian, m/rad.
+    C_theta : array_like, (..., n)
+        Compliances of the joints, rad/(N m) (m/N where a joint slides).
+
+    Returns
+    -------
+    ndarray, (..., n, 3, 3)
+        C_joint, m/N, in {M}; summed over the joints it is the compliance C.
+
+    Raises
+    ------
+    KinematicsError
+        Where the shapes do not match.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("planar_2r")
+    >>> J_v = rm.geometric_jacobian(robot, [0.0, 0.0])[:3]
+    >>> rm.joint_contributions(J_v, robot.C_theta).shape
+    (2, 3, 3)
     """
     J_v = as_floats(J_v, "J_v", (3, None), error=KinematicsError, finite=False)
     return _shares(J_v, as_floats(C_theta, "C_theta", (J_v.shape[-1],), error=KinematicsError))
@@ -34,7 +56,34 @@ def _shares(J: FloatArray, C_theta: FloatArray) -> FloatArray:
 
 
 def cartesian_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """C (..., 3, 3) m/N of the tip in {M} at theta (..., n): translational block of J C_theta J^T. Eqs. (11), (12)."""
+    """How much the tip gives: the translational block of J C_theta J^T, eqs. (11), (12).
+
+    Parameters
+    ----------
+    robot : Robot
+        The arm, with n free joints.
+    theta : array_like, (..., n)
+        Joint coordinates, rad (m where a joint slides).
+
+    Returns
+    -------
+    ndarray, (..., 3, 3)
+        C in {M}, m/N: a force F on the tool moves the tip by C F.
+
+    Raises
+    ------
+    KinematicsError
+        Where theta is not finite or has not n entries.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> theta = rm.inverse_kinematics(robot, rm.pose_from_world([0.0, -1.3, 0.0, 0.0, 0.0])).theta
+    >>> C = rm.cartesian_compliance(robot, theta)
+    >>> [round(1e6 * float(C[i, j]), 3) for i, j in ((0, 0), (1, 1), (2, 2), (1, 2))]
+    [1.281, 2.295, 2.422, -1.024]
+    """
     return pose_jacobian_compliance(robot, theta)[2]
 
 

@@ -8,9 +8,32 @@ from robomill.errors import KinematicsError
 
 
 def deflection(C_joint: ArrayLike, F: ArrayLike) -> FloatArray:
-    """delta_joint (..., n, 3) m in {M}: each joint's share of the tip displacement; their sum is delta = C F.
+    """How far each joint lets the tip move under a force, eq. (16).
 
-    C_joint (..., n, 3, 3) m/N, F (..., 3) N the force ON the tool in {M}; leading axes broadcast.
+    Parameters
+    ----------
+    C_joint : array_like, (..., n, 3, 3)
+        Joint contributions to the compliance, m/N, in {M}.
+    F : array_like, (..., 3)
+        Force ON the tool, N, in {M}.
+
+    Returns
+    -------
+    ndarray, (..., n, 3)
+        delta_joint, m, in {M}: the joints' shares; their sum is delta = C F. Leading axes broadcast.
+
+    Raises
+    ------
+    KinematicsError
+        Where the shapes do not match.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import robomill as rm
+    >>> delta_joint = rm.deflection(np.eye(3)[None] * 1e-6, [0.0, 100.0, 0.0])
+    >>> (delta_joint * 1e3).round(6).tolist()
+    [[0.0, 0.1, 0.0]]
     """
     C_joint = as_floats(C_joint, "C_joint", (None, 3, 3), error=KinematicsError, finite=False)
     F = as_floats(F, "F", (3,), error=KinematicsError, finite=False)

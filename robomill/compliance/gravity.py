@@ -27,6 +27,12 @@ class LinkMasses:
 
     That is the frame of the next joint, and {T} for the last; spindle and tool belong to the last entry.
     Raises RobotError for negative masses or shapes that differ.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.LinkMasses([30.0, 12.0], [[0.2, 0.0, 0.0], [0.1, 0.0, 0.0]]).mass.sum()
+    np.float64(42.0)
     """
 
     mass: FloatArray = quantity("Mass", "kg", shape=(None,), least=0.0)

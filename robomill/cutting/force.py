@@ -62,6 +62,12 @@ class ForceModel:
     of_milling   whether it is what a milling cutter is pushed with, so that it says nothing of a tap
     takes, example   the law of the material rows it needs, and the sample it starts with
     frame        ``"path"``: feed, feed-normal, axial; ``"M"``: x, y, z of the robot's frame
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> isinstance(rm.PathForce(axial=-20.0), rm.ForceModel)
+    True
     """
 
     kind: ClassVar[str] = ""

@@ -42,6 +42,12 @@ class Material(Replaceable):
 
     kind     the law's name
     gives    coefficients that a source may leave out, and the force that is then unknown: ``"radial"``, ``"axial"``
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.load_material("al7075_t6_carbide_ref190").alloy
+    'Al 7075'
     """
 
     kind: ClassVar[str] = ""

@@ -69,6 +69,13 @@ class Cutter(Value):
     ``unstated`` are the numbers the force grows with that were left out where it was made in code.
     ``helix_angle`` enters the peak force (lag along the edge); 0 means straight flutes, which pull nowhere.
     Raises CuttingError for a cutter that cannot be.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> cutter = rm.Cutter("bull", diameter_mm=10, corner_radius_mm=2, flutes=4)
+    >>> cutter, cutter.flat_radius
+    (<Cutter 10.00 mm bull-nose mill, 4 flutes>, 0.003)
     """
 
     kind: str = choice("Kind", {kind: family.short for kind, family in FAMILIES.items()})

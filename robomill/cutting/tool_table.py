@@ -23,6 +23,12 @@ class TableTool:
     ``cutter`` is None where the table does not say its diameter: such a tool can be measured and carried, not cut with.
     ``length`` is what G43 H counts along Z. ``compensates`` is the diameter that G41 and G42 count with where it is
     not the cutter's (below 0: to the other side). ``assumed`` names the fields of the cutter that nobody has stated.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.TableTool(3, rm.Cutter("ball", diameter_mm=6, flutes=2), length=0.05).diameter
+    0.006
     """
 
     number: int = whole("Tool", least=0)
@@ -62,6 +68,13 @@ class ToolTable(Mapping[int, TableTool]):
     """Tools by number, in the order of their numbers; empty: no table. ``findings`` say what was odd in its file.
 
     Raises CuttingError for a number that stands there twice.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> tools = rm.ToolTable((rm.TableTool(3, rm.Cutter("ball", diameter_mm=6, flutes=2)),))
+    >>> tools.cutter(3)
+    <Cutter 6.00 mm ball-nose mill, 2 flutes>
     """
 
     tools: tuple[TableTool, ...] = ()

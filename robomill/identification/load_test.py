@@ -89,6 +89,18 @@ class LoadTests(_Rows):
     row           (m,) int          the row of the file each test came from (1 = first line)
     gauges        (m, 3, 3)         unit vectors in {M} along which displacement[:, :3] is read; None: along x, y, z
     pulley        (m, 3) m          in {M}, where the force is ``aimed`` at it from the force point; NaN: it is measured
+
+    Raises
+    ------
+    LoadTestError
+        Naming the row of what is missing, not finite, or cannot teach anything.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> tests = rm.LoadTests([[0.0, 250.0, 0.0]], [[1e-5, 5.7e-4, -2.6e-4]], x_M=[[0.0, -1.3, 0.0, 0.0, 0.0]])
+    >>> tests
+    <LoadTests 1 test at 1 pose, up to 250 N and 0.627 mm, measured>
     """
 
     single: ClassVar[Literal[False]] = False  # not tests of single joints: the tool was loaded
@@ -270,6 +282,12 @@ class JointTests(_Rows):
 
     joint (m,) int from 1; torque (m,) N m about the joint's axis; angle (m,) rad by which it turned
     (N and m for a prismatic joint); noise (m,) rad, NaN: not stated; row (m,) of the file.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.JointTests(joint=[1, 2], torque=[300.0, 300.0], angle=[2.1e-4, 3.0e-4])
+    <JointTests 2 tests of single joints (1, 2), measured>
     """
 
     single: ClassVar[Literal[True]] = True

@@ -78,6 +78,14 @@ class IdentificationResult(Tabled):
     points: those that were fitted; band: what predictions miss beyond the fit's noise, None where it is not known;
     offer: points that are worth fitting, where they were not; votes: the joints at which links bend as chosen with
     each fold left out, where that was left to the tests.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> found = rm.identify(robot, "one_joint_at_a_time")
+    >>> found.columns()["parameter"].tolist()
+    ['joint 1', 'joint 2', 'joint 3', 'joint 4', 'joint 5']
     """
 
     choice: Model

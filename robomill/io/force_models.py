@@ -43,10 +43,35 @@ def process_force(
     radial_share: float | None = None,
     axial_share: float | None = None,
 ) -> ProcessForce:
-    """The cutting force of a ``cutter`` in a material: a sample's name (``material_names``), a .toml file, or a row.
+    """The cutting force of a cutter in a material, following the cut.
 
-    The law is the one whose coefficients the row holds; the other sample rows of its alloy come along for the range of
-    the result. ``axial`` and the shares as in ``ProcessForce``. Raises CuttingError for a material that is not known.
+    Parameters
+    ----------
+    material : str, Path or Material
+        A sample's name (``material_names``), a ``.toml`` file, or a row itself.
+    cutter : Cutter
+        What cuts.
+    axial : bool
+        Whether the force along the axis is computed, too.
+    radial_share, axial_share : float, optional
+        Of the tangential force, where the row does not hold the others; as in ``ProcessForce``.
+
+    Returns
+    -------
+    ProcessForce
+        By the law whose coefficients the row holds; other rows of its alloy come along for the range of the result.
+
+    Raises
+    ------
+    CuttingError
+        For a material that is not known.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> force = rm.process_force("al7075_t6_carbide_ref190", rm.Cutter("flat", diameter_mm=8, flutes=3))
+    >>> force.material.name
+    'al7075_t6_carbide_ref190'
     """
     row = material if isinstance(material, Material) else load_material(material)
     others = alternatives(row, sample_materials())

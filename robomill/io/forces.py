@@ -41,12 +41,38 @@ def read_forces(
     source: str = "",
     trust_units: bool = False,
 ) -> ForceRecord:
-    """The record of a CSV file, its text (anything with a line break) or its bytes; force ON the tool, SI.
+    r"""A record of measured forces from CSV: force ON the tool over time or path length.
 
-    ``on`` says what the sensor felt: a dynamometer under the part gives the force on the part, which is turned round.
-    ``turns_with`` says whose axes x, y and z are: the robot's base, or the part's, on which the sensor sits.
-    Components without a column are 0 and noted, columns that are not known are noted. ``trust_units`` accepts sizes
-    that look like another unit. Raises CuttingError with file, row and column.
+    Parameters
+    ----------
+    path_or_text : str, Path or bytes
+        A file, its text (anything with a line break) or its bytes.
+    on : str
+        What the sensor felt: the "tool", or the "part" (a dynamometer below it), whose force is turned round.
+    turns_with : str
+        Whose axes x, y and z are: the "robot"'s base, or the "part"'s, on which the sensor sits.
+    source : str
+        Where the record comes from, in words.
+    trust_units : bool
+        Accept sizes that look like another unit.
+
+    Returns
+    -------
+    ForceRecord
+        In SI. Components without a column are 0 and noted, and so are columns that are not known.
+
+    Raises
+    ------
+    CuttingError
+        With file, row and column.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rows = "0,10,20,-5\n0.1,12,21,-5\n0.2,11,20,-5\n0.3,10,20,-5\n"
+    >>> record = rm.read_forces("t_s,F_feed_N,F_feed_normal_N,F_axial_N\n" + rows)
+    >>> record.F[0].tolist()
+    [10.0, 20.0, -5.0]
     """
     table, name = read_columns(path_or_text, LAYOUT, source)
     name = name or LAYOUT.subject

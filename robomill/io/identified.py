@@ -30,7 +30,7 @@ def identify(
     robot : Robot
         The arm that was loaded; its own compliances do not enter.
     tests : LoadTests, JointTests, pandas.DataFrame, str or Path
-        Load tests, or what ``read_load_tests`` makes of a table or a file.
+        Load tests, or what ``read_load_tests`` makes of a table, a file or the name of a sample.
     model : str
         ``joints``, ``joints+bending``, ``joints+tool``, ``joints+bending+tool`` or ``constant``.
     treatment : Treatment
@@ -57,9 +57,8 @@ def identify(
     Examples
     --------
     >>> import robomill as rm
-    >>> from robomill.io.samples import samples_dir
     >>> robot = rm.load_robot("slavkovic_5r")
-    >>> found = rm.identify(robot, samples_dir() / "load_tests" / "one_joint_at_a_time.csv")
+    >>> found = rm.identify(robot, "one_joint_at_a_time")
     >>> (found.C_theta * 1e7).round(2).tolist()
     [7.2, 10.13, 12.26, 17.34, 91.24]
     """

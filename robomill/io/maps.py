@@ -16,10 +16,34 @@ SUFFIXES = (".csv", ".parquet", ".vti")
 
 
 def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
-    """Write one or more fields over the same grid; the suffix of ``path`` says the format.
+    """Quantities of a map as a file; the suffix says the format.
 
-    CSV and Parquet: one row a cell, columns X_mm, Y_mm, Z_mm and one a quantity with its unit in the name. ``.vti``:
-    image data in m and SI, which needs evenly spaced axes. NaN marks cells that are not reached. Raises WorkspaceError.
+    Parameters
+    ----------
+    path : str or Path
+        ``.csv`` or ``.parquet``: one row a cell, columns X_mm, Y_mm, Z_mm and one a quantity with its unit in the name;
+        ``.vti``: image data in m and SI, which needs evenly spaced axes.
+    fields : sequence of Field
+        One or more, over the same grid.
+
+    Returns
+    -------
+    Path
+        The file. NaN marks cells that are not reached.
+
+    Raises
+    ------
+    WorkspaceError
+        For another suffix, fields over different grids, or a place that cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> import robomill as rm
+    >>> found = rm.compliance_map(rm.load_robot("slavkovic_5r"), rm.Grid(x_mm=0, y_mm=-1300, z_mm=0))
+    >>> file = rm.write_map(pathlib.Path(tempfile.mkdtemp()) / "map.csv", [found.field("C_yy")])
+    >>> file.read_text().splitlines()[0]
+    'X_mm,Y_mm,Z_mm,C_yy_um/N'
     """
     path = Path(path)
     suffix = path.suffix.lower()

@@ -18,7 +18,19 @@ LAWS = [model.takes for model in FORCES.values() if model.takes is not None]
 
 
 def material_names() -> list[str]:
-    """Names of the sample materials, sorted."""
+    """Names of the sample materials, as ``load_material`` and ``process_force`` take them.
+
+    Returns
+    -------
+    list of str
+        Sorted.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.material_names()[0]
+    'al6061_t6_carbide_ref160'
+    """
     return sample_names("material")
 
 
@@ -28,7 +40,29 @@ def sample_materials() -> list[Material]:
 
 
 def load_material(name_or_path: str | Path) -> Material:
-    """A sample by name, or a TOML file. Raises CuttingError naming the file and the key."""
+    """A material's force coefficients, by the name of a sample or from a file.
+
+    Parameters
+    ----------
+    name_or_path : str or Path
+        One of ``material_names()``, or a ``.toml`` file.
+
+    Returns
+    -------
+    Material
+        Coefficients in SI, with the source that they come from.
+
+    Raises
+    ------
+    CuttingError
+        Naming the file and the key.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.load_material("al7075_t6_carbide_ref190").name
+    'al7075_t6_carbide_ref190'
+    """
     path = Path(name_or_path)
     if path.suffix != ".toml":
         if str(name_or_path) not in material_names():

@@ -92,9 +92,34 @@ def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> by
 
 
 def read_stock(path: str | Path, *, unit: str = "mm") -> Stock:
-    """The stock of an STL file, whose numbers are ``unit``: "mm", "in", "cm" or "m". Raises SurfaceError.
+    """The stock from an STL file.
 
-    A size that makes the unit doubtful is said by ``Stock.warnings``, and among the findings of a run.
+    Parameters
+    ----------
+    path : str or Path
+        A closed mesh.
+    unit : str
+        Of its numbers: "mm", "in", "cm" or "m".
+
+    Returns
+    -------
+    Stock
+        In m, in {W}. A size that makes the unit doubtful is said by ``warnings``, and among the findings of a run.
+
+    Raises
+    ------
+    SurfaceError
+        For a file that cannot be read, or a mesh that is not closed.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> import robomill as rm
+    >>> from robomill.surface.zmap import cut
+    >>> block = rm.Stock(lower_mm=(-10, -10, -5), upper_mm=(30, 10, 0))
+    >>> part = cut(block, 1e-3, rm.Cutter("flat", diameter_mm=8, flutes=3), [[0.0, 0.0, -2e-3], [0.02, 0.0, -2e-3]])
+    >>> rm.read_stock(rm.write_stl(pathlib.Path(tempfile.mkdtemp()) / "part.stl", part)).size.round(6).tolist()
+    [0.04, 0.02, 0.005]
     """
     return read_stl_stock(path, unit=unit)[0]
 

@@ -9,7 +9,31 @@ from robomill.toolpath.source import GCodeSource
 
 
 def read_program(path: str | Path, dialect: str = "auto") -> GCodeSource:
-    """A program's file, or a sample's by its name, as a source; refused where it is missing, too large or not text."""
+    """A program's file as the source of a set-up's path.
+
+    Parameters
+    ----------
+    path : str or Path
+        G-code or APT, or the name of a sample.
+    dialect : str
+        "auto" guesses and says so.
+
+    Returns
+    -------
+    GCodeSource
+        The text with its name; it is read as a path when the set-up asks for it.
+
+    Raises
+    ------
+    ProjectError
+        Where the file is missing, too large or not text.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.read_program("heart").name
+    'heart.nc'
+    """
     file = find_sample("program", path) or path
     return program_from_bytes(read_file(file, PROGRAM, ProjectError), name_of(file), dialect)
 

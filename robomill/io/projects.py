@@ -51,10 +51,32 @@ NUMERICS = tuple(name for name in NUMBERS if name not in ALLOWED)  # in [numeric
 
 
 def load_setup(path: str | Path, allow_outside: bool = False) -> SimulationSetup:
-    """A set-up from its TOML file, its folder, or the name of a sample (``"heart"``, ``"paper_flute/setup_process"``).
+    """A set-up from its TOML file.
 
-    The files it names lie beside it or below, elsewhere only with ``allow_outside``. Raises ProjectError (or the error
-    of the part that is wrong) with the file and the key.
+    Parameters
+    ----------
+    path : str or Path
+        The file, the folder that holds it as ``setup.toml``, or the name of a sample ("heart",
+        "paper_flute/setup_process").
+    allow_outside : bool
+        Whether it may name files elsewhere than beside it or below.
+
+    Returns
+    -------
+    SimulationSetup
+        In SI.
+
+    Raises
+    ------
+    ProjectError
+        With the file and the key; of a part that is wrong, that part's own error.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> setup = rm.load_setup("paper_flute")
+    >>> setup.cutter, setup.tolerance
+    (<Cutter 8.00 mm flat end mill, 3 flutes>, 0.0003)
     """
     file = find_sample("set-up", path) or Path(path)
     if file.is_dir():

@@ -32,7 +32,19 @@ def robot_folder() -> Path:
 
 
 def robot_names() -> list[str]:
-    """Names of the robots that come with robomill, as ``load_robot`` takes them."""
+    """Names of the robots that come with robomill, as ``load_robot`` takes them.
+
+    Returns
+    -------
+    list of str
+        Sorted.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> "slavkovic_5r" in rm.robot_names()
+    True
+    """
     return sample_names("robot")
 
 
@@ -43,9 +55,30 @@ def robot_titles() -> Mapping[str, str]:
 
 
 def load_robot(name_or_path: str | Path, *, tip: str | None = None) -> Robot:
-    """A robot by the name of a preset, or from a ``.toml`` or ``.urdf`` file.
+    """A robot by the name of a preset, or from a file.
 
-    ``tip`` is the link of a URDF at which the arm ends (default: its only end link). Raises RobotError.
+    Parameters
+    ----------
+    name_or_path : str or Path
+        One of ``robot_names()``, or a ``.toml`` or ``.urdf`` file.
+    tip : str, optional
+        Of a URDF, the link at which the arm ends (default: its only end link).
+
+    Returns
+    -------
+    Robot
+        In SI; of a URDF compliances are assumed, and its provenance says so.
+
+    Raises
+    ------
+    RobotError
+        For a name that is no preset and no file, and with file and key for what cannot be a robot.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.load_robot("slavkovic_5r")
+    <Robot slavkovic_5r: 5 joints, standard D-H, compliance set 'table_2'>
     """
     text = str(name_or_path)
     path = robot_folder() / f"{text}.toml" if text in robot_names() else Path(name_or_path)

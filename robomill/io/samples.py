@@ -45,7 +45,19 @@ def samples_dir() -> Path:
 
 @cache
 def samples() -> tuple[Sample, ...]:
-    """All of them, by kind and name. A case is called as its folder, other set-ups of it ``folder/file``."""
+    """The samples that come with robomill, by kind and name.
+
+    Returns
+    -------
+    tuple of Sample
+        Each with ``kind``, ``name`` and ``path``. A case is called as its folder, other set-ups of it ``folder/file``.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> [sample.name for sample in rm.samples() if sample.kind == "program"]
+    ['heart', 'paper_flute', 'pocket_arcs', 'spiral', 'two_tools', 'word']
+    """
     return tuple(_found(samples_dir()))
 
 
@@ -78,10 +90,31 @@ def find_sample(kind: SampleKind, name: str | Path) -> Path | None:
 
 
 def copy_samples(folder: str | Path, names: Sequence[str] = ()) -> list[Path]:
-    """Copy the samples called ``names`` (none: all) with what lies beside them into ``folder``, as they lie here.
+    """Copy samples, with what lies beside them, into a folder of one's own.
 
-    Returns the copies. What is there already and is the same stays; raises ProjectError, before anything is copied,
-    for a name that is none, and for a file that is there and is another.
+    Parameters
+    ----------
+    folder : str or Path
+        Where they shall stand, as they lie here; what is there already and is the same stays.
+    names : sequence of str
+        Which; left out: all.
+
+    Returns
+    -------
+    list of Path
+        The copies.
+
+    Raises
+    ------
+    ProjectError
+        Before anything is copied, for a name that is none, and for a file that is there and is another.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import robomill as rm
+    >>> sorted(path.name for path in rm.copy_samples(tempfile.mkdtemp(), ["slavkovic_5r", "nine_points"]))
+    ['nine_points.csv', 'slavkovic_5r.toml']
     """
     here, there = samples_dir(), Path(folder)
     chosen = {path: there / path.relative_to(here) for path in _to_copy(here, names)}

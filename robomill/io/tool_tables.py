@@ -42,9 +42,32 @@ _LENGTHS = "XYZD"
 
 
 def read_tool_table(given: str | Path | bytes, *, unit: str = "mm", name: str = "") -> ToolTable:
-    """The table of a file, its text or its bytes. ``unit`` is that of a ``.tbl``, which does not say it.
+    r"""The tools of a machine's table.
 
-    Raises CuttingError naming the file and the line or tool.
+    Parameters
+    ----------
+    given : str, Path or bytes
+        A file, its text or its bytes.
+    unit : str
+        Of a ``.tbl``, which does not say it: "mm" or "in".
+    name : str
+        What refusals call it.
+
+    Returns
+    -------
+    ToolTable
+        Tools by number; what the table does not say of them is asked for where it matters.
+
+    Raises
+    ------
+    CuttingError
+        Naming the file and the line or tool.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.read_tool_table("T1 P1 D8.0 Z50.0 ;end mill\n", name="tool.tbl").cutter(1).diameter
+    0.008
     """
     text, name = read_text(given, CuttingError, TOOLS, name)
     place = name or "Tool table"

@@ -21,36 +21,169 @@ MOST_FACES = 2_000_000
 
 
 def write_robot(path: str | Path, robot: Robot) -> Path:
-    """A robot as TOML that ``load_robot`` reads back equal; as ``.urdf`` its geometry alone. Raises RobotError."""
+    """A robot as a file that ``load_robot`` reads.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``.toml`` reads back equal; ``.urdf`` holds the geometry alone.
+    robot : Robot
+        The arm.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    RobotError
+        For a place that cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> rm.load_robot(rm.write_robot(pathlib.Path(tempfile.mkdtemp()) / "arm.toml", robot)) == robot
+    True
+    """
     _check(path, robot, Robot, RobotError)
     return _write(path, robot_to_urdf(robot) if is_urdf(str(path)) else robot_to_toml(robot), RobotError)
 
 
 def write_setup(path: str | Path, setup: SimulationSetup) -> Path:
-    """A set-up as one self-contained TOML that ``load_setup`` reads back to the same digest. Raises ProjectError."""
+    """A set-up as one self-contained TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Where it shall stand.
+    setup : SimulationSetup
+        The set-up.
+
+    Returns
+    -------
+    Path
+        The file; ``load_setup`` reads it back equal.
+
+    Raises
+    ------
+    ProjectError
+        For a place that cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> import robomill as rm
+    >>> setup = rm.load_setup("paper_flute")
+    >>> rm.load_setup(rm.write_setup(pathlib.Path(tempfile.mkdtemp()) / "copy.toml", setup)) == setup
+    True
+    """
     _check(path, setup, SimulationSetup, ProjectError)
     return _write(path, setup_to_toml(setup), ProjectError)
 
 
 def write_material(path: str | Path, material: Material) -> Path:
-    """A material row as TOML that ``load_material`` reads back equal. Raises CuttingError."""
+    """A material row as a TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Where it shall stand.
+    material : Material
+        The row.
+
+    Returns
+    -------
+    Path
+        The file; ``load_material`` reads it back equal.
+
+    Raises
+    ------
+    CuttingError
+        For a place that cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> import robomill as rm
+    >>> row = rm.load_material("al7075_t6_carbide_ref190")
+    >>> rm.load_material(rm.write_material(pathlib.Path(tempfile.mkdtemp()) / "row.toml", row)) == row
+    True
+    """
     _check(path, material, Material, CuttingError)
     return _write(path, material_to_toml(material), CuttingError)
 
 
 def write_gcode(path: str | Path, toolpath: Toolpath, *, units: str = "mm", title: str = "") -> Path:
-    """A toolpath as a G-code program, in ``units`` "mm" (G21) or "in" (G20); read again, it gives the same path.
+    """A toolpath as a G-code program.
 
-    Raises ToolpathError for a cut without feed or a spindle speed that is not known.
+    Parameters
+    ----------
+    path : str or Path
+        Where it shall stand.
+    toolpath : Toolpath
+        The path.
+    units : str
+        "mm" (G21) or "in" (G20).
+    title : str
+        A remark at the top.
+
+    Returns
+    -------
+    Path
+        The file; read again it gives the same path.
+
+    Raises
+    ------
+    ToolpathError
+        For a cut without feed, or a spindle speed that is not known.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> import robomill as rm
+    >>> path = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [50, 0, -2]], feed_mm_min=600)
+    >>> file = rm.write_gcode(pathlib.Path(tempfile.mkdtemp()) / "slot.nc", path)
+    >>> float(rm.read_gcode(file).s[-1])
+    0.05
     """
     _check(path, toolpath, Toolpath, ToolpathError)
     return _write(path, toolpath_to_gcode(toolpath, units=units, title=title), ToolpathError)
 
 
 def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_FACES) -> Path:
-    """A part (``result.machined`` or ``result.ideal``) as a closed solid in millimetres, binary STL.
+    """A part as a closed solid in millimetres, binary STL.
 
-    About ``max_faces`` triangles at most, 50 bytes each: a finer surface is thinned out. Raises SurfaceError.
+    Parameters
+    ----------
+    path : str or Path
+        Where it shall stand.
+    surface : ZMap
+        ``result.machined`` or ``result.ideal``.
+    max_faces : int
+        About so many triangles at most, 50 bytes each: a finer surface is thinned out.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    SurfaceError
+        For a place that cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> import robomill as rm
+    >>> from robomill.surface.zmap import cut
+    >>> stock = rm.Stock(lower_mm=(-10, -10, -5), upper_mm=(30, 10, 0))
+    >>> part = cut(stock, 1e-3, rm.Cutter("flat", diameter_mm=8, flutes=3), [[0.0, 0.0, -2e-3], [0.02, 0.0, -2e-3]])
+    >>> rm.write_stl(pathlib.Path(tempfile.mkdtemp()) / "part.stl", part).stat().st_size > 1000
+    True
     """
     _check(path, surface, ZMap, SurfaceError)
     return _write(path, mesh_bytes(surface, "stl", max_faces=max_faces), SurfaceError)

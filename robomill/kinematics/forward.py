@@ -47,7 +47,32 @@ def _slipped(robot: Robot, theta: FloatArray, beyond: BoolArray) -> str:
 
 
 def tool_pose(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """T_MT (..., 4, 4) of the configurations theta (..., n) rad (m where prismatic). Eqs. (4), (5), (7)."""
+    """Where the tool is: forward kinematics, eqs. (4), (5), (7).
+
+    Parameters
+    ----------
+    robot : Robot
+        The arm, with n free joints.
+    theta : array_like, (..., n)
+        Joint coordinates, rad (m where a joint slides).
+
+    Returns
+    -------
+    ndarray, (..., 4, 4)
+        T_MT: the pose of the tool frame {T} in the robot's base frame {M}; lengths in m.
+
+    Raises
+    ------
+    KinematicsError
+        Where theta is not finite or has not n entries.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> T_MT = rm.tool_pose(rm.load_robot("planar_2r"), [0.0, 0.0])
+    >>> T_MT[:3, 3].tolist()
+    [0.9, 0.0, 0.0]
+    """
     from robomill.kinematics import kernels
 
     theta = joint_angles(robot, theta)
@@ -57,7 +82,31 @@ def tool_pose(robot: Robot, theta: ArrayLike) -> FloatArray:
 
 
 def joint_frames(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """Frames (..., n + 1, 4, 4) in {M}: the frame each joint moves about (its z axis is the joint axis), then {T}."""
+    """Frames of all joints and of the tool, eqs. (4), (5).
+
+    Parameters
+    ----------
+    robot : Robot
+        The arm, with n free joints.
+    theta : array_like, (..., n)
+        Joint coordinates, rad (m where a joint slides).
+
+    Returns
+    -------
+    ndarray, (..., n + 1, 4, 4)
+        In {M}, m: the frame that each joint moves about (its z axis is the joint's axis), then {T}.
+
+    Raises
+    ------
+    KinematicsError
+        Where theta is not finite or has not n entries.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.joint_frames(rm.load_robot("planar_2r"), [0.0, 0.0]).shape
+    (3, 4, 4)
+    """
     from robomill.kinematics import kernels
 
     theta = joint_angles(robot, theta)

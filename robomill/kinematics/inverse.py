@@ -59,21 +59,42 @@ def inverse_kinematics(
     near: ArrayLike | Literal["path"] | None = None,
     spin: Spin = LEAST_MOTION,
 ) -> IKResult:
-    """Configurations theta (..., n) that bring the tool to T_MT (..., 4, 4), within the joint limits.
+    """Configurations that bring the tool to poses, within the joint limits.
 
-    What of the pose counts: up to four joints the tip only (a planar arm reaches points of its plane); five joints the
-    tip and the tool axis z_T; six and seven joints the same, and the spin about the tool axis, which is free in
-    milling, follows ``spin``: "least_motion" (the turn that moves the joints least from ``near`` or from home; along a
-    path one turn for the whole path), "fixed" (the pose as given, all six coordinates) or an angle in rad by which the
-    given pose is turned about z_T.
+    Parameters
+    ----------
+    robot : Robot
+        The arm, with n free joints.
+    T_MT : array_like, (..., 4, 4)
+        Poses of {T} in {M}, m. Up to four joints meet the tip only; five the tip and the tool axis z_T; six and seven
+        these and the spin about z_T, which is free in milling.
+    branch : str, optional
+        Only solutions whose name contains every part given ("elbow down", "front, wrist -").
+    near : array_like, (..., n), or "path", optional
+        The solution nearest to a configuration; "path" joins the poses of the last batch axis with the least joint
+        motion. Left out: shoulder and elbow stand as at home where the limits allow, the wrist nearest to home.
+    spin : "least_motion", "fixed" or float
+        Of arms with six joints or more: the turn that moves the joints least (along a path one for all), the pose as
+        given, or an angle in rad by which it is turned about z_T.
 
-    Which solution: ``branch`` keeps those whose name contains every part given ("elbow down", "front, wrist -").
-    ``near`` (..., n) takes the one nearest to a configuration; "path" joins the poses of the last batch axis with the
-    least joint motion. Otherwise shoulder and elbow stand as at home where the limits allow, the wrist nearest to home.
+    Returns
+    -------
+    IKResult
+        theta (..., n), NaN where a pose is not reached; ``reason`` says why. Decoupled arms are solved in closed form,
+        others numerically; a pose is reached when forward kinematics meets it to 1e-9 m and 1e-9 rad.
 
-    Decoupled arms are solved in closed form, others numerically. A pose is reached when forward kinematics meets it to
-    1e-9 m and 1e-9 rad; otherwise theta is NaN and ``reason`` says why. Raises KinematicsError for poses that are not
-    numbers, an unknown branch, or a branch asked of an arm without named ones.
+    Raises
+    ------
+    KinematicsError
+        For poses that are not numbers, an unknown branch, or a branch asked of an arm without named ones.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> found = rm.inverse_kinematics(robot, rm.pose_from_world([0.0, -1.3, 0.0, 0.0, 0.0]))
+    >>> found.branch
+    'front, elbow up, wrist +'
     """
     T_MT = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
     lead = T_MT.shape[:-2]

@@ -10,10 +10,32 @@ from robomill.robot.model import Robot
 
 
 def geometric_jacobian(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """J (..., 6, n) in {M}: rows v_x v_y v_z of the tip (m/rad), omega_x omega_y omega_z (rad/rad). Eqs. (8), (9).
+    """The geometric Jacobian of the tool tip, eqs. (8), (9).
 
-    Columns are with respect to the joint coordinate theta_i, so each carries its joint's sign; a prismatic column is
-    its axis over zeros. theta (..., n).
+    Parameters
+    ----------
+    robot : Robot
+        The arm, with n free joints.
+    theta : array_like, (..., n)
+        Joint coordinates, rad (m where a joint slides).
+
+    Returns
+    -------
+    ndarray, (..., 6, n)
+        J in {M}: rows v_x, v_y, v_z of the tip (m/rad), omega_x, omega_y, omega_z (rad/rad). Each column is with
+        respect to theta_i and carries its joint's sign; that of a sliding joint is its axis over zeros.
+
+    Raises
+    ------
+    KinematicsError
+        Where theta is not finite or has not n entries.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> J = rm.geometric_jacobian(rm.load_robot("planar_2r"), [0.0, 0.0])
+    >>> J[:2].tolist()
+    [[0.0, 0.0], [0.9, 0.4]]
     """
     return pose_and_jacobian(robot, theta)[1]
 
@@ -44,9 +66,32 @@ def twists(axis: FloatArray, reach: FloatArray, slides: BoolArray | bool = False
 
 
 def task_jacobian(robot: Robot, theta: ArrayLike) -> FloatArray:
-    """J_task (..., 5, n): rows v_x, v_y, v_z and the angular velocity about x' and y', perpendicular to the tool axis.
+    """The Jacobian of what a five-axis task asks: the tip, and the direction of the tool axis.
 
-    x', y' are the first two axes of R_x(A) R_y(B) at the tool's tilt. At A = B = 0 these are the first five rows of J.
+    Parameters
+    ----------
+    robot : Robot
+        The arm, with n free joints.
+    theta : array_like, (..., n)
+        Joint coordinates, rad (m where a joint slides).
+
+    Returns
+    -------
+    ndarray, (..., 5, n)
+        J_task: rows v_x, v_y, v_z (m/rad) and the angular velocity (rad/rad) about x' and y', the first two axes of
+        R_x(A) R_y(B) at the tool's tilt. At A = B = 0 these are the first five rows of J, eqs. (8), (9).
+
+    Raises
+    ------
+    KinematicsError
+        Where theta is not finite or has not n entries.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> rm.task_jacobian(robot, robot.home).shape
+    (5, 5)
     """
     T_MT, J = pose_and_jacobian(robot, theta)
     return task_rows(T_MT, J)

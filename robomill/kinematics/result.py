@@ -28,6 +28,14 @@ class IKResult(Tabled):
     the best attempt; branch_index (...,) into branch_names, -1 where not reached; spin (...,) rad is the turn about the
     tool axis that was asked for or chosen, None where there is none to choose or it came about by itself (numerically).
     ``branch`` gives the names and ``reason(index)`` says why a pose is not reached.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> T_MT = rm.pose_from_world([[0.0, -1.3, 0.0, 0.0, 0.0], [9.0, 0.0, 0.0, 0.0, 0.0]])
+    >>> rm.inverse_kinematics(robot, T_MT)
+    <IKResult 1 of 2 poses reached>
     """
 
     robot: Robot

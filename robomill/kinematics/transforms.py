@@ -87,16 +87,58 @@ def turn_between(R: FloatArray, Q: FloatArray, whole: bool) -> FloatArray:
 
 
 def pose_from_world(x_M: ArrayLike) -> FloatArray:
-    """T_MT (..., 4, 4) of world coordinates X, Y, Z (m), A, B (rad), shape (..., 5)."""
+    """The pose of the tool from world coordinates: R = R_x(A) R_y(B) at X, Y, Z.
+
+    Parameters
+    ----------
+    x_M : array_like, (..., 5)
+        X, Y, Z in m and A, B in rad, in {M}.
+
+    Returns
+    -------
+    ndarray, (..., 4, 4)
+        T_MT; its third column is the tool axis z_T = (sin B, -sin A cos B, cos A cos B), out of the part.
+
+    Raises
+    ------
+    KinematicsError
+        Where x_M is not finite or has not 5 entries.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.pose_from_world([0.1, -1.2, 0.05, 0.0, 0.0])[:3, 3].tolist()
+    [0.1, -1.2, 0.05]
+    """
     x_M = as_floats(x_M, "x_M", (5,), error=KinematicsError)
     refuse_slip(TILT, x_M[..., 3:], KinematicsError, "x_M")
     return transform(rotation_x(x_M[..., 3]) @ rotation_y(x_M[..., 4]), x_M[..., :3])
 
 
 def world_from_pose(T_MT: ArrayLike) -> FloatArray:
-    """World coordinates (..., 5) m, rad of poses; the spin about the tool axis is not part of them.
+    """World coordinates of poses, the inverse of ``pose_from_world``; the spin about the tool axis is not part of them.
 
-    B is in [-pi/2, pi/2]; where the tool axis lies along X_M (B = +-pi/2) any A will do and A = 0 is given.
+    Parameters
+    ----------
+    T_MT : array_like, (..., 4, 4)
+        Poses of {T} in {M}, m.
+
+    Returns
+    -------
+    ndarray, (..., 5)
+        X, Y, Z in m and A, B in rad. B is in [-pi/2, pi/2]; where the tool axis lies along X_M (B = +-pi/2) any A will
+        do and A = 0 is given.
+
+    Raises
+    ------
+    KinematicsError
+        Where T_MT is not finite or not of that shape.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.world_from_pose(rm.pose_from_world([0.1, -1.2, 0.05, 0.0, 0.25])).tolist()
+    [0.1, -1.2, 0.05, -0.0, 0.25]
     """
     T_MT = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
     return np.concatenate([T_MT[..., :3, 3], tilt_from_axis(T_MT[..., :3, 2])], axis=-1)

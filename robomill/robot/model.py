@@ -43,6 +43,15 @@ class Robot(Tabled):
 
     T_base = T_M0 and T_tool = T_nT are (4, 4). C_theta_all is rad/(N m), m/N where prismatic.
     Raises RobotError with one sentence for anything that cannot be a robot.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> robot.n, (robot.C_theta * 1e7).round(2).tolist()
+    (5, [7.14, 10.12, 12.3, 17.32, 91.35])
+    >>> robot.replace(C_theta=2 * robot.C_theta).compliance_set
+    'user'
     """
 
     name: str

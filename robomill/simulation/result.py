@@ -51,6 +51,16 @@ class SimulationResult(Tabled):
     conditions     feed, speed, engagement at each sample
     coupling       how force and deflection were brought to agree; None for a one-pass run
     unjudged       steps that have no number, each group with its reason: their delta is NaN
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> result = rm.simulate(rm.load_setup("paper_flute"))
+    >>> result.verdict.level, round(result.max_deviation * 1e3, 3)
+    ('ok', 0.251)
+    >>> frame = result.to_dataframe()
+    >>> float(frame["deviation_mm"].max().round(3))
+    0.251
     """
 
     setup: SimulationSetup
@@ -266,6 +276,7 @@ class SimulationResult(Tabled):
 
     @cached_property
     def sections(self) -> GrooveSections:
+        """The groove's sections at ``stations``."""
         return self.grooves(self.stations)
 
     @cached_property

@@ -36,10 +36,43 @@ from robomill.toolpath.sampling import check_samples
 
 
 def simulate(setup: SimulationSetup) -> SimulationResult:
-    """Deflection of the tool tip along the path under the cutting force, eqs. (11)-(16).
+    """How far the tip is pushed off its path by the cutting force, and what that leaves of the part.
 
-    Points that cannot be reached are NaN in theta, C and delta, and counted in ``reached``.
-    Raises RobomillError children naming what cannot be run.
+    Parameters
+    ----------
+    setup : SimulationSetup
+        Robot, path, part zero, cutter, force, stock, tolerance and numerics.
+
+    Returns
+    -------
+    SimulationResult
+        Arrays over the samples of the path, SI, in {M}; surfaces, sections and the verdict are made when asked for.
+        Points that cannot be reached are NaN and counted in ``reached``.
+
+    Raises
+    ------
+    RobomillError
+        One of its children, naming what cannot be run: a path without a cut, a stock that does not fit the memory.
+
+    Notes
+    -----
+    Eqs. (11) to (16): C of every configuration from its Jacobian, delta = C F.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> robot = rm.load_robot("slavkovic_5r")
+    >>> path = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [40, 0, -2]], feed_mm_min=1800)
+    >>> setup = rm.SimulationSetup(
+    ...     robot=robot,
+    ...     source=path,
+    ...     cutter=rm.Cutter("flat", diameter_mm=8, flutes=3),
+    ...     force=rm.ConstantForce((0.0, 100.0, 0.0)),
+    ...     part_zero_mm=(0, -1300, 0),
+    ... )
+    >>> result = rm.simulate(setup)
+    >>> float((result.deviation[-1] * 1e3).round(3))
+    0.252
     """
     path = sampled(setup.toolpath, setup.step, partial(steps_in_stock, setup) if setup.engagement else None)
     if setup.engagement:

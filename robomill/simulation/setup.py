@@ -58,6 +58,25 @@ class SimulationSetup(Replaceable, Value):
     links       link masses for the sag under gravity (None: not computed); ``add_sag`` True adds it to the
                 deviation, False only shows it, since parts are zeroed with the arm sagged
     provenance  block name -> where its numbers come from
+
+    Raises
+    ------
+    SetupError
+        For what cannot be run, and for numbers that were meant in another unit.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> setup = rm.SimulationSetup(
+    ...     robot=rm.load_robot("slavkovic_5r"),
+    ...     source=rm.Toolpath.from_points(p_mm=[[0, 0, -2], [40, 0, -2]], feed_mm_min=1800),
+    ...     cutter=rm.Cutter("flat", diameter_mm=8, flutes=3),
+    ...     force=rm.PathForce(feed_normal=100.0),
+    ...     part_zero_mm=(0, -1300, 0),
+    ...     tolerance_mm=0.2,
+    ... )
+    >>> setup
+    <SimulationSetup set-up: slavkovic_5r, 8.00 mm flat end mill, 3 flutes, tolerance 0.20 mm>
     """
 
     name: str = "set-up"

@@ -62,6 +62,13 @@ class Verdict:
     premise what the readings rest on where nobody has said what is cut, or with how many flutes: ``"if the tool is
             pushed with 100 N"``; else "". ``asked`` is the sentence that says so
     far     the share of the tolerance used at the worse end of what is assumed of the force; NaN where nothing is
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> verdict = rm.simulate(rm.load_setup("paper_flute")).verdict
+    >>> verdict.level, verdict.sentence
+    ('ok', 'The groove is 0.23 mm off in Y and 0.10 mm too deep: within tolerance (77 % of it used).')
     """
 
     level: Level

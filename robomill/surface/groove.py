@@ -67,6 +67,13 @@ class GrooveSection(Tabled):
     w, z_ideal, z_machined           (q,) the section's profile
     note           what one must know of it, or why there is none; "" for nothing
     why            of each measure that is NaN and belongs to the kind, the reason
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> section = rm.simulate(rm.load_setup("paper_flute")).groove(0.05)
+    >>> section.kind, round(section.centre_offset * 1e3, 3), round(section.floor_error * 1e3, 3)
+    ('groove', 0.23, -0.102)
     """
 
     station: float

@@ -33,6 +33,12 @@ class Stock(Value):
 
     ``triangles`` (t, 3, 3) m, if given, is a closed mesh inside those corners; its upper skin is the stock's top.
     Raises SurfaceError for corners the wrong way round or a block without extent.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.Stock(lower_mm=(-10, -20, -10), upper_mm=(110, 20, 0))
+    <Stock 120.00 x 40.00 x 10.00 mm, lower corner at -10.00, -20.00, -10.00 mm>
     """
 
     lower: FloatArray = quantity("from", "mm", shape=(3,), axes=AXES, digits=2, slip=WIDEST)

@@ -37,6 +37,12 @@ class ZMap(Value):
     below                 True where the cutter would have gone through the bottom
     void                  m^3 of no material between the stock's top and what was cut (cavities, undercuts of a mesh)
     filled                m^3 of no material below what is seen from above, which z cannot show
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.simulate(rm.load_setup("paper_flute")).ideal
+    <ZMap 1100 x 400 cells of 0.100 x 0.100 mm, 1586 mm3 removed>
     """
 
     x: FloatArray

@@ -34,9 +34,29 @@ class TouchedFrame:
 
 
 def frame_from_points(zero: ArrayLike, on_x: ArrayLike, in_xy: ArrayLike) -> TouchedFrame:
-    """{W} from its zero, a point on its +x axis and a third on the +y side of its xy plane, each (3,) m in {M}.
+    """The part frame {W} from three points that were touched.
 
-    z_W = x_W x y_W. Raises ToolpathError for points closer than ``CLOSEST`` or (almost) on one line.
+    Parameters
+    ----------
+    zero, on_x, in_xy : array_like, (3,)
+        m, in {M}: its zero, a point on its +x axis, and one on the +y side of its xy plane.
+
+    Returns
+    -------
+    TouchedFrame
+        With T_MW (4, 4), the pose of {W} in {M}; z_W = x_W x y_W.
+
+    Raises
+    ------
+    ToolpathError
+        For points that are too close, or (almost) on one line.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> touched = rm.frame_from_points([0.0, -1.3, 0.0], [0.1, -1.3, 0.0], [0.0, -1.2, 0.0])
+    >>> touched.T_MW[:3, 3].tolist()
+    [0.0, -1.3, 0.0]
     """
     names = ("zero", "point on x", "point on the y side")
     o, a, b = (

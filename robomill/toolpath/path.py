@@ -51,7 +51,7 @@ def far_off(p: FloatArray, block: IntArray) -> tuple[int, str] | None:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Toolpath(Tabled):
-    """Tool tip positions in {W}; entry i describes the move from point i - 1 to point i, entry 0 the start.
+    r"""Tool tip positions in {W}; entry i describes the move from point i - 1 to point i, entry 0 the start.
 
     p        (m, 3) m        tool tip
     k        (m, 3)          unit tool axis z_T, out of the part towards the spindle
@@ -65,6 +65,17 @@ class Toolpath(Tabled):
     thread   (m,) bool       True where a tap or a thread cutter is led in step with the spindle
     dwell    (m,) s          time that the tool stands still before the move
     counts                   rapid moves, straight cuts and arcs of the program, None where there is none
+
+    Raises
+    ------
+    ToolpathError
+        For points, axes or feeds that cannot be.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.read_gcode("G21 G90 G1 X0 Y0 Z-2 F600\nG1 X50\n").to_dataframe()["feed_mm_min"].tolist()
+    [0.0, 600.0, 600.0]
     """
 
     p: FloatArray
@@ -135,7 +146,7 @@ class Toolpath(Tabled):
         --------
         >>> import robomill as rm
         >>> path = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [100, 0, -2]], feed_mm_min=1800)
-        >>> len(path), float(path.s[-1]), float(path.v_f[-1])
+        >>> len(path), float(path.s[-1]), round(float(path.v_f[-1]), 6)
         (2, 0.1, 0.03)
         """
         points = as_floats(one_of(POINTS, p, p_mm, ToolpathError, "Toolpath"), "Points", (None, 3), error=ToolpathError)

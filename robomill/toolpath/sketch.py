@@ -46,6 +46,13 @@ class Element(Replaceable):
     line        start, end                      rectangle   two opposite corners
     polyline    two or more points              arc         start, a point on the way, end
     polygon     three or more, closed           circle      centre, a point on it (where the cut begins)
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> line = rm.Element("line", [[0.0, 0.0], [0.05, 0.0]], depth=2e-3, v_f=0.03)
+    >>> line.points.shape
+    (2, 2)
     """
 
     shape: Shape = choice("Shape", {shape: shape for shape in SHAPES})
@@ -96,6 +103,14 @@ class Sketch(Replaceable):
     v_plunge    m/s  feed of plunges            n_s    1/s  spindle speed
     clearance   m    height of rapids above the top face
     v_f, depth  what the next shape gets; grid (m) what points snap to, 0 for none: the path does not depend on them
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> ring = rm.Element("circle", [[0.0, 0.0], [0.02, 0.0]], depth=2e-3, v_f=0.03)
+    >>> path = rm.Sketch((ring,)).toolpath()
+    >>> float(path.s[-1].round(3))
+    0.128
     """
 
     elements: tuple[Element, ...] = ()

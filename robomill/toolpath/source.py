@@ -29,11 +29,17 @@ LEANS = "tool"
 
 @dataclass(frozen=True)
 class GCodeSource:
-    """A program as written: its text, the file's name and the dialect ("auto": guessed and said).
+    r"""A program as written: its text, the file's name and the dialect ("auto": guessed and said).
 
     ``table`` is the rotary axis that turns the part ("A", "-A" ...); "" where the tool leans, or nobody has said;
     "tool" where it is said that the tool leans.
     ``n_s`` (1/s) is how fast the spindle turns of a program that never says; 0 where that is not known.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.GCodeSource("G21 G90 G1 X0 Y0 Z-2 F600\nG1 X50\n", "slot.nc").read()
+    <Toolpath 3 points, 52.0 mm at feed within 50.0 x 0.0 x 2.0 mm>
     """
 
     text: str
@@ -121,7 +127,15 @@ def _keep(key: tuple[GCodeSource, str], found: Toolpath | GCodeError) -> None:
 
 @dataclass(frozen=True, eq=False)
 class LinesSource:
-    """A table of straight cuts: start, end (r, 3) m in {W}; v_f (r,) m/s; n_s spindle 1/s for the whole table."""
+    """A table of straight cuts: start, end (r, 3) m in {W}; v_f (r,) m/s; n_s spindle 1/s for the whole table.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> lines = rm.LinesSource([[0.0, 0.0, -2e-3]], [[0.05, 0.0, -2e-3]], [0.03])
+    >>> lines.read()
+    <Toolpath 2 points, 50.0 mm at feed within 50.0 x 0.0 x 0.0 mm>
+    """
 
     start: FloatArray
     end: FloatArray
@@ -149,7 +163,15 @@ class LinesSource:
 
 @dataclass(frozen=True)
 class SketchSource:
-    """A path drawn by hand."""
+    """A path drawn by hand.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> ring = rm.Element("circle", [[0.0, 0.0], [0.02, 0.0]], depth=2e-3, v_f=0.03)
+    >>> rm.SketchSource(rm.Sketch((ring,))).read().cutting.any()
+    np.True_
+    """
 
     sketch: Sketch
     name: str = field(default="sketch", compare=False)
@@ -170,7 +192,15 @@ class SketchSource:
 
 @dataclass(frozen=True)
 class PointsSource:
-    """A path that is given as it is, point by point."""
+    """A path that is given as it is, point by point.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> path = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [50, 0, -2]], feed_mm_min=1800)
+    >>> rm.PointsSource(path).read() == path
+    True
+    """
 
     path: Toolpath
     name: str = field(default="points", compare=False)

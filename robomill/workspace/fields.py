@@ -26,7 +26,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Field(Tabled):
-    """One quantity over a grid: values (nx, ny, nz) in SI, NaN in all but the ``reached`` cells."""
+    """One quantity over a grid: values (nx, ny, nz) in SI, NaN in all but the ``reached`` cells.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> grid = rm.Grid(x_mm=[0, 200], y_mm=-1300, z_mm=0)
+    >>> field = rm.compliance_map(rm.load_robot("slavkovic_5r"), grid).field("C_yy")
+    >>> list(field.columns()), (field.values * 1e6).ravel().round(3).tolist()
+    (['X_mm', 'Y_mm', 'Z_mm', 'C_yy_um/N'], [2.295, 2.259])
+    """
 
     robot: Robot
     grid: Grid
@@ -79,7 +88,15 @@ def _field(robot: Robot, grid: Grid, A: float, B: float, name: str, *found: Any)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ComplianceMap(SolvedGrid, Tabled):
-    """The cells of a grid, asked for any quantity by its name."""
+    """The cells of a grid, asked for any quantity by its name.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> found = rm.compliance_map(rm.load_robot("slavkovic_5r"), rm.Grid(x_mm=[0, 200], y_mm=-1300, z_mm=0))
+    >>> found
+    <ComplianceMap slavkovic_5r: 2 x 1 x 1 cells at X, Y, Z = 0 to 200 mm; -1300 mm; 0 mm, tilt A, B 0.0, 0.0 deg, ...>
+    """
 
     def values(self, name: str) -> FloatArray:
         """The quantity called ``name`` (see ``quantities``), (nx, ny, nz) in SI, NaN where not reached."""
@@ -158,9 +175,34 @@ def _whose(robot: Robot) -> dict[str, str]:
 
 
 def compliance_map(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -> ComplianceMap:
-    """Reach, joints, Jacobian, joint shares and det(J) over ``grid`` with the tool tilted by A, B (rad), in one pass.
+    """Reach, joints, Jacobian and joint shares of the compliance over a grid, in one pass.
 
-    Raises WorkspaceError where the grid needs more memory than the budget, naming the step that fits.
+    Parameters
+    ----------
+    robot : Robot
+        The arm.
+    grid : Grid
+        Points in {M}, m.
+    A, B : float
+        Tilt of the tool, rad.
+
+    Returns
+    -------
+    ComplianceMap
+        Asked for any quantity by its name (``map_quantities``); NaN where a point is not reached. Eqs. (8) to (14).
+
+    Raises
+    ------
+    WorkspaceError
+        Where the grid needs more memory than the budget (the step that fits is named), or the tilt is not finite.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> grid = rm.Grid(x_mm=[-200, 0, 200], y_mm=-1300, z_mm=0)
+    >>> found = rm.compliance_map(rm.load_robot("slavkovic_5r"), grid)
+    >>> (found.values("C_yy").ravel() * 1e6).round(3).tolist()
+    [2.259, 2.295, 2.259]
     """
     _finite_tilt(A, B)
     grid.check_budget(8 * (13 * robot.n + 2 + 6) + 1)

@@ -29,6 +29,17 @@ class Grid(Value):
     """Points x (nx,), y (ny,), z (nz,) m in {M}, or x_mm, y_mm, z_mm; fields over it are (nx, ny, nz).
 
     A plane has one axis of one number: ``Grid(x_mm=range(-600, 601, 50), y_mm=range(-1600, -999, 50), z_mm=0)``.
+
+    Raises
+    ------
+    WorkspaceError
+        For coordinates that do not rise, and for numbers that were meant in another unit.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.Grid(x_mm=range(-600, 601, 50), y_mm=range(-1600, -999, 50), z_mm=0)
+    <Grid 25 x 13 x 1 cells at X, Y, Z = -600 to 600 mm; -1600 to -1000 mm; 0 mm>
     """
 
     x: FloatArray = quantity("axis x", "mm", shape=(None,), slip=FARTHEST)
@@ -70,8 +81,8 @@ class Grid(Value):
         return np.stack(np.meshgrid(self.x, self.y, self.z, indexing="ij"), axis=-1)
 
     def _said(self) -> str:
-        ends = (format_many((axis[0], axis[-1]), "mm", 0, between=" to ") for axis in (self.x, self.y, self.z))
-        return f"{' × '.join(map(str, self.shape))} cells, X, Y, Z = {'; '.join(ends)}"
+        ends = (format_many(dict.fromkeys((axis[0], axis[-1])), "mm", 0, " to ") for axis in (self.x, self.y, self.z))
+        return f"{' × '.join(map(str, self.shape))} cells at X, Y, Z = {'; '.join(ends)}"
 
     @property
     def step(self) -> float:
@@ -94,14 +105,66 @@ class Grid(Value):
 
 
 def box_grid(lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
-    """Grid over the box lower (3,) .. upper (3,) m with spacing ``step`` m; an axis of zero length has one point."""
+    """A grid of points over a box.
+
+    Parameters
+    ----------
+    lower, upper : array_like, (3,)
+        Corners of the box, m, in {M}; an axis of zero length has one point.
+    step : float
+        Spacing of the points, m.
+
+    Returns
+    -------
+    Grid
+        Points lower, lower + step, ... up to upper.
+
+    Raises
+    ------
+    WorkspaceError
+        For corners the wrong way round, or a step that is not above zero or makes too many points.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.box_grid([-0.6, -1.6, 0.0], [0.6, -1.0, 0.0], 0.1).shape
+    (13, 7, 1)
+    """
     low = as_floats(lower, "Box, lower corner", (3,), error=WorkspaceError)
     high = as_floats(upper, "Box, upper corner", (3,), error=WorkspaceError)
     return Grid(*(axis_points(low[i], high[i], step, "xyz"[i]) for i in range(3)))
 
 
 def plane_grid(normal: str, at: float, lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
-    """Grid over the plane ``normal`` ("x", "y" or "z") = ``at`` m inside the box lower .. upper m."""
+    """A grid of points over a plane across an axis of {M}.
+
+    Parameters
+    ----------
+    normal : str
+        "x", "y" or "z".
+    at : float
+        Where the plane lies along its normal, m.
+    lower, upper : array_like, (3,)
+        Corners of the box that the plane is cut from, m.
+    step : float
+        Spacing of the points, m.
+
+    Returns
+    -------
+    Grid
+        With one point along ``normal``.
+
+    Raises
+    ------
+    WorkspaceError
+        For another normal, and as ``box_grid``.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.plane_grid("z", 0.0, [-0.6, -1.6, 0.0], [0.6, -1.0, 0.5], 0.1).shape
+    (13, 7, 1)
+    """
     if normal not in ("x", "y", "z"):
         raise WorkspaceError(f"Plane: the normal is {normal!r}; expected 'x', 'y' or 'z'.")
     low, high = np.array(lower, dtype=np.float64), np.array(upper, dtype=np.float64)

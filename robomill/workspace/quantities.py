@@ -56,7 +56,26 @@ class MapQuantity:
 
 
 def map_quantities(robot: Robot, rests_on: Basis | None = None) -> dict[str, MapQuantity]:
-    """Every quantity that has a meaning for ``robot`` (and rests on that), by name, in the order they are listed."""
+    """Every quantity that a map of a robot can show.
+
+    Parameters
+    ----------
+    robot : Robot
+        Whose joints are counted.
+    rests_on : str, optional
+        Only those that rest on "geometry" alone, or on the joints' "compliance", too.
+
+    Returns
+    -------
+    dict of str to MapQuantity
+        By name, in the order they are listed: title, unit, formula and meaning of each.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.map_quantities(rm.load_robot("slavkovic_5r"))["C_yy"].unit
+    'um/N'
+    """
     return {what.name: what for family in _families(robot) for what in family if rests_on in (None, what.rests_on)}
 
 

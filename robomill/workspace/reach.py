@@ -40,7 +40,33 @@ class ReachBox:
 
 
 def reach(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0, 0.0),)) -> BoolArray:
-    """WS (nx, ny, nz), eq. (10): True where every tilt (A, B) rad of ``tilts`` is reached within the joint limits."""
+    """Where the tool can be brought, eq. (10).
+
+    Parameters
+    ----------
+    robot : Robot
+        The arm.
+    grid : Grid
+        Points in {M}, m.
+    tilts : sequence of (A, B)
+        Tilts of the tool, rad, all of which must be reached.
+
+    Returns
+    -------
+    ndarray of bool, (nx, ny, nz)
+        True where every tilt is reached within the joint limits.
+
+    Raises
+    ------
+    WorkspaceError
+        Without a tilt, or where the grid needs more memory than the budget.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.reach(rm.load_robot("slavkovic_5r"), rm.Grid(x_mm=[0, 9000], y_mm=-1300, z_mm=0)).ravel().tolist()
+    [True, False]
+    """
     grid.check_budget(8 * 3 + 1)
     if not tilts:
         raise WorkspaceError("Reach: give at least one tool tilt (A, B).")

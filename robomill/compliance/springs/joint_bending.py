@@ -35,6 +35,12 @@ class JointBending(Spring):
     The frame is the one before the joint turns, so the axes stay with the link that carries the bearing; ``turned``,
     they stay with the link that the joint moves, x being that of the next frame, seen along the joint's axis.
     The joint's own z axis is the robot's C_theta.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.JointBending(2, C_x=3e-7).name
+    'joint 2 bending'
     """
 
     kind: ClassVar[str] = "joint_bending"

@@ -17,7 +17,14 @@ TYPICAL = Provenance("assumed", "20 N/µm across and 50 N/µm along, typical of 
 
 @dataclass(frozen=True)
 class SpindleSpring(Spring):
-    """Spindle, holder and bearings as springs at the tip: ``lateral`` and ``axial`` compliance, m/N; 0 is rigid."""
+    """Spindle, holder and bearings as springs at the tip: ``lateral`` and ``axial`` compliance, m/N; 0 is rigid.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.SpindleSpring(5e-8, 2e-8).name
+    'spindle and holder'
+    """
 
     kind: ClassVar[str] = "spindle"
     title: ClassVar[str] = "Spindle and holder"

@@ -25,6 +25,12 @@ class ToolBending(Spring):
     """The cutter as a cantilever: delta = F L^3 / (3 E I) across its axis, rigid along it.
 
     diameter m, stick_out L m, E Pa; the bending diameter is ``core`` times the diameter (flutes weaken it).
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.ToolBending(8e-3, 30e-3).name
+    'tool bending'
     """
 
     kind: ClassVar[str] = "tool_bending"

@@ -16,7 +16,14 @@ from robomill.units import format_short
 
 @dataclass(frozen=True)
 class PathForce(ForceModel):
-    """Constant components that follow the path: feed, feed_normal (left of the feed), axial (+ out of the part), N."""
+    """Constant components that follow the path: feed, feed_normal (left of the feed), axial (+ out of the part), N.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.PathForce(feed=-40.0, feed_normal=90.0, axial=-20.0).feed_normal
+    90.0
+    """
 
     kind: ClassVar[str] = "path"
     title: ClassVar[str] = "Follows the path"

@@ -14,7 +14,14 @@ from robomill.quantities import quantity
 
 @dataclass(frozen=True, eq=False)
 class ConstantForce(ForceModel):
-    """The paper's static force: one vector (3,) N in {M} wherever the tool cuts."""
+    """The paper's static force: one vector (3,) N in {M} wherever the tool cuts.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> rm.ConstantForce((0.0, 100.0, 0.0)).vector_M.tolist()
+    [0.0, 100.0, 0.0]
+    """
 
     kind: ClassVar[str] = "constant"
     title: ClassVar[str] = "Fixed in {M} (the paper's)"

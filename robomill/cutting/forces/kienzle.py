@@ -16,7 +16,15 @@ REFERENCE_CHIP = to_si(1.0, "mm")
 
 @dataclass(frozen=True)
 class KienzleRow(Material):
-    """F_t = kc11 (h / 1 mm)^(-mc) h b, kc11 in N/m^2; radial_ratio and axial_ratio are F_r / F_t and F_a / F_t."""
+    """F_t = kc11 (h / 1 mm)^(-mc) h b, kc11 in N/m^2; radial_ratio and axial_ratio are F_r / F_t and F_a / F_t.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> row = rm.load_material("steel_c45_annealed_kienzle")
+    >>> isinstance(row, rm.KienzleRow), row.kc11 * 1e-6, row.mc
+    (True, 1500.0, 0.22)
+    """
 
     kind: ClassVar[str] = "kienzle"
     gives: ClassVar[Mapping[str, str]] = {"radial_ratio": "radial", "axial_ratio": "axial"}
@@ -35,7 +43,15 @@ class KienzleRow(Material):
 
 @dataclass(frozen=True)
 class KienzleForce(ProcessForce):
-    """Kienzle's kc = kc1.1 (h / 1 mm)^(-mc), its mean over the arc as incomplete beta integrals."""
+    """Kienzle's kc = kc1.1 (h / 1 mm)^(-mc), its mean over the arc as incomplete beta integrals.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> cutter = rm.Cutter("flat", diameter_mm=8, flutes=3)
+    >>> isinstance(rm.process_force("steel_c45_annealed_kienzle", cutter), rm.KienzleForce)
+    True
+    """
 
     kind: ClassVar[str] = "kienzle"
     title: ClassVar[str] = "From the material, Kienzle"

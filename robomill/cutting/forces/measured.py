@@ -36,6 +36,13 @@ class ForceRecord:
     x (k,) strictly increasing, F (k, 3) N in ``frame``: feed, feed-normal, axial ("path"); x, y, z of the robot ("M"),
     or of the part, where the sensor turns with it ("W"). Time counts from the first cut on, rapids and dwells included.
     Raises CuttingError for shapes that differ or an x that does not increase.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> t = [0.0, 0.1, 0.2, 0.3]
+    >>> rm.ForceRecord(t, [[10.0, 20.0, -5.0]] * 4, "time", "path", "dynamometer").rate
+    10.0
     """
 
     x: FloatArray
@@ -97,6 +104,13 @@ class MeasuredForce(ForceModel):
 
     ``cutoff`` (Hz, None for no filter) applies in time; a path record is filtered at cutoff / feed, with the median
     feed of the cut.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> force = rm.MeasuredForce.over_time([0.0, 0.1, 0.2, 0.3], [[10.0, 20.0, -5.0]] * 4)
+    >>> force.in_time
+    True
     """
 
     kind: ClassVar[str] = "measured"

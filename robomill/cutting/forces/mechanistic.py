@@ -18,7 +18,14 @@ def _per_length(label: str, *, optional: bool = False) -> Any:
 
 @dataclass(frozen=True)
 class MechanisticRow(Material):
-    """Ktc, Krc, Kac (N/m^2): per chip area, tangential, radial, axial; Kte, Kre, Kae (N/m): per length of edge."""
+    """Ktc, Krc, Kac (N/m^2): per chip area, tangential, radial, axial; Kte, Kre, Kae (N/m): per length of edge.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> isinstance(rm.load_material("al7075_t6_carbide_ref190"), rm.MechanisticRow)
+    True
+    """
 
     kind: ClassVar[str] = "mechanistic"
     gives: ClassVar[Mapping[str, str]] = {"Kac": "axial", "Kae": "axial"}
@@ -51,7 +58,15 @@ class MechanisticRow(Material):
 
 @dataclass(frozen=True)
 class MechanisticForce(ProcessForce):
-    """Chip and edge coefficients (Ktc..Kae), closed form of the mean (Altintas, Manufacturing Automation)."""
+    """Chip and edge coefficients (Ktc..Kae), closed form of the mean (Altintas, Manufacturing Automation).
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> cutter = rm.Cutter("flat", diameter_mm=8, flutes=3)
+    >>> isinstance(rm.process_force("al7075_t6_carbide_ref190", cutter), rm.MechanisticForce)
+    True
+    """
 
     kind: ClassVar[str] = "mechanistic"
     title: ClassVar[str] = "From the material, mechanistic"

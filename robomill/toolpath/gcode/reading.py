@@ -32,10 +32,37 @@ def read_gcode(
     tools: Tools | None = None,
     table: str = "",
 ) -> Toolpath:
-    """The toolpath of a program in {W}: arcs as chords within ``chord_error`` (m), findings attached.
+    r"""The toolpath of a G-code program.
 
-    ``table`` is the rotary axis that turns the part, one of ``TABLES``. Raises GCodeError naming the line that is
-    refused, or if nothing moves.
+    Parameters
+    ----------
+    path_or_text : str, Path or bytes
+        A file, or the program itself (a text with a line break).
+    chord_error : float
+        m: arcs become chords no farther than this from them.
+    dialect : str
+        "auto" guesses and says so; "linuxcnc", "fanuc", "grbl" or "sinumerik".
+    tools : mapping, optional
+        The table that T, H and D words mean, by tool number.
+    table : str
+        The rotary axis that turns the part: "A", "-A", "B", ... ; "" where the tool leans.
+
+    Returns
+    -------
+    Toolpath
+        In {W}, m and m/s; what was noticed is in ``findings``.
+
+    Raises
+    ------
+    GCodeError
+        Naming the line that is refused, or where nothing moves.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> path = rm.read_gcode("G21 G90 G1 X0 Y0 Z-2 F600\nG1 X50\n")
+    >>> float(path.s[-1]), float(path.v_f[-1])
+    (0.052000000000000005, 0.01)
     """
     program = interpret(path_or_text, dialect=dialect, tools=tools)
     if table and table in TABLES:

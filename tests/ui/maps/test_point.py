@@ -9,7 +9,7 @@ import pytest
 
 import robomill as rm
 from robomill.compliance.at_pose import PoseReport
-from robomill.report.tables import Columns
+from robomill.frames import Columns
 from robomill.ui.maps.point import headline, place, share_columns
 from robomill.ui.point import in_hand
 from robomill.workspace.quantities import COMPONENTS
