@@ -25,7 +25,7 @@ from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
 ROOT = DOCS.parent
-PAGES = (*sorted(DOCS.glob("*.md")), *sorted(DOCS.glob("how_to/*.md")))
+PAGES = (ROOT / "README.md", *sorted(DOCS.glob("*.md")), *sorted(DOCS.glob("how_to/*.md")))
 _FENCE = re.compile(
     r"^(?P<mark>`{3,})(?P<language>[\w+-]*)[^\n]*\n(?P<text>.*?)^(?P=mark)[ \t]*$", re.MULTILINE | re.DOTALL
 )
@@ -106,21 +106,27 @@ def _console(block: Block) -> Iterator[Shown]:
         if command.startswith(f"{_PROMPT}robomill"):
             begin = at + len(command) + 1
             words = shlex.split(command.removeprefix(_PROMPT), comments=True)[1:]
-            printed = _captured(lambda words=words: _verb(words))
-            yield Shown(command, shown, printed, begin, begin + len(shown), block.line)
+            yield Shown(command, shown, _verb(words), begin, begin + len(shown), block.line)
         at += len(piece)
 
 
-def _verb(words: list[str]) -> None:
+def _verb(words: list[str]) -> str:
+    """What a verb prints: its output, and, where it refuses, the sentence that says why."""
     from robomill.cli import main
 
-    with contextlib.suppress(SystemExit):  # argparse has said why
-        main(words)
+    said, refused, code = io.StringIO(), io.StringIO(), 0
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(refused):
+        try:
+            code = main(words)
+        except SystemExit as ended:  # argparse
+            code = int(ended.code or 0)
+    return said.getvalue() + (refused.getvalue() if code == 2 else "")
 
 
-def _captured(work: Callable[[], None]) -> str:
+def _captured(work: Callable[[], object]) -> str:
+    """What goes to standard output; what goes to standard error (progress, a first preparation) is for the moment."""
     stream = io.StringIO()
-    with contextlib.redirect_stdout(stream), contextlib.redirect_stderr(stream):
+    with contextlib.redirect_stdout(stream):
         work()
     return stream.getvalue()
 

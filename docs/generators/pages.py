@@ -31,13 +31,22 @@ def _write(app: Sphinx) -> None:
 
 def everything(pictures: Path) -> dict[str, str]:
     """All generated pieces by the name of their file."""
-    from generators import extras, formats, gallery, names, validation, verbs  # here: they load all of robomill
+    from generators import (
+        extras,
+        formats,
+        gallery,
+        names,
+        scripts,
+        validation,
+        verbs,
+    )  # here: they load all of robomill
 
     return {
         **extras.pages(),
         **formats.pages(),
         **verbs.pages(),
         **names.pages(),
+        **scripts.pages(),
         **validation.pages(),
         **gallery.pages(pictures),
     }
