@@ -16,7 +16,6 @@ version = release = robomill.__version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
-    "sphinx.ext.napoleon",
     "generators.docstrings",
     "generators.mathml",
     "generators.pages",
@@ -33,8 +32,6 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the signature shows them; docstrings give shapes and units
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = False
-napoleon_google_docstring = False
-napoleon_use_rtype = False
 python_use_unqualified_type_names = True
 add_module_names = False
 

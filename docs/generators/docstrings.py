@@ -1,4 +1,4 @@
-"""Docstrings list fields in columns, ``name   what it is``, as one reads them in an editor; pages show lists."""
+"""Docstrings as pages show them: NumPy's sections, and fields in columns (``name   what it is``) as lists."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from itertools import groupby
 from typing import Any
 
 from sphinx.application import Sphinx
+from sphinx.ext.napoleon import Config
+from sphinx.ext.napoleon.docstring import NumpyDocstring
 
+SECTIONS = Config(napoleon_use_rtype=False)
 NAMES = re.compile(r"\w[\w.]*(?:,? \w[\w.]*)*")
 ENTRY = re.compile(rf"(?P<names>{NAMES.pattern})\s{{2,}}(?P<text>\S.*)")
 BAR = re.compile(r"(``.*?``)|\|")
@@ -21,7 +24,10 @@ def setup(app: Sphinx) -> dict[str, Any]:
 
 
 def _process(app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]) -> None:
-    lines[:] = [line for is_text, group in groupby(lines, key=bool) for line in _shown(is_text, list(group))]
+    # A property's docstring is a sentence, not "type: what it is", as Napoleon by itself would read it.
+    kind = "method" if what in ("property", "attribute") else what
+    told = NumpyDocstring(lines, SECTIONS, app, kind, name, value, options).lines()
+    lines[:] = [line for is_text, group in groupby(told, key=bool) for line in _shown(is_text, list(group))]
 
 
 def _shown(is_text: bool, paragraph: list[str]) -> Iterator[str]:
