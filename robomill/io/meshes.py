@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.errors import SurfaceError
-from robomill.extras import needed
+from robomill.errors import MissingExtraError, SurfaceError
+from robomill.extras import missing
 from robomill.files import STL, check_size, read_file
 from robomill.progress import slices
 from robomill.provenance import Finding
@@ -26,6 +26,11 @@ UNITS_OF_STL = {"mm": "millimetres", "in": "inches", "cm": "centimetres", "m": "
 SMALLEST_MM, LARGEST = 25.0, 5.0  # mm, m
 
 
+def absent(kind: str) -> MissingExtraError | None:
+    """Why a solid cannot be written in this format where its extra is not installed."""
+    return missing("A surface as VTP", "render", "pyvista") if kind == "vtp" else None
+
+
 def mesh_bytes(
     zmap: ZMap, kind: str = "stl", *, error: FloatArray | None = None, max_faces: int = MOST_TRIANGLES
 ) -> bytes:
@@ -37,6 +42,9 @@ def mesh_bytes(
     name = kind.lower().lstrip(".")
     if name not in FORMATS:
         raise SurfaceError(f"Mesh format {kind!r} is not known: use {', '.join(FORMATS)}.")
+    refusal = absent(name)
+    if refusal is not None:
+        raise refusal
     mesh, aimed = _solid(zmap, max_faces)
     if name == "vtp":
         return _vtp(zmap, mesh, error, aimed)
@@ -76,8 +84,7 @@ def _stl(mesh: Mesh) -> bytes:
 def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> bytes:
     import tempfile
 
-    with needed("A surface as VTP"):
-        import pyvista
+    import pyvista
 
     faces = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces]).ravel()
     surface = pyvista.PolyData(from_si(mesh.vertices, "mm"), faces)

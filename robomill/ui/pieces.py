@@ -322,7 +322,7 @@ def download(
 
     Where ``making`` it takes longer than anyone waits, a button has it made beside the page; then it can be taken.
     """
-    if making is not None and making.seconds > beside.FIRST_S:
+    if making is not None and making.seconds > beside.FIRST_S and not more.get("disabled"):
         data = attempt(cached.asked_for, label, key, making.about(), data)
         if data is None:
             return

@@ -7,10 +7,12 @@ from typing import Any, Literal
 import numpy as np
 
 from robomill.arrays import IntArray
+from robomill.errors import MissingExtraError
 from robomill.extras import missing, needed
 from robomill.simulation.enlarged import Enlarged, so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.units import from_si
+from robomill.viz import worker
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.posed import posed
 
@@ -38,14 +40,9 @@ def film_frame(result: SimulationResult, shown: Enlarged, picture: SurfacePictur
     )
 
 
-def check(kind: Kind) -> None:
-    """Raise MissingExtraError where a film of this kind cannot be written here."""
-    for refusal in (
-        missing("A film of the cut", "render", "pyvista", "matplotlib", "PIL"),
-        missing("A film as MP4", "film", "imageio_ffmpeg") if kind == "mp4" else None,
-    ):
-        if refusal is not None:
-            raise refusal
+def absent(kind: Kind) -> MissingExtraError | None:
+    """Why no film of this kind can be made where an extra is not installed."""
+    return worker.absent() or (missing("A film as MP4", "film", "imageio_ffmpeg") if kind == "mp4" else None)
 
 
 def encode(pictures: Sequence[bytes], kind: Kind, frames_per_s: float) -> bytes:

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
-from robomill.errors import RenderError, RobomillError
+from robomill.errors import MissingExtraError, RenderError, RobomillError
 from robomill.extras import missing
 from robomill.viz import graphics
 
@@ -91,14 +91,13 @@ class RenderWorker:
     @property
     def refusal(self) -> RobomillError | None:
         """Why nothing can be drawn just now; None where a picture may be asked for."""
-        absent = missing("A rendered picture", "render", "pyvista", "matplotlib", "PIL")
-        return absent or (self._starts.refusal() if self._starts.left_s > 0.0 else None)
+        return absent() or (self._starts.refusal() if self._starts.left_s > 0.0 else None)
 
     def render(self, picture: Any) -> bytes:
         """PNG bytes of ``picture``; where the process ends, a second attempt is made at once."""
-        absent = missing("A rendered picture", "render", "pyvista", "matplotlib", "PIL")
-        if absent is not None:
-            raise absent
+        refusal = absent()
+        if refusal is not None:
+            raise refusal
         message = pickle.dumps(picture, protocol=5)
         name = hashlib.blake2b(message).digest()
         while True:
@@ -228,6 +227,11 @@ class RenderWorker:
         self._said.seek(max(0, end - 2000))
         lines = self._said.read().decode(errors="replace").strip().splitlines()
         return f": {lines[-1].strip():.160}" if lines else ""
+
+
+def absent() -> MissingExtraError | None:
+    """Why nothing can be drawn where the extra is not installed."""
+    return missing("A rendered picture", "render", "pyvista", "matplotlib", "PIL")
 
 
 def _ended_for_memory() -> int:

@@ -1,12 +1,15 @@
 """Meshes out and back in: closed solids, right volume, refusals of broken stocks."""
 
+import sys
+
 import numpy as np
 import pytest
 import pyvista
 import trimesh
 
 from robomill.cutting.tool import Cutter
-from robomill.errors import SurfaceError
+from robomill.errors import MissingExtraError, SurfaceError
+from robomill.io import meshes
 from robomill.io.meshes import mesh_bytes, read_stl_stock
 from robomill.surface.mesh import to_mesh
 from robomill.surface.stock import Stock
@@ -178,3 +181,10 @@ def test_every_triangle_of_an_stl_says_which_way_is_out():
     np.testing.assert_allclose(np.einsum("ti,tei->te", normal, edges), 0.0, atol=1e-4)
     out = corners.mean(axis=1) - 500.0 * (STOCK.lower + STOCK.upper)
     assert np.einsum("ti,ti->t", normal, out).min() > 0.0
+
+
+def test_what_a_format_needs_beyond_the_core_is_named_before_anything_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    monkeypatch.setattr(meshes, "_solid", lambda *_, **__: pytest.fail("a solid was made for nothing"))
+    with pytest.raises(MissingExtraError, match=r"A surface as VTP needs pyvista, .*robomill\[render\]"):
+        mesh_bytes(part(), "vtp")

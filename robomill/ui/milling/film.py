@@ -12,7 +12,7 @@ from robomill.ui import cached, inputs, pieces, rendered, session
 from robomill.ui import job as jobs
 from robomill.ui.job import Job
 from robomill.units import format_times
-from robomill.viz.animation import FRAMES, Kind, check, encode, film_frame, film_samples
+from robomill.viz.animation import FRAMES, Kind, absent, encode, film_frame, film_samples
 from robomill.viz.views import headroom, surface_picture
 
 KEY, COUNT = "milling.film", "milling.film.pictures"
@@ -33,7 +33,6 @@ class Film:
 
     def make(self) -> bytes:
         """The film's bytes; its pictures wait their turn with those of the pages."""
-        check(self.kind)
         pictures: list[bytes] = []
         shown = cached.pictured(self.result.setup, self.times)
         how: dict[str, Any] = {"camera": self.camera, "dark": self.dark, "size": SIZE}
@@ -60,8 +59,11 @@ def panel(result: SimulationResult, dark: bool) -> None:
         count = int(session.kept(COUNT, 36))
         inputs.slider("Pictures", COUNT, inputs.Span(*FRAMES, 4, "%d"), count, partial(session.keep, COUNT))
     with make:
-        film = Film(result, chosen, count, view.exaggeration, view.camera, dark)
-        inputs.button("Make the film", "milling.film.make", "movie", _begin, film, width="stretch")
+        film, refusal = Film(result, chosen, count, view.exaggeration, view.camera, dark), absent(chosen)
+        how: dict[str, Any] = {"width": "stretch", "disabled": refusal is not None}
+        inputs.button("Make the film", "milling.film.make", "movie", _begin, film, **how)
+    if refusal is not None:
+        pieces.note(str(refusal))
     _progress()
 
 

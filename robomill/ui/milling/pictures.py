@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import streamlit as st
 
-from robomill.io.meshes import FEW_TRIANGLES, FORMATS, MOST_TRIANGLES, mesh_bytes
+from robomill.io.meshes import FEW_TRIANGLES, FORMATS, MOST_TRIANGLES, absent, mesh_bytes
 from robomill.report.tables import csv_text
 from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
@@ -15,6 +15,7 @@ from robomill.ui import cached, inputs, pieces, rendered, session
 from robomill.ui.milling import live_cut
 from robomill.ui.milling import scrubber as linked
 from robomill.units import format_si
+from robomill.viz import worker
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.posed import posed
 from robomill.viz.views import surface_picture
@@ -81,15 +82,18 @@ def downloads(result: SimulationResult, i: int) -> None:
         long = making(ROW_S * len(result.path))
         pieces.download("Deviation CSV", table, pieces.named("deviation.csv"), "milling.get.deviation", long)
         key, make = scene(result, i, False)
+        refusals = {"png": worker.absent(), "vtp": absent("vtp")}
         long = pieces.Making(0.0 if rendered.there(key) else DRAWING_S, lambda: key)
-        pieces.download(
-            "Picture PNG", partial(rendered.now, PLACE, key, make), pieces.named("part.png"), "milling.get.png", long
-        )
+        png, off = partial(rendered.now, PLACE, key, make), refusals["png"] is not None
+        pieces.download("Picture PNG", png, pieces.named("part.png"), "milling.get.png", long, disabled=off)
         for kind in FORMATS:
             solid = partial(_mesh, result, kind, most)
             long = pieces.Making(_mesh_seconds(result, kind), lambda: (cached.by_result(result), most))
             name = pieces.named(f"surface.{kind}")
-            pieces.download(f"Surface {kind.upper()}", solid, name, f"milling.get.{kind}", long)
+            off = refusals.get(kind) is not None
+            pieces.download(f"Surface {kind.upper()}", solid, name, f"milling.get.{kind}", long, disabled=off)
+    for refusal in filter(None, refusals.values()):
+        pieces.note(str(refusal))
     every = format_si(max(_spacing(result, most), setup.cell), session.project().view.length, 2)
     inputs.switch("Surfaces with every cell", FULL, full, partial(session.keep, FULL))
     pieces.note(
