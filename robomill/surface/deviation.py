@@ -28,7 +28,6 @@ class Deviation(Value):
     y: FloatArray
     error: FloatArray
     cut: BoolArray
-    cell_area: float
     excess_volume: float
     gouge_volume: float
 
@@ -40,11 +39,6 @@ class Deviation(Value):
     def _said(self) -> str:
         most, least = (format_si(each, "mm", sign=True) for each in self.worst)
         return f"{least} to {most}, root mean square {format_si(self.rms, 'mm')}"
-
-    @property
-    def cut_area(self) -> float:
-        """Area cut in either surface, seen from above, m^2."""
-        return float(self.cut.sum()) * self.cell_area
 
     @property
     def worst(self) -> tuple[float, float]:
@@ -78,7 +72,7 @@ def deviation(ideal: ZMap, machined: ZMap, *, reach: float = 1e-3) -> Deviation:
     for array in (error, was_cut):  # large, and nobody else's: no copy
         array.flags.writeable = False
     excess, gouge = _volumes(height_error, ideal, machined)
-    return Deviation(ideal.x, ideal.y, error, was_cut, ideal.dx * ideal.dy, excess, gouge)
+    return Deviation(ideal.x, ideal.y, error, was_cut, excess, gouge)
 
 
 def _volumes(height_error: FloatArray, ideal: ZMap, machined: ZMap) -> tuple[float, float]:
