@@ -62,7 +62,7 @@ def _tell(exc: Exception) -> None:
 
     details = "".join(traceback.format_exception(exc))
     if "--debug" in sys.argv[1:] or os.environ.get(DEBUG, "0") not in ("", "0"):
-        sys.stderr.write(details)
+        print(details, end="", file=sys.stderr)
         where = "The details stand above."
     else:
         try:

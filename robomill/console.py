@@ -110,4 +110,5 @@ def silence(stream: TextIO | None) -> None:
 
 def refuse(sentence: object) -> None:
     """Say on standard error what is wrong."""
-    print(f"robomill: {one_line(str(sentence))}", file=sys.stderr, flush=True)
+    with suppress(RobomillError):  # where nothing can be said, the exit code says it
+        put(f"robomill: {one_line(str(sentence))}\n", sys.stderr)

@@ -31,7 +31,8 @@ def run_simulate(arguments: Any) -> int:
         pictures, lost = _pictures(result)
         files = _write(Path(arguments.out), {**_contents(result, record, arguments.full_stl), **pictures})
         record["not_written"] = [{"name": name, "why": why} for name, why in lost.items()]
-        lines += [f"not written: {name}. {why}" for name, why in lost.items()]
+        for why in dict.fromkeys(lost.values()):
+            lines.append(f"not written: {', '.join(name for name in lost if lost[name] == why)}. {why}")
     return say(arguments, record, lines, 1 if result.verdict.red else 0, files)
 
 

@@ -4,10 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from robomill import __version__
 from robomill.arrays import FloatArray
 from robomill.report.assumed import assumed_of_setup
 from robomill.report.paper_lengths import TRIED, over_lengths
 from robomill.report.records import shown
+from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.simulation.stations import largest_deviations, nearest_feed
@@ -27,7 +29,9 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
     verdict, noticed = result.verdict, (*result.notes, *result.surface_notes)
     missed = sorted(set(result.path.block[~result.reached].tolist()))
     return {
+        "robomill": __version__,
         "name": result.setup.name,
+        "program": getattr(result.setup.source, "name", None),
         "robot": result.setup.robot.name,
         "compliance_set": result.setup.robot.compliance_set,
         "max_deviation_mm": shown(result.max_deviation, "mm"),
@@ -62,6 +66,10 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "tolerance_mm": shown(result.setup.tolerance, "mm"),
         "notes": [note.sentence for note in noticed],
         "findings": [finding.record() for finding in (*result.setup.toolpath.findings, *noticed)],
+        "rests_on": [
+            {"what": each.what, "value": each.value, "kind": each.provenance.kind, "source": each.provenance.source}
+            for each in sources(result.setup)
+        ],
         "assumed": [each.record() for each in assumed_of_setup(result.setup)],
         "digest": result.setup.digest(),
     }

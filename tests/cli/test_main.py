@@ -9,10 +9,11 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
+from typing import TextIO
 
 import pytest
 
-from robomill import __main__, cli
+from robomill import __main__, cli, console
 from robomill.errors import RobomillError
 
 POSE = ["pose", "slavkovic_5r", "--theta-deg", "0,0,0,0,0"]
@@ -166,11 +167,22 @@ def test_a_place_that_cannot_be_written_to_is_a_sentence() -> None:
     )
 
 
-def test_a_refusal_while_the_last_words_go_out_is_said(monkeypatch, capsys) -> None:
-    def put(text: str, stream: object) -> None:
-        raise RobomillError("the disk is full.")
+def test_a_refusal_that_nobody_can_hear_keeps_its_code() -> None:
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "robomill", "pose", "nobody", "--theta-deg", "0"]
+        done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=full, timeout=60, check=False)
+    assert done.returncode == 2
 
-    monkeypatch.setattr("robomill.console.put", put)
+
+def test_a_refusal_while_the_last_words_go_out_is_said(monkeypatch, capsys) -> None:
+    put = console.put
+
+    def full(text: str, stream: TextIO | None) -> None:
+        if stream is sys.stdout:
+            raise RobomillError("the disk is full.")
+        put(text, stream)
+
+    monkeypatch.setattr(console, "put", full)
     monkeypatch.setattr(sys, "argv", ["robomill", "--version"])
     assert __main__.main() == 2
     assert "the disk is full" in capsys.readouterr().err

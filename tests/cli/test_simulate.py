@@ -95,8 +95,7 @@ def test_without_the_extra_the_rest_is_written_and_it_is_named(capsys, tmp_path:
     code, said, _ = run(capsys, "paper_flute", "--out", tmp_path)
     assert code == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(set(NAMES) - set(PICTURES))
-    for name in PICTURES:
-        assert f"not written: {name}. " in said
+    assert f"not written: {', '.join(PICTURES)}. A picture as PNG needs matplotlib" in said
     assert 'pip install "robomill[plot]"' in said
     found = record(capsys, "paper_flute", "--out", tmp_path)
     assert [each["name"] for each in found["not_written"]] == list(PICTURES)
@@ -174,6 +173,16 @@ def test_who_said_what_goes_along(capsys, tmp_path: Path) -> None:
     assert "tolerance" not in why
     assert record(capsys, out)["assumed"] == found["assumed"]
     assert "force" not in {each["what"] for each in record(capsys, "paper_flute")["assumed"]}
+
+
+def test_json_says_what_was_run_and_what_it_rests_on(capsys) -> None:
+    found = record(capsys, "paper_flute", "--program", "heart")
+    assert found["program"] == "heart.nc"
+    assert found["robomill"]
+    rows = {each["what"]: each for each in found["rests_on"]}
+    assert rows["Cutter"]["kind"] == "paper"
+    assert rows["Force"]["value"]
+    assert record(capsys, samples_dir() / "word")["program"] == "word.nc"
 
 
 def test_tables_are_read_back(capsys, tmp_path: Path) -> None:
