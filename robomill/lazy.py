@@ -31,9 +31,9 @@ class cached_property(Generic[T]):  # noqa: N801 - the field's name for it
     def __get__(self, one: Any, owner: type) -> Any:
         if one is None:
             return self
-        value = self._make(one)
+        value: Any = self._make(one)
         if not self._name.startswith("_"):
-            for array in value if isinstance(value, tuple) else (value,):
+            for array in value if type(value) is tuple else (value,):  # tuples by name are what kernels take and fill
                 if isinstance(array, np.ndarray):
                     array.flags.writeable = False
         vars(one)[self._name] = value
