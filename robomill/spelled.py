@@ -16,7 +16,7 @@ import numpy as np
 
 from robomill.errors import RobomillError
 from robomill.quantities import Quantity, quantities
-from robomill.units import SI_NAMES, UNITS, format_plain, to_si, unit_label
+from robomill.units import SI_NAMES, format_plain, to_si, unit_label
 
 T = TypeVar("T")
 C = TypeVar("C", bound=type)
@@ -70,7 +70,12 @@ def made(cls: type[T], known: Mapping[str, Any]) -> T:
 
 def spelled(cls: type) -> dict[str, Quantity]:
     """The numbers of a class by their other name, which ends in the unit; those that have none are not in it."""
-    return {each.key: each for each in quantities(cls).values() if UNITS[each.unit].factor != 1.0}
+    return {name_in_code(each): each for each in quantities(cls).values() if each.key != each.name and each.unit != "1"}
+
+
+def name_in_code(declared: Quantity) -> str:
+    """Its key in files as a name: ``diameter_mm``, ``C_x_1e_7_rad_per_Nm``."""
+    return declared.key.replace("-", "_")
 
 
 def in_si(cls: type, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -138,11 +143,12 @@ def slip_words(declared: Quantity, worst: float, alone: bool = True) -> str:
     """What to say of a plain number that is too large: what it says, and how what was meant is written."""
     si, unit = SI_NAMES[declared.unit], declared.unit
     meant, plain, most = format_plain(worst, 6), f"{to_si(worst, unit):.5g}", format_plain(declared.slip or 0.0, 3)
-    give = f"{declared.name}={plain} or {declared.key}={meant}"
-    if not declared.key.isidentifier():
+    other = name_in_code(declared)
+    give = f"{declared.name}={plain} or {other}={meant}"
+    if not other.isidentifier():
         give = f"{declared.name}={plain}"
     elif not alone:
-        give = f"{declared.name} in {si}, or {declared.key}"
+        give = f"{declared.name} in {si}, or {other}"
     label = unit_label(unit)
     found = f"{meant}{label}" if label == "°" else f"{meant} {label}"
     return f"found {meant} {si}, expected at most {most}: a name alone is in {si}. If {found} is meant, give {give}."

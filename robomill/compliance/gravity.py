@@ -4,6 +4,7 @@ Parts are usually zeroed with the arm sagged, so this is shown and not added to 
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,12 +16,14 @@ from robomill.kinematics.jacobian import twists
 from robomill.provenance import Provenance
 from robomill.quantities import quantity, settle
 from robomill.robot.model import Robot
+from robomill.spelled import in_units
 
 #: Standard gravity in a {M} whose z axis points up, m/s^2.
 GRAVITY = (0.0, 0.0, -9.80665)
 BY_HAND = Provenance("user", "entered by hand")
 
 
+@in_units(RobotError, "Weight of the arm")
 @dataclass(frozen=True, eq=False)
 class LinkMasses:
     """mass (n,) kg and centre (n, 3) m of what moves with each free joint, in the frame after it.
@@ -36,8 +39,20 @@ class LinkMasses:
     """
 
     mass: FloatArray = quantity("Mass", "kg", shape=(None,), least=0.0)
-    centre: FloatArray = quantity("Centre of mass", "mm", shape=(None, 3), axes="xyz")
+    centre: FloatArray = quantity("Centre of mass", "mm", shape=(None, 3), axes="xyz", slip=20.0)
     provenance: Provenance = BY_HAND
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            mass: ArrayLike = ...,
+            centre: ArrayLike = ...,
+            provenance: Provenance = ...,
+            *,
+            mass_kg: ArrayLike = ...,
+            centre_mm: ArrayLike = ...,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         settle(self, RobotError, "Weight of the arm")

@@ -174,9 +174,8 @@ def _source(table: Table, beside: Beside) -> PathSource:
     if kinds == ["lines_mm"]:
         rows = table.rows("lines_mm", 6, "mm")
         feeds = table.numbers("feed_mm_min", len(rows), "mm/min")
-        source = LinesSource(
-            rows[:, :3], rows[:, 3:], np.array(feeds), read_quantity(table, quantities(LinesSource)["n_s"])
-        )
+        n_s = read_quantity(table, quantities(LinesSource)["n_s"])
+        source = made(LinesSource, {"start": rows[:, :3], "end": rows[:, 3:], "v_f": np.array(feeds), "n_s": n_s})
     elif kinds == ["sketch"]:
         source = SketchSource(sketch_from_table(table.table("sketch")))
     else:

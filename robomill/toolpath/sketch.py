@@ -8,14 +8,15 @@ A shape that begins where the one before it ended is cut without lifting.
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import ToolpathError
 from robomill.quantities import choice, quantities, quantity, settle
-from robomill.spelled import Replaceable
+from robomill.spelled import Replaceable, in_units
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_si, from_si, to_si
 
@@ -37,8 +38,10 @@ SAME = 1e-9
 MAX_ELEMENTS = 5_000
 MAX_POINTS = 100_000
 MAX_COORDINATE = 100.0
+FARTHEST, DEEPEST, FASTEST = 20.0, 1.0, 1.0  # m, m, m/s: hardly more was meant in SI
 
 
+@in_units(ToolpathError, "Sketch")
 @dataclass(frozen=True, eq=False)
 class Element(Replaceable):
     """One shape: ``points`` (r, 2) m in {W}, cut ``depth`` m below the top face at ``v_f`` m/s.
@@ -56,9 +59,23 @@ class Element(Replaceable):
     """
 
     shape: Shape = choice("Shape", {shape: shape for shape in SHAPES})
-    points: FloatArray = quantity("Points", "mm", shape=(None, 2))
-    depth: float = quantity("Depth", "mm", above=0.0)
-    v_f: float = quantity("Feed", "mm/min", above=0.0, key="feed_mm_min")
+    points: FloatArray = quantity("Points", "mm", shape=(None, 2), slip=FARTHEST)
+    depth: float = quantity("Depth", "mm", above=0.0, slip=DEEPEST)
+    v_f: float = quantity("Feed", "mm/min", above=0.0, key="feed_mm_min", slip=FASTEST)
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            shape: Shape,
+            points: ArrayLike = ...,
+            depth: float = ...,
+            v_f: float = ...,
+            *,
+            points_mm: ArrayLike = ...,
+            depth_mm: float = ...,
+            feed_mm_min: float = ...,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         settle(self, ToolpathError, "Sketch")
@@ -96,6 +113,7 @@ class Element(Replaceable):
         return np.array(self.points)
 
 
+@in_units(ToolpathError, "Sketch")
 @dataclass(frozen=True, eq=False)
 class Sketch(Replaceable):
     """Shapes in the order in which they are cut, and what they share; SI units, {W}.
@@ -114,12 +132,32 @@ class Sketch(Replaceable):
     """
 
     elements: tuple[Element, ...] = ()
-    v_plunge: float = quantity("Plunge feed", "mm/min", default=5e-3, above=0.0, key="plunge_mm_min")
+    v_plunge: float = quantity("Plunge feed", "mm/min", default=5e-3, above=0.0, key="plunge_mm_min", slip=FASTEST)
     clearance: float = quantity("Clearance", "mm", default=5e-3, least=APPROACH, digits=2)
-    n_s: float = quantity("Spindle", "1/min", default=0.0, least=0.0, key="spindle_1_min")
-    v_f: float = quantity("Feed", "mm/min", default=30e-3, above=0.0, key="feed_mm_min", compare=False)
-    depth: float = quantity("Depth", "mm", default=2e-3, above=0.0, digits=2, compare=False)
+    n_s: float = quantity("Spindle", "1/min", default=0.0, least=0.0, key="spindle_1_min", slip=1000.0)
+    v_f: float = quantity("Feed", "mm/min", default=30e-3, above=0.0, key="feed_mm_min", compare=False, slip=FASTEST)
+    depth: float = quantity("Depth", "mm", default=2e-3, above=0.0, digits=2, compare=False, slip=DEEPEST)
     grid: float = quantity("Snap", "mm", default=5e-3, least=0.0, key="snap_mm", compare=False)
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            elements: tuple[Element, ...] = ...,
+            v_plunge: float = ...,
+            clearance: float = ...,
+            n_s: float = ...,
+            v_f: float = ...,
+            depth: float = ...,
+            grid: float = ...,
+            *,
+            plunge_mm_min: float = ...,
+            clearance_mm: float = ...,
+            spindle_1_min: float = ...,
+            feed_mm_min: float = ...,
+            depth_mm: float = ...,
+            snap_mm: float = ...,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "elements", tuple(self.elements))

@@ -8,15 +8,26 @@ import threading
 from collections import OrderedDict
 from copy import copy
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, as_floats, digest, frozen
+from robomill.arrays import FloatArray, digest, frozen
 from robomill.errors import GCodeError, ToolpathError
 from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
-from robomill.toolpath.path import NO_SPINDLE, ROTARY_ASKED, TABLES, Toolpath, toolpath_from_lines
+from robomill.spelled import in_units
+from robomill.toolpath.path import (
+    FEED,
+    NO_SPINDLE,
+    POINTS,
+    ROTARY_ASKED,
+    SPINDLE,
+    TABLES,
+    Toolpath,
+    toolpath_from_lines,
+)
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.text import split_lines
 from robomill.toolpath.tools import Tools
@@ -27,6 +38,7 @@ LEANS = "tool"
 """What a program's ``table`` says where its rotary axes lean the tool, however far."""
 
 
+@in_units(ToolpathError, "Program")
 @dataclass(frozen=True)
 class GCodeSource:
     r"""A program as written: its text, the file's name and the dialect ("auto": guessed and said).
@@ -50,10 +62,25 @@ class GCodeSource:
         "1/min",
         default=0.0,
         least=0.0,
-        key="spindle_1_min",
+        key=SPINDLE.key,
+        slip=SPINDLE.slip,
         hint="The program turns its spindle nowhere; how fast does it turn at the machine?",
     )
     table: str = ""
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            text: str,
+            name: str = ...,
+            dialect: str = ...,
+            n_s: float = ...,
+            table: str = ...,
+            *,
+            spindle_1_min: float = ...,
+        ) -> None: ...
+
     kind: ClassVar[Literal["program"]] = "program"
     block_name: ClassVar[str] = "line"
 
@@ -125,6 +152,7 @@ def _keep(key: tuple[GCodeSource, str], found: Toolpath | GCodeError) -> None:
             _KEPT.popitem(last=False)
 
 
+@in_units(ToolpathError, "Lines")
 @dataclass(frozen=True, eq=False)
 class LinesSource:
     """A table of straight cuts: start, end (r, 3) m in {W}; v_f (r,) m/s; n_s spindle 1/s for the whole table.
@@ -137,18 +165,32 @@ class LinesSource:
     <Toolpath 2 points, 50.0 mm at feed within 50.0 x 0.0 x 0.0 mm>
     """
 
-    start: FloatArray
-    end: FloatArray
-    v_f: FloatArray
-    n_s: float = quantity("Spindle speed", "1/min", default=0.0, least=0.0, key="spindle_1_min")
+    start: FloatArray = quantity("start", "mm", shape=(None, 3), slip=POINTS.slip)
+    end: FloatArray = quantity("end", "mm", shape=(None, 3), slip=POINTS.slip)
+    v_f: FloatArray = quantity("feed", "mm/min", shape=(None,), key=FEED.key, slip=FEED.slip)
+    n_s: float = quantity("Spindle speed", "1/min", default=0.0, least=0.0, key=SPINDLE.key, slip=SPINDLE.slip)
     name: str = field(default="table of lines", compare=False)
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            start: ArrayLike = ...,
+            end: ArrayLike = ...,
+            v_f: ArrayLike = ...,
+            n_s: float = ...,
+            name: str = ...,
+            *,
+            start_mm: ArrayLike = ...,
+            end_mm: ArrayLike = ...,
+            feed_mm_min: ArrayLike = ...,
+            spindle_1_min: float = ...,
+        ) -> None: ...
+
     kind: ClassVar[Literal["lines"]] = "lines"
     block_name: ClassVar[str] = "row"
 
     def __post_init__(self) -> None:
-        for name, shape in (("start", (None, 3)), ("end", (None, 3)), ("v_f", (None,))):
-            value = as_floats(getattr(self, name), f"lines, {name}", shape, error=ToolpathError)
-            object.__setattr__(self, name, frozen(value))
         settle(self, ToolpathError, "Lines")
 
     def read(self, tools: Tools | None = None) -> Toolpath:

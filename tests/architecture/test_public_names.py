@@ -15,7 +15,7 @@ import robomill as rm
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ast.parse((ROOT / "robomill" / "__init__.py").read_text())
 # Classes whose constructor is written down for type checkers, beside the one that the dataclass makes.
-IN_UNITS = (rm.Cutter, rm.Stock, rm.Grid, rm.SimulationSetup)
+IN_UNITS = [found for name in rm.__all__ if hasattr(found := getattr(rm, name), "door") and found is not rm.Robot]
 
 
 def static_names() -> dict[str, str]:

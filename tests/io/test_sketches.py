@@ -34,7 +34,7 @@ def test_ready_made_sketches_are_read_back_to_the_same_digest(name):
 
 @settings(max_examples=40, deadline=None)
 @given(
-    seed=st.integers(0, 10**9), shape=st.sampled_from(sorted(POINTS)), scale=st.sampled_from([1e-3, 1.0, 25.4e-3, 50.0])
+    seed=st.integers(0, 10**9), shape=st.sampled_from(sorted(POINTS)), scale=st.sampled_from([1e-3, 1.0, 25.4e-3, 15.0])
 )
 def test_any_shape_is_read_back_bit_by_bit(seed, shape, scale):
     rng = np.random.default_rng(seed)

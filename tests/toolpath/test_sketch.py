@@ -103,7 +103,7 @@ def test_shapes_apart_are_joined_by_rapids_at_clearance():
         ("rectangle", [[0, 0], [1, 0]], 1e-3, 0.1, "on one line"),
         ("arc", [[0, 0], [1, 1], [0, 0]], 1e-3, 0.1, "ends where it begins; draw a circle"),
         ("line", [[0, 0], [1, np.nan]], 1e-3, 0.1, "finite"),
-        ("line", [[0, 0], [1e4, 0]], 1e-3, 0.1, "from the part zero"),
+        ("line", [[0, 0], [1e4, 0]], 1e-3, 0.1, "found 10000 m"),
         ("line", [[0, 0], [1, 0]], 0.0, 0.1, "Sketch, Depth: found 0 mm; expected more than 0 mm"),
         ("line", [[0, 0], [1, 0]], 1e-3, -0.1, "Feed: found −6000 mm/min"),
         ("line", [[0, 0], [1, 0]], math.inf, 0.1, "Depth: found inf"),

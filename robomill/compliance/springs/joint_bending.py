@@ -1,7 +1,7 @@
 """Tilting of a joint's bearing and link."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,8 @@ from robomill.errors import RobotError
 from robomill.kinematics.jacobian import twists
 from robomill.provenance import Provenance
 from robomill.quantities import quantity, switch, whole
+from robomill.robot.model import SOFTEST
+from robomill.spelled import in_units
 
 UNIT = "1e-7 rad/(N m)"
 
@@ -28,6 +30,7 @@ def bending_axes(frames: FloatArray, i: int, turned: bool) -> tuple[FloatArray, 
     return x, np.cross(z, x)
 
 
+@in_units(RobotError, "Bending of a joint")
 @dataclass(frozen=True)
 class JointBending(Spring):
     """Tilting of joint ``joint`` (1-based among the free joints) about the x and y axes of its frame, rad/(N m).
@@ -50,10 +53,24 @@ class JointBending(Spring):
     each_joint: ClassVar[bool] = True
 
     joint: int = whole("Joint", least=1)
-    C_x: float = quantity("about x", UNIT, default=0.0, least=0.0, key="C_x_1e-7_rad_per_Nm")
-    C_y: float = quantity("about y", UNIT, default=0.0, least=0.0, key="C_y_1e-7_rad_per_Nm")
+    C_x: float = quantity("about x", UNIT, default=0.0, least=0.0, key="C_x_1e-7_rad_per_Nm", slip=SOFTEST)
+    C_y: float = quantity("about y", UNIT, default=0.0, least=0.0, key="C_y_1e-7_rad_per_Nm", slip=SOFTEST)
     provenance: Provenance = ASSUMED
     turned: bool = switch("Axes turn with the joint", default=False)
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            joint: int,
+            C_x: float = ...,
+            C_y: float = ...,
+            provenance: Provenance = ...,
+            turned: bool = ...,
+            *,
+            C_x_1e_7_rad_per_Nm: float = ...,
+            C_y_1e_7_rad_per_Nm: float = ...,
+        ) -> None: ...
 
     @property
     def name(self) -> str:

@@ -1,20 +1,26 @@
 """Spindle, holder and their bearings."""
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
 from robomill.compliance.spring import ASSUMED, Spring, about_tool
 from robomill.cutting.tool import Cutter
+from robomill.errors import RobotError
 from robomill.provenance import Provenance
 from robomill.quantities import quantity
+from robomill.spelled import in_units
 from robomill.units import to_si
 
 TYPICAL = Provenance("assumed", "20 N/µm across and 50 N/µm along, typical of a milling spindle with its holder")
 
 
+SOFTEST = 1e-3  # m/N: no spindle gives as much: was it meant in um/N?
+
+
+@in_units(RobotError, "Spindle and holder")
 @dataclass(frozen=True)
 class SpindleSpring(Spring):
     """Spindle, holder and bearings as springs at the tip: ``lateral`` and ``axial`` compliance, m/N; 0 is rigid.
@@ -31,10 +37,23 @@ class SpindleSpring(Spring):
     follows_tooth: ClassVar[bool] = True
     rank: ClassVar[int] = 2
 
-    lateral: float = quantity("Across", "um/N", least=0.0, digits=4)
-    axial: float = quantity("Along", "um/N", default=0.0, least=0.0, digits=4)
+    lateral: float = quantity("Across", "um/N", least=0.0, digits=4, slip=SOFTEST)
+    axial: float = quantity("Along", "um/N", default=0.0, least=0.0, digits=4, slip=SOFTEST)
     name: str = "spindle and holder"
     provenance: Provenance = ASSUMED
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            lateral: float = ...,
+            axial: float = ...,
+            name: str = ...,
+            provenance: Provenance = ...,
+            *,
+            lateral_um_N: float = ...,
+            axial_um_N: float = ...,
+        ) -> None: ...
 
     @classmethod
     def first(cls, cutter: Cutter) -> Self:

@@ -2,15 +2,17 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
 from robomill.compliance.spring import Spring, about_tool
-from robomill.cutting.tool import Cutter
+from robomill.cutting.tool import LONGEST, WIDEST, Cutter
+from robomill.errors import RobotError
 from robomill.provenance import Provenance
 from robomill.quantities import quantity
+from robomill.spelled import in_units
 from robomill.units import format_si, to_si
 
 #: Young's modulus of solid carbide, Pa.
@@ -20,6 +22,7 @@ FLUTED_CORE = 0.8
 CARBIDE = Provenance("assumed", "cantilever of solid carbide, E = 600 GPa, bending diameter 0.8 of the cutter's")
 
 
+@in_units(RobotError, "Tool bending")
 @dataclass(frozen=True)
 class ToolBending(Spring):
     """The cutter as a cantilever: delta = F L^3 / (3 E I) across its axis, rigid along it.
@@ -39,8 +42,8 @@ class ToolBending(Spring):
     follows_tooth: ClassVar[bool] = True
     rank: ClassVar[int] = 1
 
-    diameter: float = quantity("Diameter", "mm", above=0.0, boxed=False)
-    stick_out: float = quantity("Stick-out", "mm", above=0.0, digits=1)
+    diameter: float = quantity("Diameter", "mm", above=0.0, boxed=False, slip=WIDEST)
+    stick_out: float = quantity("Stick-out", "mm", above=0.0, digits=1, slip=LONGEST)
     E: float = quantity("Young's modulus", "N/mm2", default=E_CARBIDE, above=0.0, digits=0)
     core: float = quantity(
         "Bending Ø / Ø",
@@ -52,6 +55,22 @@ class ToolBending(Spring):
     )
     name: str = "tool bending"
     provenance: Provenance = CARBIDE
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            diameter: float = ...,
+            stick_out: float = ...,
+            E: float = ...,
+            core: float = ...,
+            name: str = ...,
+            provenance: Provenance = ...,
+            *,
+            diameter_mm: float = ...,
+            stick_out_mm: float = ...,
+            E_N_mm2: float = ...,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         super().__post_init__()

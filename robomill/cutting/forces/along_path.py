@@ -1,7 +1,7 @@
 """A force that turns with the path."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -9,11 +9,14 @@ from robomill.arrays import FloatArray
 from robomill.cutting.conditions import PLUNGE, CutConditions
 from robomill.cutting.force import BY_HAND, ForceModel, MeanForce
 from robomill.cutting.unjudged import Unjudged
+from robomill.errors import CuttingError
 from robomill.provenance import Provenance
 from robomill.quantities import quantity
+from robomill.spelled import in_units
 from robomill.units import format_short
 
 
+@in_units(CuttingError, "Path force")
 @dataclass(frozen=True)
 class PathForce(ForceModel):
     """Constant components that follow the path: feed, feed_normal (left of the feed), axial (+ out of the part), N.
@@ -35,6 +38,21 @@ class PathForce(ForceModel):
     axial: float = quantity("Axial", "N", default=0.0, digits=1)
     provenance: Provenance = BY_HAND
     notes: tuple[str, ...] = ()
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            feed: float = ...,
+            feed_normal: float = ...,
+            axial: float = ...,
+            provenance: Provenance = ...,
+            notes: tuple[str, ...] = ...,
+            *,
+            feed_N: float = ...,
+            feed_normal_N: float = ...,
+            axial_N: float = ...,
+        ) -> None: ...
 
     @classmethod
     def first(cls, mean: MeanForce) -> dict[str, Any]:

@@ -1,17 +1,21 @@
 """A force that stays as it is."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import BY_HAND, ForceModel, Frame, MeanForce
+from robomill.errors import CuttingError
 from robomill.provenance import Provenance
 from robomill.quantities import quantity
+from robomill.spelled import in_units
 
 
+@in_units(CuttingError, "Constant force")
 @dataclass(frozen=True, eq=False)
 class ConstantForce(ForceModel):
     """The paper's static force: one vector (3,) N in {M} wherever the tool cuts.
@@ -30,6 +34,17 @@ class ConstantForce(ForceModel):
     vector_M: FloatArray = quantity("F", "N", shape=(3,), axes="XYZ", digits=1, key="vector_N")
     provenance: Provenance = BY_HAND
     notes: tuple[str, ...] = ()
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            vector_M: ArrayLike = ...,
+            provenance: Provenance = ...,
+            notes: tuple[str, ...] = ...,
+            *,
+            vector_N: ArrayLike = ...,
+        ) -> None: ...
 
     @classmethod
     def first(cls, mean: MeanForce) -> dict[str, Any]:
