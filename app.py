@@ -6,12 +6,11 @@ import streamlit as st
 from streamlit.starlette import App
 
 from robomill import ui
-from robomill.simulation.stations import nearest_judged
 from robomill.ui import front
 from robomill.ui.arm import arm_at
 from robomill.ui.start import carved, story
 from robomill.ui.toolpath.program import take_program
-from robomill.ui.verdict import NOT_COUNTED
+from robomill.ui.verdict import NOT_COUNTED, decides_at
 from robomill.units import format_limit
 
 HEIGHT = 285
@@ -38,7 +37,7 @@ def start() -> None:
 
     left, middle, right = ui.split([1, 1.2, 0.8], "finished", gap="small")
     with left, st.container(border=True, height="stretch"):
-        index = nearest_judged(result, project.view.station * float(result.path.s[-1]))
+        index = decides_at(result)
         if index >= 0:
             arm_at(result, index, "start-arm", HEIGHT)
     with middle, st.container(border=True, height="stretch"):

@@ -1,4 +1,4 @@
-"""Improve: what would fix the project's cut? One remedy so far: a stiffer joint."""
+"""Improve: which joint is worth stiffening for the project's cut?"""
 
 import streamlit as st
 
@@ -15,18 +15,18 @@ if result is None or result.worst < 0 or result.setup.digest() != setup.digest()
     ui.headline(title, "There is no cut to improve yet.")
     ui.note("The cut has no result: mend what is named above, or bring the path within reach on the Toolpath page.")
     st.stop()
+changed = stiffen.changed(result)
 ranked = ui.attempt(stiffen.found, setup)
 if ranked is None:
-    ui.headline(title, "What would fix it?")
+    ui.headline(title, "Which joint is worth stiffening?", changed)
     stiffen.ask(setup)
     st.stop()
 
-ui.headline(title, stiffen.sentence(ranked, joints, unit))
+ui.headline(title, stiffen.sentence(ranked, joints, unit), changed)
 ui.tiles(stiffen.tiles(ranked, joints, unit))
 left, right = ui.split([1, 1.7], "page", gap="large")
 with left, st.container(border=True):
-    st.markdown("**What would fix it?**")
+    st.markdown("**Each joint alone twice as stiff**")
     stiffen.remedies(ranked, joints, unit)
 with right, st.container(border=True):
     stiffen.ranking(ranked, joints, unit, ui.dark())
-ui.note("Other remedies (compensating the path, placing the part elsewhere, another cut) are not computed yet.")

@@ -17,7 +17,7 @@ from robomill.ui.markup import Html
 from robomill.ui.pieces import Tile
 from robomill.units import format_beside, format_limit, format_share, format_si
 
-ENDS_AT = 1.25  # of the tolerance: where the gauge ends
+ENDS_AT, MOST = 1.25, 6.0  # of the tolerance: where the gauge ends, where it ends at most
 MILLING = "pages/6_Milling.py"
 
 
@@ -41,17 +41,18 @@ def show() -> None:
 
 
 def _to_worst(result: SimulationResult) -> None:
-    """The way to where the tip is off most."""
-    if result.worst < 0:
+    """The way to what the verdict rests on."""
+    worst = verdict.decides_at(result)
+    if worst < 0:
         return
     if st.button(
-        f"Go to worst: line {result.worst_block}",
+        f"Go to worst: line {result.path.block[worst]}",
         key="bar.worst",
         icon=":material/my_location:",
         type="tertiary",
         width="content",
         on_click=stand_at,
-        args=(result, result.worst),
+        args=(result, worst),
     ):
         st.switch_page(MILLING)
 
@@ -104,8 +105,8 @@ def _verdict(result: SimulationResult, tile: Tile, why: str) -> Html:
 
 
 def _force(result: SimulationResult) -> Html:
-    """How hard it pushes where the tip is off most, and who says so."""
-    setup, i = result.setup, result.worst
+    """How hard it pushes at what the verdict rests on, and who says so."""
+    setup, i = result.setup, verdict.decides_at(result)
     said = setup.provenance.get("force", setup.force.provenance)
     value = format_si(float(np.linalg.norm(result.F[i])), "N", 0) if i >= 0 else "–"
     inner = f"<small>Force {pieces.badge(said.kind)}</small><b>{html.escape(value)}</b>"
@@ -124,12 +125,13 @@ def _gauge(found: Verdict | None, unit: str) -> Html:
     value = format_beside(abs(rests.value), rests.tolerance, unit)
     hatched = ", not judged" if found.level == "unjudged" else ""
     said = f"{value} of {allowed} allowed, {format_share(found.share)}{hatched}"
-    at = 100 * min(found.share, ENDS_AT) / ENDS_AT
-    tight, full = (100 * each / ENDS_AT for each in (TIGHT_FROM, 1.0))
+    ends = min(max(ENDS_AT, 1.05 * found.share), MOST)
+    at = 100 * min(found.share, ends) / ends
+    tight, full = (100 * each / ends for each in (TIGHT_FROM, 1.0))
     return Html(
         f'<div class="rm-gauge" role="meter" aria-label="{html.escape(said, quote=True)}" '
-        f'title="{html.escape(said, quote=True)}" aria-valuemin="0" aria-valuemax="{100 * ENDS_AT:.0f}" '
-        f'aria-valuenow="{100 * min(found.share, ENDS_AT):.0f}">'
+        f'title="{html.escape(said, quote=True)}" aria-valuemin="0" aria-valuemax="{100 * ends:.0f}" '
+        f'aria-valuenow="{100 * min(found.share, ends):.0f}">'
         f'<div class="rm-track" style="--tight:{tight:.1f}%;--full:{full:.1f}%"><i style="width:{at:.1f}%"></i>'
         f'<b style="left:{at:.1f}%"></b></div>'
         f'<div class="rm-scale"><span>0</span><span style="left:{full:.1f}%">{html.escape(allowed)}</span></div></div>'

@@ -19,7 +19,7 @@ Value = TypeVar("Value")
 SHORT_S = 0.3  # a run that takes about so long is waited for
 PLACE, LAST, READING = "run", "run.last", "run.path"
 GREYED = """<style>[data-testid="stMain"] :is(.rm-tiles, .rm-title, .rm-lead, .rm-facts, .rm-matrix,
-[data-testid="stPlotlyChart"], [data-testid="stImage"], .st-key-milling-verdict) { opacity: .4; }</style>"""
+[data-testid="stPlotlyChart"], [data-testid="stImage"]) { opacity: .4; }</style>"""
 
 
 def result(setup: SimulationSetup) -> SimulationResult | None:

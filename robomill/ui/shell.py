@@ -102,13 +102,15 @@ def dark() -> bool:
 
 def _sidebar() -> None:
     held = session.store()
+    pieces.strong(held.project.setup.name)
     with st.container(horizontal=True, gap="small"):
         inputs.button("Undo", "undo", "undo", session.undo, disabled=not held.past and not held.older, width="stretch")
         inputs.button("Redo", "redo", "redo", session.redo, disabled=not held.future, width="stretch")
     _preset(held.project)
-    declared.seen("view.units")
-    declared.seen("view.joint_unit", inputs.LISTED)
     _files(held)
+    with st.expander("Units", key="units"):
+        declared.seen("view.units")
+        declared.seen("view.joint_unit", inputs.LISTED)
 
 
 def _preset(project: Project) -> None:

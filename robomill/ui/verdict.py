@@ -144,6 +144,12 @@ def open_question(result: SimulationResult) -> None:
         st.page_link("pages/5_Toolpath.py", label="Say what it cuts", icon=":material/help:")
 
 
+def decides_at(result: SimulationResult) -> int:
+    """The sample of what the verdict rests on; of the tip's largest deviation where nothing decides; -1 without one."""
+    rests = result.verdict.deciding
+    return result.worst if rests is None else rests[1].worst
+
+
 def previous(result: SimulationResult) -> SimulationResult | None:
     """The result before the last change of the project, if it is a different one of the same path."""
     old = session.before()
@@ -151,4 +157,5 @@ def previous(result: SimulationResult) -> SimulationResult | None:
         return None
     if digest(old.setup.source) != digest(result.setup.source):
         return None  # two different parts are not before and after
-    return cached.held(old.setup)
+    held = cached.held(old.setup)
+    return None if held is None or held.verdict.premise else held  # what rested on another cut was no answer

@@ -47,7 +47,8 @@ def place(page: Any) -> str:
 def test_the_sentence_leads_to_its_line_and_the_curve_can_be_clicked(milling: Any) -> None:
     page = milling
     choose(page, "Model", "mechanistic")
-    page.get_by_role("button", name="Where the tip is off most").first.click()
+    page.get_by_text("Where does the tip go?").first.click()
+    page.get_by_role("button", name="Go to worst").first.click()
     page.wait_for_selector("text=Program")
     page.wait_for_function(
         "() => [...document.querySelectorAll('.rm-lead')].some(e => e.innerText.includes('(50.00, 0.00, −2.00)'))",

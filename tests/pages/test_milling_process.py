@@ -190,13 +190,12 @@ def test_cutter_lengths_warn_and_may_be_left_out(app: AppTest) -> None:
 
 
 def test_worst_point_and_lines_move_the_scrubber(app: AppTest) -> None:
-    milling(app, "force")
+    milling(app, "tip")
     mechanistic(app)
     looked(app, station=0.2)
     assert "(−30.00, 0.00, −2.00)" in words(app)
-    app.button(key="milling.verdict").click().run()
+    app.button(key="bar.worst").click().run()
     assert not app.exception
-    assert store(app).values[QUESTION] == "tip"
     assert store(app).project.view.station == pytest.approx(1.0)
     assert "▸ 7" in words(app)
 

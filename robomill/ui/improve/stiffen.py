@@ -8,12 +8,13 @@ import streamlit as st
 from robomill.improve.stiffening import Stiffening, one_stiffer, stiffer_joints
 from robomill.provenance import named
 from robomill.simulation.estimate import run_seconds
+from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.verdict_words import Verdict
 from robomill.ui import cached, inputs, pieces, session
 from robomill.ui import job as jobs
 from robomill.ui.job import Job
-from robomill.ui.verdict import WORDS, share_words, tone
+from robomill.ui.verdict import WORDS, previous, share_words, tone
 from robomill.units import format_percent, format_share, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 
@@ -52,6 +53,15 @@ def ask(setup: SimulationSetup) -> None:
     rank = Job(partial(stiffer_joints, setup, cached.result), setup)
     inputs.button("Rank the joints", "improve.rank", "play_arrow", jobs.begin, KEY, rank, type="primary")
     pieces.note(f"Not computed yet: the cut is simulated {setup.robot.n} times more, once for each joint.")
+
+
+def changed(result: SimulationResult) -> str:
+    """What the last change of the robot has done to the verdict; "" where it was another change."""
+    old = previous(result)
+    if old is None or old.setup.replace(robot=result.setup.robot).digest() != result.setup.digest():
+        return ""
+    was, now = (format_share(each.verdict.share) for each in (old, result))
+    return f"With the last change of the robot {now} of the tolerance is used, {was} before it; undo leads back."
 
 
 def sentence(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> str:
@@ -147,9 +157,13 @@ def remedies(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> None:
         )
         with button:
             hint = "Halves this joint's compliance in the project; undo leads back."
-            inputs.button("Use it", f"improve.use.{joints[i]}", "check", _use, i, width="stretch", help=hint)
+            inputs.button(
+                f"Stiffen joint {joints[i]}", f"improve.use.{joints[i]}", "check", _use, i, width="stretch", help=hint
+            )
     if idle:
-        pieces.note(f"Joint{'s' * (len(idle) > 1)} {named(idle)}: twice as stiff, nothing that counts becomes smaller.")
+        pieces.note(
+            f"Joint{'s' * (len(idle) > 1)} {named(idle)}: twice as stiff, the error that decides stays as it is."
+        )
 
 
 def _use(joint: int) -> None:

@@ -155,8 +155,11 @@ def go(**steps: Any) -> None:
 
 
 def stand(robot: Robot) -> InHand:
-    """Where the lesson stands: the point in hand of the maps, tool vertical."""
+    """Where the lesson stands, tool vertical: at the project's cut, else at the point in hand of the maps."""
     view = dataclasses.replace(session.maps(), A=0.0, B=0.0, point=None)
+    cut = fields.cut_in_reach(robot, view)
+    if cut is not None:
+        return in_hand(robot, cut, 0.0, 0.0)
     box = fields.region(robot, view)
     known = fields.overview(robot, view, box)
     return in_hand(robot, default_point(view, box, known), 0.0, 0.0)

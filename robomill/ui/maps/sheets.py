@@ -129,7 +129,11 @@ def _nine(region: Region) -> None:
             scale = "main" if view.common or i == j else "cross"
             row.append(PlaneMap(f"C_{'xyz'[i]}{'xyz'[j]}", codes, unit, scale, notes))
         rows.append(row)
-    about = "One scale, centred on zero." if view.common else "Direct terms: dark is stiff. Cross terms: white is zero."
+    about = (
+        "One scale, centred on zero."
+        if view.common
+        else "Direct terms: dark is stiff. Cross terms: the middle of the colours is zero."
+    )
     draw(
         planes,
         rows,
@@ -169,7 +173,7 @@ def _shares(region: Region) -> None:
                 for number, codes in zip(robot.joint_numbers, found, strict=True)
             ]
         )
-    how = "from zero: dark is stiff" if kind == "direct" else "signed, white is zero"
+    how = "from zero: dark is stiff" if kind == "direct" else "signed, zero in the middle of the colours"
     draw(
         planes,
         rows,
@@ -237,7 +241,7 @@ def _compare(region: Region) -> None:
         found.rows,
         found.scales,
         "compare",
-        "The compared ones on one scale; the difference to the first on its own, where white is zero.",
+        "The compared ones on one scale; the difference to the first on its own: the middle of its colours is zero.",
         lambda: found.columns(planes),
     )
     pieces.facts(found.words(planes))

@@ -67,7 +67,9 @@ def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceMap, unit
         pieces.Tile(
             "Distance to singularity",
             least,
-            "least |det(J)|: " + ("a singularity is near" if singular else "none in this region") if len(det) else "",
+            "least |det(J)|; " + ("a singularity is near" if singular else "no singularity in this region")
+            if len(det)
+            else "",
         ),
         pieces.Tile("Room to joint limits", nearest, "at the worst cell; 100 % is mid-range"),
         pieces.Tile("Largest box in reach", size, note, kind="computed"),
@@ -85,9 +87,9 @@ def _against(box: ReachBox, robot: Robot, unit: str) -> str:
         return "in the plane of the arm"
     ratio = against_paper(box)
     turned = box.holds(PAPER_BOX_SIZE[[1, 0, 2]])
-    words = "holds" if ratio["holds_paper_box"] else "turned by 90° holds" if turned else "does not hold"
+    words = "has room" if ratio["holds_paper_box"] else "turned by 90° has room" if turned else "has no room"
     times = format_number(ratio["volume_ratio"], 1)
-    return f"{words} the reference box {box_size(PAPER_BOX_SIZE, unit)} · {times} × its volume"
+    return f"{words} for a box of the reference's size, {box_size(PAPER_BOX_SIZE, unit)} · {times} × its volume"
 
 
 def sentence(robot: Robot, known: ComplianceMap | None) -> str:
@@ -193,7 +195,7 @@ def _board(planes: Planes, ats: list[float], settle: Callable[[list[float]], Non
     point = region.view.point
     selected = None if point is None else (float(point[0]), float(point[1]), float(point[2]))
     board(planes, sheet, f"workspace-{what.name}" + "-pair" * (len(ats) > 1), ats, settle, selected)
-    dark = "Dark is able, bright is near what the arm cannot do. " if scale.kind == "able" else ""
+    dark = "Dark: far from a limit of the arm. Bright: near one. " if scale.kind == "able" else ""
     beneath(
         f"{dark}The colours stay while the plane moves.",
         lambda: _columns(planes.known(at=ats[0]), what),

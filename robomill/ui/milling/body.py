@@ -12,7 +12,6 @@ from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
 from robomill.ui import cached, inputs, pieces, running, session
 from robomill.ui import evidence as evidence_panel
 from robomill.ui.arm import arm_at
-from robomill.ui.bar import stand_at
 from robomill.ui.milling import cut as cut_panel
 from robomill.ui.milling import film, force_view, live_cut
 from robomill.ui.milling import force as force_panel
@@ -57,14 +56,6 @@ def _spin_words(result: SimulationResult, unit: str) -> str:
     return f"{format_many(ends.range, unit, between=' to ', with_unit=False)}: spin about the tool"
 
 
-def to_worst(result: SimulationResult) -> None:
-    """The way to where the tip is off most."""
-    if result.worst >= 0:
-        how = {"type": "tertiary", "help": "Code line, arm, force and section there"}
-        label = f"Where the tip is off most: line {result.worst_block}"
-        inputs.button(label, "milling.verdict", "my_location", _land, result, **how)
-
-
 def _mean_and_peak(result: SimulationResult) -> str:
     """Which force the verdict is of, where a tooth is known to push harder."""
     peak, i = spread_of(result)[1], result.worst
@@ -72,11 +63,6 @@ def _mean_and_peak(result: SimulationResult) -> str:
         return ""
     mean, most = (format_si(float(np.linalg.norm(F[i])), "N", 0) for F in (result.force_components, peak.at_peak))
     return f"The verdict is of the mean force, {mean} at its worst; a tooth pushes with up to {most} there. "
-
-
-def _land(result: SimulationResult) -> None:
-    stand_at(result, result.worst)
-    session.keep(QUESTION, "tip")
 
 
 def inputs_column(result: SimulationResult | None) -> None:
@@ -141,9 +127,7 @@ def picture_place() -> Any:
 
 def _numbers(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
     """What holds at the position, and the verdict's tiles."""
-    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
-        linked.where(result, i, spread)
-        to_worst(result)
+    linked.where(result, i, spread)
     pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
     pieces.tiles(tiles(result, verdict_tiles(result, session.project().view.length)))
 

@@ -12,7 +12,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import largest_deviations, nearest_judged
 from robomill.ui import pieces, session, uncertainty
-from robomill.units import format_many, format_si, from_si
+from robomill.units import format_many, from_si
 from robomill.viz.along import add_picks, add_point, at_feed, shade
 from robomill.viz.deviation import components_figure
 from robomill.viz.theme import palette, rgba
@@ -31,7 +31,8 @@ def index(result: SimulationResult) -> int:
 
 
 def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
-    """One line: program line, place, deviation, force."""
+    """One line beneath the scrubber, which says how far the tip is off there: program line, tool, place, and between
+    which ends the alloy's rows lie."""
     unit = session.project().view.length
     if i < 0:
         pieces.note("Nothing of this cut can be reached.")
@@ -40,9 +41,9 @@ def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
     words = [
         f"<b>Line {result.path.block[i]}</b>",
         f"at ({point}) {unit} in {{W}}",
-        f"tip off by <b>{format_si(float(result.deviation[i]), unit)}</b>{_range(spread, i, unit)}",
-        f"force {format_si(float(np.linalg.norm(result.F[i])), 'N', 0)}",
     ]
+    if between := _range(spread, i, unit):
+        words.append(f"tip off by {between}")
     if result.setup.tools:
         words.insert(1, html.escape(result.setup.tools.called(int(result.path.tool[i]))))
     st.html(f'<p class="rm-lead" style="font-size:.95rem">{" · ".join(words)}</p>')
@@ -52,7 +53,7 @@ def _range(spread: AlloySpread | None, i: int, unit: str) -> str:
     if spread is None or len(spread.titles) < 2:
         return ""
     low, high = float(spread.deviation[:, i].min()), float(spread.deviation[:, i].max())
-    return f" ({format_many((low, high), unit, between=' to ', with_unit=False)} by alloy row)"
+    return f"{format_many((low, high), unit, between=' to ')} by alloy row"
 
 
 def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bool) -> None:

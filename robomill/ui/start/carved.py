@@ -54,7 +54,10 @@ def strip(unit: str) -> None:
                 st.image(str(row.picture), alt=alt, width="stretch")
                 inputs.button(title, f"start.open.{row.sample}", "", session.open_preset, row.sample, type="tertiary")
                 pieces.note(off + (", out of tolerance" if row.level == "out" else ""))
-    pieces.note(f"Six programs of our own as this robot would mill them: off, of the tolerance. {_shown(times)}")
+    pieces.note(
+        "Six example programs as this robot would mill them; under each its largest surface error, of the tolerance "
+        f"allowed. {_shown(times)}"
+    )
 
 
 def _shown(times: float) -> str:

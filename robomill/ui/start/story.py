@@ -15,7 +15,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
 from robomill.ui import cached, evidence, inputs, pieces, rendered, session
 from robomill.ui.project import Project, View
-from robomill.ui.verdict import verdict_sentence
+from robomill.ui.verdict import decides_at, verdict_sentence
 from robomill.units import format_count, format_percent, format_si, format_times
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.surfaces import surface_figure
@@ -37,7 +37,7 @@ def purpose() -> None:
 
 def cause(result: SimulationResult, unit: str) -> str:
     """One line: the force, the joints that give most, and where the tip goes."""
-    i = result.worst
+    i = decides_at(result)
     if i < 0:
         return ""
     size = np.linalg.norm(result.delta_joint[i], axis=-1)
@@ -52,7 +52,8 @@ def cause(result: SimulationResult, unit: str) -> str:
         for a, v in zip("XYZ", result.delta[i])
         if abs(v) > 0.02 * np.linalg.norm(result.delta[i])
     )
-    return f"{force} on the tool moves the tip by {moved}. Most of it comes from {blame}."
+    most = "It" if sum(share[j] for j in main) > 0.98 else "Most of it"
+    return f"{force} on the tool moves the tip by {moved}. {most} comes from {blame}."
 
 
 def groove_picture(result: SimulationResult, view: View, height: int, dark: bool) -> None:
@@ -75,8 +76,9 @@ def groove_picture(result: SimulationResult, view: View, height: int, dark: bool
             pieces.figure(figure, "start-surface", alt=alt)
 
     rendered.picture("start.groove", (setup.digest(), times, "start", dark, size, view.units), scene, alt, turnable)
+    what = "groove" if result.path.on_one_line else "part"
     pieces.note(
-        f"The groove as milled, displacement shown {format_times(times, 6)}. Colours end at the tolerance, "
+        f"The {what} as milled, displacement shown {format_times(times, 6)}. Colours end at the tolerance, "
         f"± {format_si(setup.tolerance, view.of('um'), 0)}."
     )
 

@@ -104,7 +104,11 @@ def tiles(
     alarming = sum(f.count for f in path.findings if f.level in ("error", "warning", "suspicious"))
     count = sum(f.count for f in path.findings)
     words = finding_words(worst_first(path.findings)[0]) if count else "every word understood"
-    found.append(pieces.Tile("Program warnings", f"{count:,}", words, tone="tight" if alarming else ""))
+    crashes = () if result is None else (*result.rapids, *result.early_rapids)
+    if crashes:
+        count, words = count + len(crashes), f"a rapid runs through material (line {crashes[0]:,})"
+    tone = "tight" if alarming or crashes else ""
+    found.append(pieces.Tile("Program warnings", f"{count:,}", words, tone=tone))
     pieces.tiles(found)
 
 
