@@ -27,12 +27,12 @@ _LOW = re.compile(r"<sub>(.*?)</sub>")
 def png(chart: Chart, captions: Sequence[str] = ()) -> bytes:
     """The chart with ``captions`` above it. Raises MissingExtraError without matplotlib."""
     with needed("A picture as PNG"):
-        from matplotlib.figure import Figure
+        from matplotlib import figure
 
     named = [trace["name"] for trace in chart.traces if trace.get("name") and trace.get("showlegend", True)]
     over, inner = 12 + ROW * (len(captions) + bool(named)), int(chart.layout["height"])
     height = over + inner + UNDER
-    fig = Figure(figsize=(WIDTH / 100, height / 100), dpi=DPI, facecolor="white")
+    fig = figure.Figure(figsize=(WIDTH / 100, height / 100), dpi=DPI, facecolor="white")
     box = (LEFT / WIDTH, UNDER / height, (WIDTH - LEFT - RIGHT) / WIDTH, inner / height)
     ax = fig.add_axes(box)
     for order, trace in enumerate(chart.traces):

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from robomill.cli import main, parser
+from robomill.cli import main
+from robomill.cli.parser import make_parser
 from robomill.extras import BROUGHT_BY
 from robomill.io.samples import samples_dir
 
@@ -28,6 +29,9 @@ WORKS = {
     "map": (*MAP, "--out", "map.csv"),
     "identify": ("identify", "slavkovic_5r", str(TESTS / "one_joint_at_a_time.csv")),
     "simulate": ("simulate", str(SLOT / "setup.toml"), "--out", "result"),
+    "samples": ("samples",),
+    "reproduce": ("reproduce",),
+    "completion": ("completion", "bash"),
 }
 NEEDS = {
     "serve": (("serve",), "The app needs streamlit", "app"),
@@ -45,7 +49,7 @@ def _core_only(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 
 def test_every_verb_is_tried_here() -> None:
-    (verbs,) = (action for action in parser()._actions if isinstance(action, argparse._SubParsersAction))
+    (verbs,) = (action for action in make_parser()._actions if isinstance(action, argparse._SubParsersAction))
     assert set(verbs.choices) == {*WORKS, *NEEDS} - {name for name in NEEDS if name not in verbs.choices}
 
 
