@@ -100,3 +100,22 @@ def test_numbers_are_converted_in_lists_arrays_and_tables() -> None:
     assert converted(8, "mm", RobomillError, "it") == 0.008
     assert converted({"wall": 1.0}, "mm", RobomillError, "it") == {"wall": 1e-3}
     assert converted([1, 2], "mm", RobomillError, "it").tolist() == [1e-3, 2e-3]
+
+
+def test_springs_sketches_lines_and_forces_go_by_either_name() -> None:
+    assert rm.ToolBending(diameter_mm=8, stick_out_mm=32) == rm.ToolBending(0.008, 0.032)
+    assert rm.SpindleSpring(lateral_um_N=0.05) == rm.SpindleSpring(0.05 * 1e-6)
+    assert rm.JointBending(2, C_x_1e_7_rad_per_Nm=3.0).C_x == 3.0 * 1e-7
+    assert rm.PathForce(feed_normal_N=100) == rm.PathForce(feed_normal=100)
+    shape = rm.Element("line", points_mm=[[0, 0], [50, 0]], depth_mm=2, feed_mm_min=1800)
+    assert (shape.points[1, 0], shape.depth, shape.v_f) == (0.05, 0.002, 0.03)
+    lines = rm.LinesSource(start_mm=[[0, 0, -2]], end_mm=[[50, 0, -2]], feed_mm_min=[1800])
+    assert lines.read().p[-1].tolist() == [0.05, 0.0, -0.002]
+    for slip in (
+        lambda: rm.ToolBending(8, 32),
+        lambda: rm.SpindleSpring(0.05),
+        lambda: rm.Element("line", [[0, 0], [50, 0]], 0.002, 0.03),
+        lambda: rm.LinesSource([[0, 0, -2]], [[50, 0, -2]], [0.03]),
+    ):
+        with pytest.raises(RobomillError, match="is meant, give"):
+            slip()
