@@ -23,6 +23,7 @@ from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
 from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
+from robomill.simulation.leaning import leaning
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
 from robomill.simulation.result import SimulationResult
@@ -89,6 +90,7 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros((len(path), 3))
     bent = Bent(setup, path, told_conditions(setup, path, ik.reached), C, feed_directions(setup, path), offset)
     conditions, F, unjudged, coupling = forces(bent)
+    unjudged += leaning(path, ik)
     checkpoint(0.0, "Deflection")
     return SimulationResult(
         setup=setup,
