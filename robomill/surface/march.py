@@ -18,10 +18,10 @@ from robomill.lazy import cached_property
 from robomill.progress import checkpoint
 from robomill.surface.passes import STRAIGHT, bends, check_rise, leaning, moves_at_feed, moves_of, tool_axes
 from robomill.surface.raster import relief_of, stock_layers
-from robomill.surface.stock import Cells, Stock, stock_grid
+from robomill.surface.stock import Cells, Stock, cells_about, stock_grid
 from robomill.toolpath.sampling import CORNER
 
-AT_ONCE = (256, 8192)  # steps that are marched together: at least, where none goes on after them, and at most
+AT_ONCE = (2048, 8192)  # steps that are marched together: at least, where none goes on after them, and at most
 JUST = 1e-6  # m before the end of a move, or after its start: there the tool has not only touched what stands there
 SPARE_LAYERS = (2, 6)  # that leaning cutters may open in a column, beside those of the stock; more where needed
 
@@ -147,16 +147,25 @@ class March:
         """The state of ``meet`` and ``cut``."""
         from robomill.surface.material_kernels import AXIS, ENDS
 
-        state = self._state(np.ones(len(self.steps), dtype=bool))
+        state = self._state(np.ones(len(self.steps), dtype=bool), stock_grid(self.stock, self.cell))
         state[0].runs[:, ENDS:AXIS] = np.nan  # where a step goes is not known before
         return state
 
-    def _state(self, first: BoolArray, spare: int = SPARE_LAYERS[-1]) -> tuple[Any, Any]:
-        """The stock as it stands, and room for what a step meets: arrays that the kernels write. ``first`` (n,) bool:
-        the steps that begin a run; ``spare``: layers that leaning cutters may open in a column."""
+    @cached_property
+    def _reached(self) -> Cells:
+        """The cells of the stock that the path can meet: of upright tools those near their tips."""
+        cells = stock_grid(self.stock, self.cell)
+        if len(self.steps) == 0 or leaning(np.concatenate(self._axes)).any():
+            return cells
+        tips = np.vstack([self._ends[:, :2], self._ends[:, 3:5]])
+        R = max(cutter.radius for cutter in self.tooling.cutters)
+        return cells_about(cells, tips.min(axis=0) - R, tips.max(axis=0) + R)
+
+    def _state(self, first: BoolArray, cells: Cells, spare: int = SPARE_LAYERS[-1]) -> tuple[Any, Any]:
+        """The stock as it stands in some cells, and room for what a step meets: arrays that the kernels write.
+        ``first`` (n,) bool: the steps that begin a run; ``spare``: layers that leaning cutters may open in a column."""
         from robomill.surface.material_kernels import AXIS, ENDS, MOVE, RUN, SHAPE, Bounds, Dexels, World
 
-        cells = stock_grid(self.stock, self.cell)
         heights, facets = stock_layers(self.stock, cells, spare if leaning(np.concatenate(self._axes)).any() else 0)
         names = np.zeros((*heights.shape[:2], heights.shape[2] + 1), dtype=np.int32)  # all ``NOBODY``'s
         lost, grid = np.zeros(1, dtype=np.int64), (cells.x0, cells.y0, cells.dx, cells.dy)
@@ -224,7 +233,7 @@ class March:
         """Rows and sectors with so many layers to spare in a column, and whether they were not enough."""
         from robomill.surface.division_kernels import REST
 
-        state, begins = self._state(self._begins, spare), self._begins
+        state, begins = self._state(self._begins, self._reached, spare), self._begins
         rows = np.zeros((len(self.points), MOMENTS * len(self.exponents) + REST))
         sectors = np.zeros((len(self.points), len(state[1].sectors), 4), dtype=np.float16)
         run, first = np.cumsum(begins, dtype=np.int64), 0

@@ -60,6 +60,21 @@ class Walk(NamedTuple):
     rim: float
 
 
+class Ring(NamedTuple):
+    """A circle about the axis over the cells: place (u, v) of its middle in cells, as from the corner of the first one,
+    and height, m; then how far it reaches along each ahead (the sine of the angle) and to the left (its cosine)."""
+
+    u: float
+    ahead_u: float
+    left_u: float
+    v: float
+    ahead_v: float
+    left_v: float
+    z: float
+    ahead_z: float
+    left_z: float
+
+
 @part
 def is_plain(world: World, step: Step) -> bool:
     """Whether the material ends but once over every place, and the tool stands upright in it."""
@@ -102,22 +117,43 @@ def pace(angle: float) -> Pace:
 
 
 @part
-def seen_at(world: World, step: Step, walk: Walk, place: Point) -> tuple[float, float]:
-    """What a circle meets at a place: how high above it material stands, m, or whether it does (1 or 0), by the column
-    there, or exact where a side passes; and whether one does (1 or 0)."""
-    dexels, (x, y, z) = world.dexels, place
-    i = math.floor((x - dexels.x0) * (1.0 / dexels.dx) + 0.5)
-    j = math.floor((y - dexels.y0) * (1.0 / dexels.dy) + 0.5)
+def ring_of(dexels: Dexels, step: Step, circle: FloatArray) -> Ring:
+    """A circle about the axis as it passes over the cells."""
+    r, t, per_x, per_y = circle[RADIUS], circle[HEIGHT], 1.0 / dexels.dx, 1.0 / dexels.dy
+    return Ring(
+        (step.x + t * step.kx - dexels.x0) * per_x + 0.5,
+        r * step.fx * per_x,
+        r * step.lx * per_x,
+        (step.y + t * step.ky - dexels.y0) * per_y + 0.5,
+        r * step.fy * per_y,
+        r * step.ly * per_y,
+        step.z + t * step.kz,
+        r * step.fz,
+        r * step.lz,
+    )
+
+
+@part
+def seen_at(
+    world: World, step: Step, walk: Walk, seen: tuple[FloatArray, Ring], sine: float, cosine: float
+) -> tuple[float, float]:
+    """What a circle, ``seen`` with its ring, meets at an angle: how high above it material stands, m, or whether it
+    does (1 or 0), by the column there, or exact where a side passes; and whether one does (1 or 0)."""
+    dexels, (circle, ring) = world.dexels, seen
+    i = math.floor(ring.u + sine * ring.ahead_u + cosine * ring.left_u)
+    j = math.floor(ring.v + sine * ring.ahead_v + cosine * ring.left_v)
     if i < 0 or j < 0 or i >= dexels.heights.shape[0] or j >= dexels.heights.shape[1]:
         return 0.0, 0.0
-    near = dexels.names[i, j, 0] != NOBODY
-    by_side = 1.0 if near else 0.0
+    near, z = dexels.names[i, j, 0] != NOBODY, ring.z + sine * ring.ahead_z + cosine * ring.left_z
     if walk.plain:
-        return max((top_over(world, x, y) if near else dexels.heights[i, j, 0]) - z, 0.0), by_side
+        if not near:
+            return max(dexels.heights[i, j, 0] - z, 0.0), 0.0
+        x, y, _ = place_on(step, circle, sine, cosine)
+        return max(top_over(world, x, y) - z, 0.0), 1.0
     deep = 0.0 if near else in_column(dexels, i, j, z)
     if abs(deep) <= dexels.slack or z < world.bounds.z_low:
-        deep = standing(world, place, step.run)
-    return 1.0 if deep > 0.0 else 0.0, by_side
+        deep = standing(world, place_on(step, circle, sine, cosine), step.run)
+    return 1.0 if deep > 0.0 else 0.0, 1.0 if near else 0.0
 
 
 @called
@@ -127,6 +163,7 @@ def look_about(world: World, step: Step, walk: Walk, rows: FloatArray, halves: i
     relief = world.relief
     for n in range(walk.used):
         circle = walk.circles[n]
+        seen_as = circle, ring_of(world.dexels, step, circle)
         for half in range(halves):
             first = half * ANGLES
             a = place_on(step, circle, rows[first, SINE], rows[first, COSINE])
@@ -154,8 +191,8 @@ def look_about(world: World, step: Step, walk: Walk, rows: FloatArray, halves: i
         for row in range(ANGLES * halves):
             circle[NEAR + row] = 0.0
             if circle[SEEN + row] == UNSEEN:
-                place = place_on(step, circle, rows[row, SINE], rows[row, COSINE])
-                circle[SEEN + row], circle[NEAR + row] = seen_at(world, step, walk, place)
+                sine, cosine = rows[row, SINE], rows[row, COSINE]
+                circle[SEEN + row], circle[NEAR + row] = seen_at(world, step, walk, seen_as, sine, cosine)
 
 
 @part
@@ -199,11 +236,11 @@ def first_change(world: World, step: Step, walk: Walk, n: int, gap: tuple[FloatA
     there is none), and where the gap ends."""
     row, left, right, until, end = gap
     circle = walk.circles[n]
-    phi, sine, cosine = row[PHI], row[SINE], row[COSINE]
+    seen, phi, sine, cosine = (circle, ring_of(world.dexels, step, circle)), row[PHI], row[SINE], row[COSINE]
     if left < 2 * ANGLES:
         low, near = circle[SEEN + left], circle[NEAR + left]
     else:
-        low, near = seen_at(world, step, walk, place_on(step, circle, sine, cosine))
+        low, near = seen_at(world, step, walk, seen, sine, cosine)
     high, to_side, fine = circle[SEEN + right], circle[NEAR + right] > 0.0, near > 0.0
     if not walk.plain and low != high:  # it stands or does not: nothing is otherwise than both
         return until
@@ -216,7 +253,7 @@ def first_change(world: World, step: Step, walk: Walk, n: int, gap: tuple[FloatA
         if there >= until:
             return until
         on_sine, on_cosine = sine * turn[2] + cosine * turn[1], cosine * turn[2] - sine * turn[1]
-        top, near = seen_at(world, step, walk, place_on(step, circle, on_sine, on_cosine))
+        top, near = seen_at(world, step, walk, seen, on_sine, on_cosine)
         if near > 0.0 and not fine:
             fine = True
             continue

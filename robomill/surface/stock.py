@@ -152,6 +152,19 @@ def stock_grid(stock: Stock, cell: float, budget: int | None = None) -> Cells:
     return Cells(nx, ny, float(stock.lower[0]) + 0.5 * dx, float(stock.lower[1]) + 0.5 * dy, dx, dy)
 
 
+def cells_about(cells: Cells, low: FloatArray, high: FloatArray) -> Cells:
+    """Those of some cells that lie between two corners in plan, low and high (2,) m, and two more on every side; at
+    least one."""
+    first, last = (
+        np.floor((corner - (cells.x0, cells.y0)) / (cells.dx, cells.dy)).astype(int) + more
+        for corner, more in ((low, -1), (high, 2))
+    )
+    i, j = (int(n) for n in np.clip(first, 0, (cells.nx - 1, cells.ny - 1)))
+    a, b = (int(n) for n in np.clip(last, (i, j), (cells.nx - 1, cells.ny - 1)))
+    x0, y0 = cells.x0 + i * cells.dx, cells.y0 + j * cells.dy
+    return Cells(a - i + 1, b - j + 1, x0, y0, cells.dx, cells.dy)
+
+
 def fitting_cell(length: float, width: float, budget: int) -> float:
     """The smallest cell (m), rounded up to 0.1 um, whose cells over length x width stay within ``budget``."""
     cell = np.ceil(np.sqrt(length * width / budget) * 1e7) / 1e7
