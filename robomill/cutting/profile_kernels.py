@@ -85,7 +85,10 @@ def profile(shape: Shape, r: float) -> float:
 
 @part
 def profile_within(shape: Shape, square: float) -> float:
-    """Height of the cutting surface above the tip where the squared radius is so much, m; a ball's without its root."""
+    """Height of the cutting surface above the tip where the squared radius is so much, m; a ball's and that of a flat
+    end without its root."""
+    if square <= shape.r0 * shape.r0:
+        return 0.0
     if shape.kind == BALL:
         return shape.rc - math.sqrt(max(shape.rc**2 - square, 0.0))
     return profile(shape, math.sqrt(square))

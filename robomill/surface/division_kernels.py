@@ -28,16 +28,15 @@ from robomill.surface.engagement_kernels import (
     measure,
 )
 from robomill.surface.material_kernels import World
-from robomill.surface.rib_kernels import Walk, alternates, fine_pitch, look_about, next_change, walk_on
+from robomill.surface.rib_kernels import Walk, aim_at_changes, alternates, fine_pitch, look_about, walk_on
 from robomill.surface.step_kernels import Step, ask_for_rim
-from robomill.surface.turn_kernels import ANGLES, COSINE, HALF, PHI, SINE, gap_end, jumps, panel_end
+from robomill.surface.turn_kernels import ANGLES, COSINE, HALF, HIDDEN, PHI, SINE, aim, gap_end, jumps, panel_end
 
 HALVINGS = 8  # of the angle across which the engaged length jumps
 # of a part beside its moments: hull of its angles, mean height along the axis over them, width, highest place, size and
 # how many gaps between layers of material were closed before
 PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, LOST, REST = range(8)
 CLOSE = 0.04  # rad: from angle to angle where there are ribs
-HIDDEN = 10 * PANELS  # looks at such, at most
 GAPS = 6 * PANELS + HIDDEN
 ROWS = 2 * ANGLES + HIDDEN + GAPS * HALVINGS  # angles looked at in a turn, at most
 
@@ -51,14 +50,12 @@ def note(pieces: FloatArray, count: int, row: float, middle: float, width: float
 
 
 @part
-def divide(
-    room: Room, world: World, shape: Shape, step: Step, walk: Walk, change: tuple[int, float, int]
-) -> tuple[int, int, int]:
+def divide(room: Room, world: World, shape: Shape, step: Step, angles: tuple[int, int]) -> tuple[int, int, int]:
     """Divide the turn into pieces that are smooth and gaps across which the engaged length jumps: how many of both, and
-    how many angles between were looked at for ribs and gaps of material that its panels pass over. ``change``: the
-    first such (see ``next_change``), and how many gaps there are between the angles."""
-    rows, count, gaps, looked = room.rows, 0, 0, 0
-    changed, phi, every = change
+    how many rows of angles there are. ``angles``: how many gaps between the angles of the turn, and how many more
+    angles were measured between for ribs and gaps of material that its panels pass over."""
+    rows, (every, hidden), count, gaps = room.rows, angles, 0, 0
+    between, last = 2 * ANGLES, 2 * ANGLES + hidden
     for panel in range(every // 3):
         begun, start, end = gaps, panel_end(panel), panel_end(panel + 1)
         first, rough = gap_end(3 * panel) - 1, room.fine[0] > 0.0
@@ -66,15 +63,11 @@ def divide(
             left, right = first + n, first + n + 1
             a = start if n == 0 else rows[left, PHI]
             b = end if n == 2 else rows[right, PHI]
-            while changed == 3 * panel + n and looked < HIDDEN:
-                between = 2 * ANGLES + looked
-                aim(room.rows[between], phi)
-                measure(room, world, shape, step, between, between + 1)
-                looked += 1
+            while between < last and rows[between, PHI] < rows[right, PHI]:
+                phi = rows[between, PHI]
                 rough = rough or jumps(rows[left, LENGTH], rows[between, LENGTH])
                 gaps = note_gap(room, gaps, (left, between), (a, phi), (panel, start, end))
-                left, a = between, phi
-                changed, phi = next_change(world, step, walk, rows, (changed, between, every))
+                left, a, between = between, phi, between + 1
             rough = rough or jumps(rows[left, LENGTH], rows[right, LENGTH])
             gaps = note_gap(room, gaps, (left, right), (a, b), (panel, start, end))
         for n in range(first, first + 4, 3):
@@ -85,7 +78,7 @@ def divide(
             for n in range(1, 3):
                 middle = rows[first + n, PHI]
                 count = note(room.pieces, count, first + n, middle, 0.5 * (end - start), 4 * panel + 3 * (n - 1))
-    return count, gaps, looked
+    return count, gaps, last
 
 
 @part
@@ -100,16 +93,10 @@ def note_gap(
 
 
 @part
-def aim(row: FloatArray, phi: float) -> None:
-    """A row for what is to be measured at an angle."""
-    row[PHI], row[SINE], row[COSINE] = phi, math.sin(phi), math.cos(phi)
-
-
-@part
 def follow_jumps(room: Room, world: World, shape: Shape, step: Step, counts: tuple[int, int, int]) -> int:
-    """Halve the gaps between angles while the engaged length jumps across them; returns how many pieces there are."""
-    rows, (count, gaps, hidden) = room.rows, counts
-    first = 2 * ANGLES + hidden
+    """Halve the gaps between angles while the engaged length jumps across them; returns how many pieces there are.
+    ``counts``: of pieces, gaps and rows so far."""
+    rows, (count, gaps, first) = room.rows, counts
     for halving in range(HALVINGS + 1):
         kept = 0
         for n in range(gaps):
@@ -191,21 +178,24 @@ def add_pieces(room: Room, count: int, total: FloatArray) -> None:
 
 
 @part
-def look_round(room: Room, world: World, shape: Shape, step: Step, halves: int) -> tuple[tuple[int, float, int], Walk]:
-    """Measure the angles of the turn, more finely along the profile where ribs or gaps of material are passed over: the
-    first of them, with the number of gaps between the angles, and the circles they are looked for on."""
+def look_round(room: Room, world: World, shape: Shape, step: Step, halves: int) -> tuple[int, int]:
+    """Measure the angles of the turn, and those between at which ribs or gaps of material are passed over, more finely
+    along the profile where there are any: how many gaps between the angles of the turn, and how many more angles."""
     ask_for_rim(world.dexels, step, shape.R, halves)
-    walk, every = walk_on(world, shape, step, room.stretches, room.circles), HALF * halves
-    room.fine[0], changed, phi = 0.0, every, 0.0
+    rows, every, hidden = room.rows, HALF * halves, 0
+    walk = walk_on(world, shape, step, room.stretches, room.circles)
+    room.fine[0] = 0.0
     if walk.used > 0:
-        look_about(world, step, walk, room.rows, halves)
-        changed, phi = next_change(world, step, walk, room.rows, (0, 0, every))
-        if not walk.plain and (changed < every or alternates(world, step, walk, room.rows, ANGLES * halves)):
+        look_about(world, step, walk, rows, halves)
+        hidden = aim_at_changes(world, step, walk, rows, every, HIDDEN if walk.plain else 1)
+        if not walk.plain and (hidden > 0 or alternates(world, step, walk, rows, ANGLES * halves)):
             room.fine[0] = fine_pitch(world)
             walk = Walk(walk.circles, walk.used, walk.coarse, walk.fine, walk.plain, CLOSE, walk.rim)
-            changed, phi = next_change(world, step, walk, room.rows, (0, 0, every))
+            hidden = aim_at_changes(world, step, walk, rows, every, HIDDEN)
     measure(room, world, shape, step, 0, ANGLES * halves)
-    return (changed, phi, every), walk
+    if hidden > 0:
+        measure(room, world, shape, step, 2 * ANGLES, 2 * ANGLES + hidden)
+    return every, hidden
 
 
 @part
@@ -217,8 +207,8 @@ def add_part(room: Room, world: World, shape: Shape, step: Step, total: FloatArr
     room.sectors[:] = 0.0
     lay_out(room, shape, step, world)
     halves = 2 if step.along < -FACING else 1
-    change, walk = look_round(room, world, shape, step, halves)
-    count = follow_jumps(room, world, shape, step, divide(room, world, shape, step, walk, change))
+    angles = look_round(room, world, shape, step, halves)
+    count = follow_jumps(room, world, shape, step, divide(room, world, shape, step, angles))
     add_pieces(room, count, total)
     for n in range(len(room.sectors)):
         width, height, low, high, face = room.sectors[n if room.sectors[n, 0] > 0.0 else n ^ 1]

@@ -26,7 +26,7 @@ from robomill.surface.material_kernels import (
 )
 from robomill.surface.relief_kernels import UNKNOWN, told, tops_between
 from robomill.surface.step_kernels import Step
-from robomill.surface.turn_kernels import ANGLES, COSINE, HALF, PHI, SINE, gap_end, jumps
+from robomill.surface.turn_kernels import ANGLES, COSINE, HALF, HIDDEN, PHI, SINE, aim, gap_end, jumps
 
 PITCH = 0.7  # cells: so far apart ribs and gaps of material are looked for
 THIN, LEAST = 25e-6, 1.0 / 16.0  # m, cells: so far apart where a side passes, a quarter of a cell at most
@@ -207,6 +207,20 @@ def place_on(step: Step, circle: FloatArray, sine: float, cosine: float) -> Poin
 
 
 @called
+def aim_at_changes(world: World, step: Step, walk: Walk, rows: FloatArray, gaps: int, most: int) -> int:
+    """Aim rows, those for what is hidden, at the angles at which material stands otherwise on a circle than at the
+    angles looked at about them, one after the other through the ``gaps``; ``most`` of them, or all. How many it are."""
+    gap, row, count = 0, 0, 0
+    while count < min(most, HIDDEN):
+        gap, phi = next_change(world, step, walk, rows, (gap, row, gaps))
+        if gap == gaps:
+            break
+        row, count = 2 * ANGLES + count, count + 1
+        aim(rows[row], phi)
+    return count
+
+
+@part
 def next_change(
     world: World, step: Step, walk: Walk, rows: FloatArray, since: tuple[int, int, int]
 ) -> tuple[int, float]:

@@ -19,7 +19,14 @@ JUMP = 0.2  # of the longer one: neighbouring engaged lengths that differ by mor
 ANGLES = 3 * PANELS + 1  # looked at in a half turn: the ends of its panels, and two of Gauss' nodes in each
 SIDE = 1e-3  # rad off the sides of the tool, where its surface does not face the feed: the first angle looked at
 HALF = 3 * PANELS  # gaps between the angles looked at in a half turn
+HIDDEN = 10 * PANELS  # angles, at most, that are looked at for what the others pass over; their rows follow both halves
 PHI, SINE, COSINE = range(3)  # of a row that is known of an angle: itself, its sine and cosine
+
+
+@part
+def aim(row: FloatArray, phi: float) -> None:
+    """A row for what is to be measured at an angle."""
+    row[PHI], row[SINE], row[COSINE] = phi, math.sin(phi), math.cos(phi)
 
 
 @part

@@ -17,12 +17,11 @@ from robomill.surface.division_kernels import GAPS, HALVINGS, REACH, REST, ROWS,
 from robomill.surface.engagement_kernels import LENGTH, SUMS, Ray, Room, lay_out, measure_stretch
 from robomill.surface.material_kernels import Bounds, Dexels, Facets, World
 from robomill.surface.relief_kernels import Relief
-from robomill.surface.rib_kernels import COLUMNS, Walk
+from robomill.surface.rib_kernels import COLUMNS
 from robomill.surface.step_kernels import step_at
 from robomill.surface.turn_kernels import ANGLES, PHI, half_turn, jumps, panel_end
 
 MM = 1e-3
-NO_WALK = Walk(np.zeros((12, COLUMNS)), 0, (1.0, 0.84, 0.54), (1.0, 0.84, 0.54), True, np.inf, 1.0)
 NO_RELIEF = Relief(np.zeros((0, 0, 3)), 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
 CUTTERS = {
     "flat": Cutter("flat", 8 * MM),
@@ -89,9 +88,7 @@ def test_pieces_of_the_turn_lie_side_by_side_in_their_sectors_and_follow_jumps(m
     monkeypatch.setattr(division, "measure", made_up)
     room = room_for(halves)
     made_up(room, None, None, None, 0, ANGLES * halves)
-    count = follow_jumps(
-        room, None, None, None, divide(room, None, None, None, NO_WALK, (36 * halves, 0.0, 36 * halves))
-    )
+    count = follow_jumps(room, None, None, None, divide(room, None, None, None, (36 * halves, 0)))
     row, middle, width, sector = room.pieces[:count].T
     order = np.argsort(middle)
     low, high = (middle - 0.5 * width)[order], (middle + 0.5 * width)[order]
@@ -120,7 +117,7 @@ def test_pieces_of_the_turn_lie_side_by_side_in_their_sectors_and_follow_jumps(m
 def test_a_cut_without_jumps_has_gauss_nodes_and_no_gap():
     room = room_for()
     room.rows[:, LENGTH] = 1.0 + 0.1 * np.cos(room.rows[:, PHI])
-    count, gaps, _ = divide(room, None, None, None, NO_WALK, (36, 0.0, 36))
+    count, gaps, _ = divide(room, None, None, None, (36, 0))
     assert (count, gaps) == (2 * PANELS, 0)
     row, middle, width, sector = room.pieces[:count].T
     np.testing.assert_allclose(middle, room.rows[row.astype(int), PHI])

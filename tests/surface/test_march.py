@@ -155,7 +155,21 @@ def test_columns_that_may_hold_layers_are_trusted_to_half_a_cell(lean, slack):
     """Where cutters lean a column may have gaps, and room for them; a flat mill that stands upright leaves steps."""
     p, cutting = passes(along(0.0, 0.002))
     march = March(STOCK, 2e-4, TOOLS["flat"], p, np.array([0.0, np.sin(lean), np.cos(lean)]), cutting)
-    world, _ = march._state(np.ones(len(march.steps), dtype=bool))
+    world, _ = march._state(np.ones(len(march.steps), dtype=bool), stock_grid(STOCK, 2e-4))
     assert (world.dexels.heights.shape[2] > 1) == (lean > 0.0)
     assert world.dexels.slack == pytest.approx(slack, rel=1e-6)
     np.testing.assert_allclose(world.dexels.heights[..., 0].max(), 0.0)
+
+
+def test_a_path_keeps_only_the_cells_it_can_reach_and_meets_the_same(monkeypatch):
+    """In a stock many times as large: what is met of a corner's own cells is what is met of all of them."""
+    wide = Stock((-0.1, -0.1, -0.01), (0.1, 0.1, 0.0))
+    p, cutting = passes(along(0.0, 0.002))
+    march = March(wide, 5e-4, TOOLS["ball"], p, None, cutting)
+    assert march._reached.nx * march._reached.ny < 0.2 * 400 * 400
+    found, sectors = march.run()
+    monkeypatch.setattr(March, "_reached", stock_grid(wide, 5e-4))
+    of_all, their_sectors = March(wide, 5e-4, TOOLS["ball"], p, None, cutting).run()
+    assert np.abs(of_all).max() > 0.0
+    np.testing.assert_allclose(found, of_all, rtol=1e-9, atol=1e-15)
+    np.testing.assert_array_equal(sectors, their_sectors)

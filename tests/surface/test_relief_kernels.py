@@ -60,7 +60,7 @@ def solid(p, tool, k, cutting, points):
 def test_what_is_told_of_places_is_so(seed, leaning):
     p, tool, k, cutting = cut_moves(seed, leaning)
     march = March(Stock(LOW, HIGH), 0.25 * MM, Tooling(MILLS, tool), p, k, cutting)
-    state = march._state(march._begins)
+    state = march._state(march._begins, march._reached)
     for i in march.steps:
         march.cut(i, p[i - 1], p[i])
     relief = march._stepwise[0].relief

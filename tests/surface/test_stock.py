@@ -11,7 +11,7 @@ import shapely
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
 from robomill.quantities import quantities
-from robomill.surface.stock import Stock, fitting_cell, stock_grid, stock_span
+from robomill.surface.stock import Stock, cells_about, fitting_cell, stock_grid, stock_span
 from robomill.surface.zmap import cut
 from robomill.toolpath.path import Toolpath
 
@@ -30,6 +30,22 @@ def test_cells_fill_the_stock():
     exact = stock_grid(Stock((0, 0, 0), (0.03, 0.02, 1)), 1e-3)
     assert (exact.nx, exact.ny) == (30, 20)
     assert stock_grid(Stock((0, 0, 0), (0.03, 0.02, 1)), 1.0)[:2] == (1, 1)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "x", "y"),
+    [
+        ((5.2, 3.7), (9.1, 4.3), (3.5, 10.5), (2.5, 5.5)),  # two more on every side
+        ((-9.0, 0.4), (40.0, 19.6), (0.5, 29.5), (0.5, 19.5)),  # not beyond the others
+        ((-9.0, 30.0), (-5.0, 40.0), (0.5, 0.5), (19.5, 19.5)),  # one, where there are none
+    ],
+)
+def test_cells_between_two_corners_stand_where_those_of_the_stock_do(low, high, x, y):
+    cells = stock_grid(STOCK, 1e-3)
+    some = cells_about(cells, 1e-3 * np.array(low), 1e-3 * np.array(high))
+    assert (some.dx, some.dy) == (cells.dx, cells.dy)
+    np.testing.assert_allclose(1e3 * some.x[[0, -1]], x, atol=1e-9)
+    np.testing.assert_allclose(1e3 * some.y[[0, -1]], y, atol=1e-9)
 
 
 def test_the_smallest_cell_that_fits_is_not_much_too_large():
