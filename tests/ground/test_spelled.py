@@ -108,7 +108,7 @@ def test_springs_sketches_lines_and_forces_go_by_either_name() -> None:
     assert rm.JointBending(2, C_x_1e_7_rad_per_Nm=3.0).C_x == 3.0 * 1e-7
     assert rm.PathForce(feed_normal_N=100) == rm.PathForce(feed_normal=100)
     shape = rm.Element("line", points_mm=[[0, 0], [50, 0]], depth_mm=2, feed_mm_min=1800)
-    assert (shape.points[1, 0], shape.depth, shape.v_f) == (0.05, 0.002, 0.03)
+    assert (shape.points[1, 0], shape.depth, shape.v_f) == pytest.approx((0.05, 0.002, 0.03))
     lines = rm.LinesSource(start_mm=[[0, 0, -2]], end_mm=[[50, 0, -2]], feed_mm_min=[1800])
     assert lines.read().p[-1].tolist() == [0.05, 0.0, -0.002]
     for slip in (
