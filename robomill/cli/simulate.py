@@ -1,7 +1,8 @@
 """``robomill simulate``: run a set-up, say the verdict, and write the result to a folder from which it runs again."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +29,8 @@ def run_simulate(arguments: Any) -> int:
     record = simulation_record(result)
     lines, files = simulation_lines(record), []
     if arguments.out:
-        pictures, lost = _pictures(result)
-        files = _write(Path(arguments.out), {**_contents(result, record, arguments.full_stl), **pictures})
+        shapes, lost = _shapes(result, arguments.full_stl)
+        files = _write(Path(arguments.out), {**_contents(result, record), **shapes})
         record["not_written"] = [{"name": name, "why": why} for name, why in lost.items()]
         for why in dict.fromkeys(lost.values()):
             lines.append(f"not written: {', '.join(name for name in lost if lost[name] == why)}. {why}")
@@ -77,9 +78,8 @@ def _check_folder(folder: Path, arguments: Any) -> None:
         )
 
 
-def _contents(result: Any, record: Mapping[str, Any], every_cell: bool) -> dict[str, str | bytes]:
-    """The files by name, but for pictures."""
-    from robomill.io.meshes import FEW_TRIANGLES, MOST_TRIANGLES, mesh_bytes
+def _contents(result: Any, record: Mapping[str, Any]) -> dict[str, str | bytes]:
+    """What there always is, by name."""
     from robomill.io.projects import setup_to_toml
     from robomill.io.results import json_text
     from robomill.report.records import jsonable
@@ -90,20 +90,28 @@ def _contents(result: Any, record: Mapping[str, Any], every_cell: bool) -> dict[
         RECORD: json_text(jsonable(record)),
         TABLES[0]: csv_text(result.columns()),
         TABLES[1]: csv_text(result.sections.columns()),
-        SOLID: mesh_bytes(result.machined, "stl", max_faces=MOST_TRIANGLES if every_cell else FEW_TRIANGLES),
     }
 
 
-def _pictures(result: Any) -> tuple[dict[str, str | bytes], dict[str, str]]:
-    """The pictures by name, and of those that cannot be drawn why."""
-    drawn: dict[str, str | bytes] = {}
+def _shapes(result: Any, every_cell: bool) -> tuple[dict[str, str | bytes], dict[str, str]]:
+    """The solid and the pictures by name, and of those that cannot be made why."""
+    made: dict[str, str | bytes] = {}
     lost = {}
-    for name, draw in zip(PICTURES, (_deviation, _section), strict=True):
+    makers: tuple[Callable[[Any], bytes], ...] = (partial(_solid, every_cell=every_cell), _deviation, _section)
+    for name, make in zip((SOLID, *PICTURES), makers, strict=True):
         try:
-            drawn[name] = draw(result)
+            made[name] = make(result)
         except RobomillError as exc:
             lost[name] = str(exc)
-    return drawn, lost
+    return made, lost
+
+
+def _solid(result: Any, every_cell: bool) -> bytes:
+    from robomill.io.meshes import FEW_TRIANGLES, MOST_TRIANGLES, mesh_bytes
+
+    if not result.removes.any():
+        raise SurfaceError("Nothing is cut: the part would be the stock as it was.")
+    return mesh_bytes(result.machined, "stl", max_faces=MOST_TRIANGLES if every_cell else FEW_TRIANGLES)
 
 
 def _deviation(result: Any) -> bytes:

@@ -5,10 +5,10 @@ from typing import Any
 
 from robomill.cutting.materials import Material
 from robomill.errors import CuttingError, ProjectError, RobomillError, RobotError, SurfaceError, ToolpathError
-from robomill.files import written
+from robomill.files import shown_place, written
 from robomill.io.gcode_out import toolpath_to_gcode
 from robomill.io.materials import material_to_toml
-from robomill.io.meshes import mesh_bytes
+from robomill.io.meshes import MOST_TRIANGLES, mesh_bytes
 from robomill.io.projects import setup_to_toml
 from robomill.io.robots import is_urdf, robot_to_toml
 from robomill.io.urdf_writer import robot_to_urdf
@@ -16,8 +16,6 @@ from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.zmap import ZMap
 from robomill.toolpath.path import Toolpath
-
-MOST_FACES = 2_000_000
 
 
 def write_robot(path: str | Path, robot: Robot) -> Path:
@@ -153,7 +151,7 @@ def write_gcode(path: str | Path, toolpath: Toolpath, *, units: str = "mm", titl
     return _write(path, toolpath_to_gcode(toolpath, units=units, title=title), ToolpathError)
 
 
-def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_FACES) -> Path:
+def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_TRIANGLES) -> Path:
     """A part as a closed solid in millimetres, binary STL.
 
     Parameters
@@ -173,7 +171,8 @@ def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_FACES) -
     Raises
     ------
     SurfaceError
-        For a place that cannot be written.
+        For a place that cannot be written or whose name does not end in ``.stl``, and for a surface of which nothing
+        is cut: a path that is not reached leaves the stock as it was.
 
     Examples
     --------
@@ -186,6 +185,13 @@ def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_FACES) -
     True
     """
     _check(path, surface, ZMap, SurfaceError)
+    if Path(path).suffix.lower() != ".stl":
+        raise SurfaceError(f"{shown_place(path)}: this is written as STL; give it a name that ends in .stl.")
+    if surface.removed_volume <= 0.0:
+        raise SurfaceError(
+            f"{shown_place(path)}: nothing is cut from this surface, it is the stock as it was; see the verdict of the "
+            "run for what is not reached, or not touched."
+        )
     return _write(path, mesh_bytes(surface, "stl", max_faces=max_faces), SurfaceError)
 
 

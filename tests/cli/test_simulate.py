@@ -94,8 +94,10 @@ def test_where_nothing_is_reached_there_is_no_section_and_the_rest_is_written(ca
     file = tmp_path / "far.nc"
     file.write_text("G21 G90\nG0 X9000 Y0 Z5\nG1 Z-1 F100\nG1 X9010\nM2\n")
     found = record(capsys, "paper_flute", "--program", file, "--out", tmp_path / "out")
-    assert {each["name"] for each in found["not_written"]} == {"section.png"}
-    assert "No section can be drawn" in found["not_written"][0]["why"]
+    why = {each["name"]: each["why"] for each in found["not_written"]}
+    assert set(why) == {"machined.stl", "section.png"}
+    assert "No section can be drawn" in why["section.png"]
+    assert why["machined.stl"] == "Nothing is cut: the part would be the stock as it was."
     assert (tmp_path / "out" / "result.json").is_file()
 
 

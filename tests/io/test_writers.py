@@ -75,3 +75,13 @@ def test_the_wrong_way_round_is_refused(write, error, tmp_path: Path) -> None:
 def test_what_cannot_be_written_is_said(tmp_path: Path) -> None:
     with pytest.raises(RobotError, match="cannot be written"):
         rm.write_robot(tmp_path / "nowhere" / "arm.toml", SETUP.robot)
+
+
+def test_a_solid_is_written_under_its_own_ending_and_never_uncut(tmp_path) -> None:
+    """A run that reaches nothing leaves the stock as it was: written, it would pass for the part."""
+    far = rm.simulate(rm.load_setup("paper_flute").replace(part_zero_mm=[0, -5000, 0]))
+    with pytest.raises(SurfaceError, match=r"part\.stl: nothing is cut from this surface"):
+        rm.write_stl(tmp_path / "part.stl", far.machined)
+    with pytest.raises(SurfaceError, match=r"part\.obj: this is written as STL; give it a name that ends in \.stl"):
+        rm.write_stl(tmp_path / "part.obj", far.machined)
+    assert not list(tmp_path.iterdir())
