@@ -30,9 +30,10 @@ def needed(what: str) -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as exc:
-        if exc.name not in BROUGHT_BY:
+        package = (exc.name or "").partition(".")[0]
+        if package not in BROUGHT_BY or find_spec(package) is not None:
             raise
-        raise _refusal(what, exc.name, BROUGHT_BY[exc.name][1]) from None
+        raise _refusal(what, package, BROUGHT_BY[package][1]) from None
 
 
 def missing(what: str, extra: str, *modules: str) -> MissingExtraError | None:
