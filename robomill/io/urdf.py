@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import reduce
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -19,6 +20,8 @@ from robomill.robot.model import Robot
 
 MOVING = ("revolute", "continuous", "prismatic")
 PARALLEL = 1e-9
+ROS_TIP = "tool0"  # the tool frame that ROS-Industrial asks of every arm
+SAME_PLACE = 1e-9  # m, and of directions
 MOST_JOINTS = 20  # before a D-H table is made of them; the robot says how many it may have
 
 
@@ -42,7 +45,7 @@ def read_urdf(
     tip: str | None = None,
     where: str = "",
 ) -> Robot:
-    """The serial arm from the root to link ``tip`` of a URDF file (default: the only end link).
+    """The serial arm from the root to link ``tip`` of a URDF file (default: the only end link, or tool0).
 
     ``given`` is its path or its bytes, ``where`` the file's name then. Frames {M} and {T} are those of the two links,
     and the flange is the tip too, if that stands on the last axis with its z along it, as makers' flanges do; joint
@@ -177,7 +180,9 @@ def _serial_chain(joints: list[Joint], links: list[str], tip: str | None, where:
     moving = _above_what_moves(parents)
     chain: list[Joint] = []
     while children.get(link) and len(chain) <= len(parents):
-        options = [j for j in children[link] if j.child in moving] or children[link][:1]
+        options = [j for j in children[link] if j.child in moving]
+        if not options:
+            return chain + _fixed_end(link, children, where)
         if len(options) > 1:
             ends = _listed(repr(joint.child) for joint in options)
             raise RobotError(
@@ -186,6 +191,25 @@ def _serial_chain(joints: list[Joint], links: list[str], tip: str | None, where:
         chain.append(options[0])
         link = options[0].child
     return chain
+
+
+def _fixed_end(link: str, children: Mapping[str, list[Joint]], where: str) -> list[Joint]:
+    """Joints from the last link that moves to the tip: the only end that is fixed to it, or the first of those in one
+    place, or the one that is called tool0. Raises RobotError where none of these tells which."""
+    ways: list[list[Joint]] = [[joint] for joint in children[link]]
+    ends: list[tuple[FloatArray, list[Joint]]] = []
+    while ways:
+        way = ways.pop(0)
+        on = children.get(way[-1].child, [])
+        ways[:0] = [[*way, joint] for joint in on if joint not in way]
+        if not on:
+            ends.append((reduce(np.matmul, (joint.T for joint in way)), way))
+    named = [way for _, way in ends if way[-1].child == ROS_TIP]
+    first, taken = ends[0]
+    if named or all(np.allclose(T, first, atol=SAME_PLACE) for T, _ in ends):
+        return named[0] if named else taken
+    names = _listed(way[-1].child for _, way in ends)
+    raise RobotError(f"{where}: several links are fixed to the last that moves ({names}); say which is the tip.")
 
 
 def _listed(names: Iterable[str]) -> str:

@@ -96,6 +96,27 @@ def test_a_named_tip_picks_the_branch(tmp_path):
     assert read_urdf(_write(tmp_path, body), tip="d").n == 2
 
 
+def test_of_two_links_at_the_end_one_is_not_taken_by_chance(tmp_path):
+    links = "".join(f'<link name="{c}"/>' for c in "abc")
+    arm = links + _joint("1", "a", "b") + _joint("2", "b", "c")
+
+    def end(name, xyz):
+        joins = f'<parent link="c"/><child link="{name}"/><origin xyz="{xyz}"/>'
+        return f'<link name="{name}"/><joint name="to_{name}" type="fixed">{joins}</joint>'
+
+    both = _write(tmp_path, arm + end("probe", "0 0 0.1") + end("cutter", "0 0.2 0"))
+    with pytest.raises(
+        RobotError, match=r"several links are fixed to the last that moves \(probe, cutter\); say which"
+    ):
+        read_urdf(both)
+    theta = [0.0, 0.0]
+    np.testing.assert_allclose(rm.tool_pose(read_urdf(both, tip="cutter"), theta)[:3, 3], [0.0, 0.2, 0.0], atol=1e-12)
+    standard = read_urdf(_write(tmp_path, arm + end("probe", "0 0 0.1") + end("tool0", "0.3 0 0")))
+    np.testing.assert_allclose(rm.tool_pose(standard, theta)[:3, 3], [0.3, 0.0, 0.0], atol=1e-12)
+    same = read_urdf(_write(tmp_path, arm + end("probe", "0 0 0.1") + end("flange", "0 0 0.1")))
+    np.testing.assert_allclose(rm.tool_pose(same, theta)[:3, 3], [0.0, 0.0, 0.1], atol=1e-12)
+
+
 def test_not_xml(tmp_path):
     path = tmp_path / "noise.urdf"
     path.write_bytes(b"\x00\x01 not xml")
