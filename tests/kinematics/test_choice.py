@@ -143,7 +143,7 @@ def test_the_joint_that_hinders_is_told_by_the_stand_that_is_least_past_its_limi
         turned = np.array([T_MT @ transform(rotation_z(angle), np.zeros(3)) for angle in spins])
         least, needed = np.inf, None
         for branch in branch_names():
-            every = rm.inverse_kinematics(wide, turned, branch=branch, spin="fixed").theta
+            every = np.array(rm.inverse_kinematics(wide, turned, branch=branch, spin="fixed").theta)
             if held:
                 every[:, 5] = wide.home[5]
             past = np.abs(every - wide.home) - 0.25
