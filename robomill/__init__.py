@@ -3,6 +3,7 @@
 SI inside (m, rad, N, s). The public names below load on first use, so that ``import robomill`` stays quick.
 """
 
+import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -182,7 +183,7 @@ if not TYPE_CHECKING:  # with it in sight, a name that does not exist would have
 
     def __getattr__(name: str) -> Any:
         if name not in _PUBLIC:
-            raise AttributeError(f"module 'robomill' has no attribute {name!r}")
+            raise AttributeError(f"module 'robomill' has no attribute {name!r}", name=name, obj=sys.modules[__name__])
         value = getattr(import_module(_PUBLIC[name]), name)
         globals()[name] = value
         return value

@@ -17,6 +17,13 @@ IntArray = NDArray[np.int64]
 FARTHEST = 1e4  # m from the base of a robot or the zero of a part
 
 
+def of_kind(value: Any, kinds: type | tuple[type, ...], name: str, give: str, error: type[RobomillError]) -> None:
+    """Refuse a ``value`` of another kind, with what to ``give`` instead: what is called later would only crash."""
+    if not isinstance(value, kinds):
+        first = kinds[0] if isinstance(kinds, tuple) else kinds
+        raise error(f"{name}: expected a {first.__name__}, found {value!r:.60}; give {give}.")
+
+
 def as_floats(
     value: ArrayLike,
     name: str,

@@ -13,7 +13,7 @@ from robomill.kinematics import dexterity
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.lazy import cached_property
-from robomill.robot.model import Robot
+from robomill.robot.model import Robot, check_robot
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +155,7 @@ def at_pose(robot: Robot, theta: ArrayLike) -> PoseReport:
     >>> rm.at_pose(robot, robot.home).C.shape
     (3, 3)
     """
+    check_robot(robot)
     one = as_floats(theta, f"theta of {robot.name!r}", (robot.n,), error=KinematicsError, finite=False)
     if one.ndim != 1:
         raise KinematicsError(f"theta of {robot.name!r}: expected one configuration, found shape {one.shape}.")

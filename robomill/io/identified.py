@@ -10,7 +10,7 @@ from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.result import IdentificationResult
 from robomill.identification.treatment import STANDARD, Treatment
 from robomill.io.load_tests import read_load_tests
-from robomill.robot.model import Robot
+from robomill.robot.model import Robot, check_robot
 
 if TYPE_CHECKING:
     from robomill.frames import DataFrame
@@ -62,5 +62,6 @@ def identify(
     >>> (found.C_theta * 1e7).round(2).tolist()
     [7.2, 10.13, 12.26, 17.34, 91.24]
     """
+    check_robot(robot)
     given = tests if isinstance(tests, LoadTests | JointTests) else read_load_tests(tests, robot)
     return estimate.identify(robot, given, model, treatment, **choices)

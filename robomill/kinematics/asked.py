@@ -11,7 +11,7 @@ from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.kinematics import inverse
 from robomill.kinematics.result import IKResult
-from robomill.robot.model import Robot
+from robomill.robot.model import Robot, check_robot
 from robomill.units import to_si
 
 P = ParamSpec("P")
@@ -23,6 +23,7 @@ def _in_metres(
 ) -> Callable[Concatenate[Robot, ArrayLike, P], IKResult]:
     @wraps(solve)
     def asked(robot: Robot, T_MT: ArrayLike, *args: P.args, **choices: P.kwargs) -> IKResult:
+        check_robot(robot)
         poses = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
         _check_places(robot, poses[..., :3, 3])
         return solve(robot, poses, *args, **choices)

@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.errors import KinematicsError
-from robomill.robot.model import Robot
+from robomill.robot.model import Robot, check_robot
 from robomill.units import to_si
 
 # Poses handled at a time where several arrays of them are needed: a block stays in the second-level cache.
@@ -17,7 +17,8 @@ SLIPPED = 5.0
 
 def joint_angles(robot: Robot, theta: ArrayLike) -> FloatArray:
     """``theta`` as (..., n) floats. NaN is allowed (a configuration that is not reached). Raises KinematicsError, also
-    for angles that were meant in degrees."""
+    for angles that were meant in degrees, and RobotError where ``robot`` is none."""
+    check_robot(robot)
     found = as_floats(
         theta, f"theta of {robot.name!r} (one entry a free joint)", (robot.n,), error=KinematicsError, finite=False
     )

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, frozen
+from robomill.arrays import BoolArray, FloatArray, frozen, of_kind
 from robomill.errors import RobotError
 from robomill.frames import Columns
 from robomill.lazy import cached_property
@@ -317,6 +317,12 @@ class Robot(Tabled):
         for key in ("compliance_sets", "provenance"):
             state[key] = dict(state[key])
         return _rebuild, (state,)
+
+
+def check_robot(robot: Any) -> None:
+    """Refuse what is no robot, as its name is none: raises RobotError."""
+    give = 'rm.load_robot("slavkovic_5r"), of a name or a file, or rm.Robot.from_dh(...)'
+    of_kind(robot, Robot, "robot", give, RobotError)
 
 
 def _rebuild(state: dict[str, Any]) -> Robot:

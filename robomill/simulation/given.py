@@ -2,16 +2,21 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from types import NoneType
 from typing import Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray, as_floats
+from robomill.arrays import FloatArray, as_floats, of_kind
+from robomill.compliance.spring import Spring
+from robomill.cutting.force import ForceModel
 from robomill.cutting.tool import Cutter
 from robomill.errors import SetupError
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity, quantities
+from robomill.robot.model import check_robot
 from robomill.spelled import one_of
+from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PointsSource
 
@@ -62,6 +67,23 @@ def _placed(given: Mapping[str, Any], before: FloatArray | None) -> FloatArray:
         angle = one_of(_TURN, turn, turn_deg, SetupError, "Part zero")
         T_MW = part_frame(T_MW[:3, 3], float(as_floats(angle, "Part zero, turn", (), error=SetupError)))
     return T_MW
+
+
+def check_kinds(setup: Any) -> None:
+    """Refuse robots, paths, cutters, forces, stocks and springs that are none, each with what makes one. A spring alone
+    is taken as one of several."""
+    check_robot(setup.robot)
+    of_kind(setup.cutter, Cutter, "cutter", 'rm.Cutter("flat", diameter_mm=8)', SetupError)
+    if not hasattr(setup.source, "read"):
+        give = 'rm.read_program("part.nc") or rm.Toolpath.from_points(p_mm=..., feed_mm_min=...)'
+        of_kind(setup.source, Toolpath, "source", give, SetupError)
+    of_kind(setup.force, ForceModel, "force", "rm.ConstantForce((0, 100, 0)), in N", SetupError)
+    of_kind(setup.stock, (Stock, NoneType), "stock", "rm.Stock(lower_mm=..., upper_mm=...)", SetupError)
+    if isinstance(setup.springs, Spring):
+        object.__setattr__(setup, "springs", (setup.springs,))
+    of_kind(setup.springs, (tuple, list), "springs", "a list of rm.ToolBending and the like", SetupError)
+    for spring in setup.springs:
+        of_kind(spring, Spring, "springs", "rm.ToolBending, rm.SpindleSpring or rm.JointBending", SetupError)
 
 
 def stated(given: Mapping[str, Any]) -> dict[str, Any]:

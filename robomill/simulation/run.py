@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from robomill import budgets
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, of_kind
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
 from robomill.compliance.gravity import LinkMasses, gravity_sag
@@ -14,7 +14,7 @@ from robomill.compliance.spring import extra_contributions
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import feed_frame
 from robomill.cutting.unjudged import Unjudged
-from robomill.errors import ToolpathError
+from robomill.errors import SetupError, ToolpathError
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
@@ -75,6 +75,7 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     >>> float((result.deviation[-1] * 1e3).round(3))
     0.252
     """
+    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
     path = sampled(setup.toolpath, setup.step, partial(steps_in_stock, setup) if setup.engagement else None)
     if setup.engagement:
         check_samples(setup.toolpath, setup.step, len(path), budgets.samples(marched=True))

@@ -181,6 +181,7 @@ class SimulationSetup(Replaceable, Value):
         ) -> None: ...
 
     def __post_init__(self) -> None:
+        given.check_kinds(self)
         T_MW = as_floats(self.T_MW, "part zero T_MW", (4, 4), error=SetupError)
         R = T_MW[:3, :3]
         if np.abs(R @ R.T - np.eye(3)).max() > 1e-9 or np.linalg.det(R) < 0:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray, digest
+from robomill.arrays import FloatArray, digest, of_kind
 from robomill.errors import WorkspaceError
 from robomill.frames import Columns, data_array, data_set
 from robomill.lazy import cached_property
-from robomill.robot.model import Robot
+from robomill.robot.model import Robot, check_robot
 from robomill.units import format_count, format_many, from_si, si_unit
 from robomill.values import Tabled
 from robomill.workspace.cells import SolvedGrid
@@ -204,6 +204,8 @@ def compliance_map(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -> 
     >>> (found.values("C_yy").ravel() * 1e6).round(3).tolist()
     [2.259, 2.295, 2.259]
     """
+    check_robot(robot)
+    of_kind(grid, Grid, "grid", "rm.Grid(x_mm=..., y_mm=..., z_mm=...), rm.plane_grid or rm.box_grid", WorkspaceError)
     _finite_tilt(A, B)
     grid.check_budget(8 * (13 * robot.n + 2 + 6) + 1)
     theta, reached, laws = solve_grid(robot, grid, A, B)

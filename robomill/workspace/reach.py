@@ -11,7 +11,7 @@ from robomill.kinematics.forward import BLOCK
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 from robomill.progress import checkpoint
-from robomill.robot.model import Robot
+from robomill.robot.model import Robot, check_robot
 from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
 
 Axes = tuple[FloatArray, FloatArray, FloatArray]
@@ -67,6 +67,7 @@ def reach(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0
     >>> rm.reach(rm.load_robot("slavkovic_5r"), rm.Grid(x_mm=[0, 9000], y_mm=-1300, z_mm=0)).ravel().tolist()
     [True, False]
     """
+    check_robot(robot)
     grid.check_budget(8 * 3 + 1)
     if not tilts:
         raise WorkspaceError("Reach: give at least one tool tilt (A, B).")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -103,3 +105,60 @@ def test_angles_of_spin_are_in_either_unit() -> None:
 def test_what_cannot_be_meant_is_refused(given, words: str) -> None:
     with pytest.raises(SetupError, match=words):
         made(**given)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "give"),
+    [
+        ("robot", "slavkovic_5r", "rm.load_robot"),
+        ("source", "part.nc", "rm.read_program"),
+        ("source", [[0, 0, 0], [1, 0, 0]], "rm.Toolpath.from_points"),
+        ("cutter", 8, "rm.Cutter"),
+        ("force", [0, 100, 0], "rm.ConstantForce"),
+        ("force", 100, "rm.ConstantForce"),
+        ("stock", ([0, 0, -10], [50, 50, 0]), "rm.Stock"),
+        ("springs", ["tool"], "rm.ToolBending"),
+    ],
+)
+def test_what_is_of_another_kind_is_refused_at_once_with_what_makes_it(name: str, value: object, give: str) -> None:
+    setup = rm.load_setup("paper_flute")
+    with pytest.raises(rm.RobomillError, match="expected a ") as refusal:
+        setup.replace(**{name: value})
+    assert str(refusal.value).startswith(f"{name}: ")
+    assert give in str(refusal.value)
+
+
+def test_one_spring_is_taken_as_well_as_several() -> None:
+    setup = rm.load_setup("paper_flute")
+    spring = rm.ToolBending(diameter_mm=8, stick_out_mm=40)
+    assert setup.replace(springs=spring).digest() == setup.replace(springs=[spring]).digest()
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda name: rm.tool_pose(name, [0] * 5),
+        lambda name: rm.geometric_jacobian(name, [0] * 5),
+        lambda name: rm.cartesian_compliance(name, [0] * 5),
+        lambda name: rm.inverse_kinematics(name, np.eye(4)),
+        lambda name: rm.at_pose(name, [0] * 5),
+        lambda name: rm.compliance_map(name, rm.Grid(x_mm=0, y_mm=-1300, z_mm=0)),
+        lambda name: rm.reach(name, rm.Grid(x_mm=0, y_mm=-1300, z_mm=0)),
+        lambda name: rm.identify(name, "nine_points"),
+    ],
+)
+def test_a_robots_name_is_no_robot_and_the_refusal_says_what_makes_one(ask: Any) -> None:
+    with pytest.raises(rm.RobomillError, match=r"robot: expected a Robot, found 'slavkovic_5r'; give rm.load_robot"):
+        ask("slavkovic_5r")
+
+
+def test_what_is_no_set_up_is_not_simulated() -> None:
+    with pytest.raises(rm.RobomillError, match=r"expected a SimulationSetup, found 'setup.toml'; give rm.load_setup"):
+        rm.simulate("setup.toml")  # type: ignore[arg-type]
+
+
+def test_a_misspelled_name_has_a_suggestion() -> None:
+    with pytest.raises(AttributeError) as missing:
+        rm.load_robots  # noqa: B018
+    assert missing.value.name == "load_robots"
+    assert missing.value.obj is rm
