@@ -12,12 +12,13 @@ from robomill.errors import WorkspaceError
 from robomill.paper import BOX, BOX_SIZE
 from robomill.quantities import quantity
 from robomill.spelled import in_units
-from robomill.units import format_many, format_si
+from robomill.units import format_many, format_si, to_si
 from robomill.values import Value
 
 PAPER_BOX = (frozen(BOX[0]), frozen(BOX[1]))
 PAPER_BOX_SIZE = frozen(BOX_SIZE)
 LARGEST_AXIS = 100_000
+SLIPPED = 10.0  # times the longest side of a box: such a step was meant in mm
 
 
 FARTHEST = 200.0  # m: no robot reaches as far: was it meant in mm?
@@ -122,7 +123,7 @@ def box_grid(lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
     Raises
     ------
     WorkspaceError
-        For corners the wrong way round, or a step that is not above zero or makes too many points.
+        For corners the wrong way round, or a step that is not above zero, makes too many points or was meant in mm.
 
     Examples
     --------
@@ -132,6 +133,12 @@ def box_grid(lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
     """
     low = as_floats(lower, "Box, lower corner", (3,), error=WorkspaceError)
     high = as_floats(upper, "Box, upper corner", (3,), error=WorkspaceError)
+    longest = float(np.abs(high - low).max())
+    if longest > 0.0 and step > SLIPPED * longest:
+        raise WorkspaceError(
+            f"Grid: a step of {step:g} m is far longer than the box ({longest:g} m): lengths are in m; {step:g} mm are "
+            f"{to_si(step, 'mm'):g}."
+        )
     return Grid(*(axis_points(low[i], high[i], step, "xyz"[i]) for i in range(3)))
 
 
@@ -167,7 +174,8 @@ def plane_grid(normal: str, at: float, lower: ArrayLike, upper: ArrayLike, step:
     """
     if normal not in ("x", "y", "z"):
         raise WorkspaceError(f"Plane: the normal is {normal!r}; expected 'x', 'y' or 'z'.")
-    low, high = np.array(lower, dtype=np.float64), np.array(upper, dtype=np.float64)
+    low = np.array(as_floats(lower, "Plane, lower corner", (3,), error=WorkspaceError))
+    high = np.array(as_floats(upper, "Plane, upper corner", (3,), error=WorkspaceError))
     low["xyz".index(normal)] = high["xyz".index(normal)] = at
     return box_grid(low, high, step)
 

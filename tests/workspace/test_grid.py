@@ -62,3 +62,15 @@ def test_the_budget_counts_bytes_and_names_the_step_that_fits(monkeypatch):
     # In a plane by the square root: 0.1 sqrt(121 / 31), rounded up to a tenth of a millimetre.
     with pytest.raises(WorkspaceError, match="step of 197.6 mm"):
         plane_grid("z", 0, [0, 0, 0], [1, 1, 0], 0.1).check_budget(budgets.map_bytes() // 31)
+
+
+def test_a_step_in_mm_is_not_one_cell():
+    with pytest.raises(WorkspaceError, match=r"a step of 50 m is far longer than the box \(1.2 m\).*50 mm are 0.05"):
+        plane_grid("z", 0, [-0.6, -1.6, 0], [0.6, -1.0, 0], 50)
+    assert plane_grid("z", 0, [-0.6, -1.6, 0], [0.6, -1.0, 0], 2.0).cells == 1
+    assert box_grid([0.1, 0.2, 0.3], [0.1, 0.2, 0.3], 1.0).cells == 1
+
+
+def test_the_corners_of_a_plane_have_three_numbers():
+    with pytest.raises(WorkspaceError, match="Plane, lower corner"):
+        plane_grid("z", 0, [-0.6, -1.6], [0.6, -1.0], 0.05)
