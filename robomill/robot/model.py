@@ -271,10 +271,15 @@ class Robot(Tabled):
     def _said(self) -> str:
         held = f", {format_count(self.rows - self.n)} of them held" if self.n < self.rows else ""
         slide = f", {int(self.prismatic.sum())} sliding" if self.prismatic.any() else ""
-        return (
-            f"{self.name}: {format_count(self.rows, 'joint')}{slide}{held}, {self.convention} D-H, compliance set "
-            f"{self.compliance_set!r}"
+        return f"{self.name}: {format_count(self.rows, 'joint')}{slide}{held}, {self.convention} D-H, " + (
+            "compliances assumed" if self.assumes_compliances else f"compliance set {self.compliance_set!r}"
         )
+
+    @property
+    def assumes_compliances(self) -> bool:
+        """Whether nobody has given the compliances in force: those of a URDF, or of a table without any."""
+        said = self.provenance.get("compliance")
+        return self.compliance_set == USER_SET and said is not None and said.kind == "assumed"
 
     # ---- change is replacement ------------------------------------------------------------------------------------
     def replace(self, **changes: Any) -> Robot:
@@ -291,6 +296,8 @@ class Robot(Tabled):
                 changes[full] = self._filled(np.asarray(changes.pop(short)), getattr(self, full))
         if "C_theta_all" in changes and "compliance_set" not in changes:
             changes["compliance_set"] = USER_SET
+            if self.assumes_compliances and "provenance" not in changes:
+                changes["provenance"] = {**self.provenance, "compliance": Provenance("user", "given by hand")}
         known = {f.name for f in fields(self)}
         unknown = set(changes) - known
         if unknown:

@@ -20,13 +20,17 @@ NONE = Premise("", "")
 
 
 def premise(result: Run, left: bool) -> Premise:
-    """What pushes the tool, where that was stated for another path; the unit of a stock that hardly holds the path and
-    of which nothing is ``left`` to measure; flutes that nobody has counted, where the force follows them."""
+    """What pushes the tool, where that was stated for another path; how much joints give of which nobody has said it;
+    the unit of a stock that hardly holds the path and of which nothing is ``left`` to measure; flutes that nobody has
+    counted, where the force follows them."""
     setup = result.setup
     if result.worst < 0:
         return NONE
     if setup.carried_from:
         return Premise(_pushed(result), "Nobody has said yet what this path cuts: not judged.")
+    if setup.robot.assumes_compliances and setup.measured_map is None:
+        asked = "Nobody has given the compliances of this arm's joints: not judged."
+        return Premise("if its joints give as much as is assumed", asked)
     if not left and _outside(result):
         asked = "The path hardly touches the stock, which would hold it in another unit: not judged."
         return Premise("if the unit of the stock is right", asked)

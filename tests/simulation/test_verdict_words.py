@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import robomill as rm
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
@@ -113,3 +114,22 @@ def test_a_path_beside_a_stock_that_is_hardly_meant_in_its_unit_is_not_judged() 
     assert "if the unit of the stock is right. The path hardly touches the stock" in found.sentence
     short = Stock((-0.012, -0.02, -0.01), (0.012, 0.02, 0.0))
     assert simulate(own.setup.replace(stock=short)).verdict.premise == ""
+
+
+def test_an_arm_whose_compliances_nobody_has_given_is_not_judged_until_they_are():
+    arm = rm.load_robot("slavkovic_5r")
+    table = {name: getattr(arm, name) for name in ("a", "alpha", "d", "theta_offset")}
+    bare = rm.Robot.from_dh(
+        **table, sign=arm.sign, limits=arm.limits, T_tool=arm.T_tool, T_base=arm.T_base, convention=arm.convention
+    )
+    assert "compliances assumed" in repr(bare)
+    setup = rm.load_setup("paper_flute").replace(robot=bare)
+    verdict = rm.simulate(setup).verdict
+    assert verdict.level == "unjudged"
+    assert "Nobody has given the compliances of this arm's joints: not judged." in verdict.sentence
+    given = bare.replace(C_theta=arm.C_theta)
+    assert "assumed" not in repr(given)
+    assert given.provenance["compliance"].kind == "user"
+    said = rm.simulate(setup.replace(robot=given)).verdict
+    assert said.level == "ok"
+    assert said.wall.value == rm.simulate(setup.replace(robot=arm)).verdict.wall.value
