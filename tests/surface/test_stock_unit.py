@@ -17,7 +17,9 @@ TRUE = np.array([0.1016, 0.0762, 0.0254])
 
 
 def block(times: float) -> Stock:
-    return Stock((0.0, 0.0, -TRUE[2] * times), (TRUE[0] * times, TRUE[1] * times, 0.0))
+    """Said in mm, as a file does: a plain number of this size would be taken for a slip of the unit."""
+    width, depth, height = 1e3 * TRUE * times
+    return Stock(lower_mm=(0.0, 0.0, -height), upper_mm=(width, depth, 0.0))
 
 
 @pytest.mark.parametrize(
