@@ -1,7 +1,7 @@
 // One look at the cut: what is chosen here is drawn here, 20 pictures a second while it plays; only what has settled is
 // told to the server. The element says what is drawn, after it is drawn: data-drawn="station=0.500 x10 iso part",
 // with "so-far" while material stands that is not cut yet.
-const EACH_MS = 50, SETTLED_MS = 250, WHOLE_CUT_MS = 9000, KEYS_STEP = 5;
+const EACH_MS = 50, SETTLED_MS = 250, AGAIN_MS = 1500, WHOLE_CUT_MS = 9000, KEYS_STEP = 5;
 const parcels = (globalThis.robomillParcels ??= new Map());
 const html = (root, name) => root.querySelector(`.${name}`);
 
@@ -54,10 +54,20 @@ class Look {
     told.hidden = false;
     told.textContent = this.data.words.without;
     this.root.dataset.drawn = "none";
-    // Said again until the server has taken it: what comes while a page is being made may be lost.
-    if (this.data.seq >= this.told_without) return;
-    this.told_without = this.seq += 1;
-    this.tell("look", { ...this.state, webgl: false, seq: this.seq });
+    if (this.said_without) return;
+    this.said_without = true;
+    this.say({ webgl: false });
+  }
+
+  // Tell the server what is looked at, and again until it has it: what comes while a page is being made is lost.
+  say(more = {}) {
+    clearTimeout(this.again);
+    const said = { ...this.state, ...more, seq: (this.seq += 1) };
+    const tell = (wait) => {
+      this.tell("look", said);
+      this.again = setTimeout(() => this.root.isConnected && this.data.seq < said.seq && tell(2 * wait), wait);
+    };
+    tell(AGAIN_MS);
   }
 
   write() {
@@ -172,7 +182,7 @@ class Look {
       const said = JSON.stringify(this.state);
       if (said === this.told) return;
       this.told = said;
-      this.tell("look", { ...this.state, seq: (this.seq += 1) });
+      this.say();
     }, SETTLED_MS);
   }
 
@@ -276,6 +286,7 @@ class Look {
 
   end() {
     clearTimeout(this.timer);
+    clearTimeout(this.again);
     this.playing = 0;
     this.watch.disconnect();
     this.scene?.gl.getExtension("WEBGL_lose_context")?.loseContext();
