@@ -141,8 +141,10 @@ def test_a_doubled_tab_takes_a_name_of_its_own_so_that_neither_loses_its_work(br
     second = opened.value
     second.wait_for_selector(TABLE_3)
     idle(second)
+    name = "sessionStorage.getItem('robomill.tab')"
+    second.wait_for_function(f"first => {name} !== first", arg=first.evaluate(name))
     second.wait_for_timeout(1500)
-    names = [page.evaluate("sessionStorage.getItem('robomill.tab')") for page in (first, second)]
+    names = [page.evaluate(name) for page in (first, second)]
     assert len(set(names)) == 2
     choose(second, "Table 2", TABLE_2)
     for page, sign in ((first, TABLE_3), (second, TABLE_2), (first, TABLE_3)):
@@ -151,7 +153,7 @@ def test_a_doubled_tab_takes_a_name_of_its_own_so_that_neither_loses_its_work(br
         idle(page)
         page.wait_for_timeout(1500)
         page.wait_for_selector(sign)
-    assert [page.evaluate("sessionStorage.getItem('robomill.tab')") for page in (first, second)] == names
+    assert [page.evaluate(name) for page in (first, second)] == names
 
 
 def test_a_page_closed_in_the_middle_of_a_run_loses_nothing(browser: Any, server: Server) -> None:
