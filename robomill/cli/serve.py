@@ -49,6 +49,9 @@ def serve_options(serve: argparse.ArgumentParser) -> None:
     serve.add_argument(
         "--max-upload-mb", type=partial(whole, 100_000), default=100, metavar="MB", help="largest file (default 100)"
     )
+    serve.add_argument(
+        "--metrics", choices=("on", "off"), help="answer /_stcore/metrics with figures of the server (default off)"
+    )
     serve.add_argument("--autosave", choices=("on", "off"), help="keep people's work beyond the page (default on)")
     serve.add_argument("--autosave-folder", metavar="DIR", help="where, in a folder that nobody else can read")
     serve.add_argument("--autosave-mb", metavar="MB", help="of all together (default 1000); the oldest goes first")
@@ -58,7 +61,7 @@ def serve_options(serve: argparse.ArgumentParser) -> None:
 def run_serve(arguments: Any) -> int:
     """Serve until told to stop. Raises RobomillError where a bound of what is kept is none."""
     _must_be_installed()
-    from robomill.ui.keeping.settings import PREFIX, Settings
+    from robomill.ui.keeping.settings import METRICS, PREFIX, Settings
     from robomill.ui.keeping.shelf import Shelf, StoreError
 
     environment = ALLOCATOR | os.environ
@@ -66,6 +69,8 @@ def run_serve(arguments: Any) -> int:
         said = getattr(arguments, f"autosave{option}")
         if said is not None:
             environment[f"{PREFIX}{name}"] = said
+    if arguments.metrics:
+        environment[METRICS] = arguments.metrics
     settings = Settings.of(environment)
     if settings.on:
         try:

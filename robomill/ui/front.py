@@ -6,6 +6,8 @@ and kept; the style stands in the page itself, so nothing moves when a page has 
 """
 
 import gzip
+import os
+import posixpath
 import re
 import webbrowser
 from collections.abc import AsyncIterator
@@ -18,15 +20,19 @@ import streamlit
 from anyio import to_thread
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.middleware import Middleware
+from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from streamlit import config
 from streamlit.web.server import server_util
+
+from robomill.ui.keeping.settings import METRICS
 
 STYLE = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
 PLACE = b'<div id="root">'  # in the body: a style in the head would come before Streamlit's own, and lose to it
 TITLE = b"<title>Streamlit</title>"
 # A page of ours is never asked whether it is still that of the file on disk: the style may have changed.
 ASKED_AGAIN = {b"if-none-match", b"if-modified-since"}
+FIGURES = "/_stcore/metrics"  # of Streamlit: names of caches, their bytes, how many sessions there are
 SMALL = 500  # bytes: what is smaller is sent as it is
 # What our pages are made of. Streamlit loads each kind of element when the first of its kind is drawn, and shows a grey
 # line meanwhile, from which the page then grows: asked for at once, they are there before the page has run.
@@ -60,7 +66,10 @@ def styled(page: bytes) -> bytes:
 
 
 class Front:
-    """ASGI middleware: what never changes is compressed once and kept, pages carry the style, all else goes through."""
+    """ASGI middleware: what never changes is compressed once and kept, pages carry the style, all else goes through.
+
+    Streamlit's figures of the server are for its owner: they are there with ``ROBOMILL_METRICS=on`` only.
+    """
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -71,6 +80,9 @@ class Front:
         if scope["type"] != "http" or scope["method"] != "GET":
             await self.app(scope, receive, send)
             return
+        if scope["path"].endswith(FIGURES) and os.environ.get(METRICS, "off") != "on":
+            await PlainTextResponse("Not Found", 404)(scope, receive, send)
+            return
         packs = "gzip" in Headers(scope=scope).get("accept-encoding", "")
         answer = self.kept.get(scope["path"]) if packs else None
         if answer is None:
@@ -80,7 +92,8 @@ class Front:
             if not held.start:
                 return
             answer = await self._answer(held, packs)
-            if packs and held.lasts:
+            # The same file has no end of other names (/static//a.js): only its own is kept.
+            if packs and held.lasts and posixpath.normpath(scope["path"]) == scope["path"]:
                 self.kept[scope["path"]] = answer
         for message in answer:
             await send(message)

@@ -44,6 +44,8 @@ APP = Starlette(
     middleware=MIDDLEWARE,
     routes=[
         Route("/static/a.js", script),
+        Route("/static//a.js", script),
+        Route("/_stcore/metrics", lambda _: PlainTextResponse("cache_memory_bytes 5")),
         Route("/part", part),
         Route("/", page),
         Route("/packed", page),
@@ -80,6 +82,23 @@ def test_a_file_that_lasts_is_compressed_once_and_reads_back_the_same() -> None:
         assert len(body) < len(SCRIPT) / 50
         assert gzip.decompress(body) == SCRIPT
     assert asked == ["/static/a.js"]
+
+
+def test_other_names_of_a_file_are_not_kept_beside_it() -> None:
+    """There is no end of them: each would cost a visitor nothing and the server a megabyte."""
+    asked.clear()
+    for _ in range(3):
+        assert gzip.decompress(answer("/static//a.js", accept_encoding="gzip")[2]) == SCRIPT
+    assert len(asked) == 3
+
+
+def test_figures_of_the_server_are_for_its_owner_who_asks_for_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("ROBOMILL_METRICS", raising=False)
+    for path in ("/_stcore/metrics", "/robomill/_stcore/metrics"):
+        status, _, body = answer(path)
+        assert (status, body) == (404, b"Not Found")
+    monkeypatch.setenv("ROBOMILL_METRICS", "on")
+    assert answer("/_stcore/metrics")[2] == b"cache_memory_bytes 5"
 
 
 def test_who_cannot_read_it_compressed_gets_it_as_it_is() -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from robomill.errors import ProjectError
 
 PREFIX = "ROBOMILL_AUTOSAVE"  # of the environment variables that set what follows
+METRICS = "ROBOMILL_METRICS"  # on: the server's owner wants Streamlit's figures of it
 
 
 @dataclass(frozen=True)
