@@ -11,7 +11,8 @@ from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.corners import LEGS, ROUND
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.offsets import turn_about, turn_back
+from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
+from robomill.toolpath.gcode.scaling import scales
 from robomill.toolpath.gcode.sinumerik import translated
 from robomill.toolpath.gcode.words import Block
 
@@ -25,9 +26,9 @@ LONGEST = 300
 
 HARMLESS: dict[str, frozenset[int]] = {
     "linuxcnc": frozenset(),
-    "fanuc": frozenset({90, 150, 220, 230, 401, 501, 500, 620, 630, 670, 690, 1870}),
+    "fanuc": frozenset({90, 150, 220, 230, 401, 501, 500, 600, 620, 630, 670, 690, 1870}),
     "grbl": frozenset(),
-    "sinumerik": frozenset({600, 601, 602, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450, 4500, 4510}),
+    "sinumerik": frozenset({90, 600, 601, 602, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450, 4500, 4510}),
 }
 """G words that move nothing, by dialect; they are counted as ignored."""
 
@@ -35,11 +36,11 @@ NAMED = {
     120: "G12 mills a circular pocket (Haas), which is not read; let the CAM system write its moves out.",
     130: "G13 mills a circular pocket (Haas), which is not read; let the CAM system write its moves out.",
     1500: "G150 mills a pocket (Haas), which is not read; let the CAM system write its moves out.",
-    510: "G51 scales coordinates, which is not read; let the CAM system write its moves out.",
-    511: "G51.1 mirrors coordinates, which is not read; let the CAM system write its moves out.",
+    510: "G51 scales coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
+    511: "G51.1 mirrors coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
     682: "G68.2 tilts the working plane, which is not read; post the program with the tool's direction.",
-    650: "G65 calls a macro with values, which is not read; let the CAM system write its moves out.",
-    660: "G66 calls a macro at every point, which is not read; let the CAM system write its moves out.",
+    650: "G65 calls a macro with values, which is read for Fanuc-like controls alone; choose that dialect.",
+    660: "G66 calls a macro at every point, which is read for Fanuc-like controls alone; choose that dialect.",
 }
 """What is said of G words that are known and not read."""
 
@@ -144,11 +145,23 @@ class Dialect:
             findings.add("harmless-g", "ignored", number, f"{name} is left out: it moves nothing")
         return _SMOOTHING.sub("", raw)
 
+    def meant_otherwise(self, block: Block) -> None:
+        """Refuse G words that LinuxCNC knows and that mean something else on this control."""
+        if self.name == "fanuc" and modal.DIAMETER in block.g:
+            raise block.refuse(f"{g_name(block.g[modal.DIAMETER])} of a Fanuc control is not read; remove the word.")
+        if self.name == "sinumerik" and block.g.get(modal.COORDINATES) in (580, 590):
+            raise block.refuse(
+                f"{g_name(block.g[modal.COORDINATES])} shifts coordinates on a Sinumerik, which is not read; write "
+                "TRANS or ATRANS."
+            )
+
     def unknown(self, machine: Machine, block: Block) -> None:
         """Refuse unknown G words (they may move the machine); count unknown M words and harmless G words."""
         for code in block.unknown_g:
             harmless = HARMLESS["fanuc"] if self._is_fanuc_like else HARMLESS[self.name]
-            if self._is_fanuc_like and self._turns(machine, block, code):
+            if self.has_macros and (self._turns(machine, block, code) or _selects(machine, block, code)):
+                continue
+            if self.has_macros and scales(machine, block, code):
                 continue
             if code == 500 and not block.words.keys().isdisjoint("xyzabc"):
                 raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")
@@ -177,6 +190,12 @@ class Dialect:
         """A word that nothing on its line uses: refused, or counted where the dialect is known to have such."""
         if letter == "p" and block.words[letter] == -1.0:
             return
+        if self._is_fanuc_like and letter == "p" and block.g.get(modal.COORDINATES) == 540:
+            del block.g[modal.COORDINATES]
+            select_extended(machine, block, block.words["p"])
+            return
+        if self.name == "sinumerik" and letter == "l":
+            raise block.refuse(f"L{block.words['l']:g} calls a subprogram; put it on a line of its own.")
         if block.unknown_m or modal.USER in block.m:
             code = [*block.unknown_m, block.m.get(modal.USER)][0]
             machine.note("unused-word", "ignored", f"{letter.upper()} beside M{code} is left out with it")
@@ -197,6 +216,19 @@ class Dialect:
         if repeats > 1_000_000:
             raise block.refuse(f"M{code} has L{repeats}; at most 1000000 repeats are made.")
         return number, repeats
+
+
+def _selects(machine: Machine, block: Block, code: int) -> bool:
+    """G54.1 P, G154 P and G110 to G129 (Haas: G154 P1 to P20) select a coordinate system; False for other words."""
+    if code in (541, 1540):
+        if "p" not in block.words:
+            raise block.refuse(f"{g_name(code)} needs P, the number of its coordinate system.")
+        select_extended(machine, block, block.words.pop("p"))
+    elif 1100 <= code <= 1290 and code % 10 == 0:
+        select_extended(machine, block, code / 10 - 109)
+    else:
+        return False
+    return True
 
 
 def choose_dialect(text: str, wanted: str) -> Dialect:

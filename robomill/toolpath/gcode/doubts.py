@@ -5,10 +5,9 @@ import re
 import numpy as np
 
 from robomill.provenance import Level
-from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.mode_rules import system_code
+from robomill.toolpath.gcode.offsets import stored_system, system_name
 from robomill.toolpath.gcode.program import TRAVERSE, Program
 from robomill.toolpath.path import NO_SPINDLE, ROTARY_ASKED
 from robomill.units import format_si, to_si
@@ -68,7 +67,8 @@ def _doubt_table(machine: Machine, program: Program) -> None:
     if not len(cuts):
         return
     angles = np.vstack([program.rotary0[cuts], program.rotary[cuts]])
-    most = np.degrees(np.maximum(np.abs(angles).max(axis=0), np.ptp(angles, axis=0)))
+    with np.errstate(over="ignore"):
+        most = np.degrees(np.maximum(np.abs(angles).max(axis=0), np.ptp(angles, axis=0)))
     for axis in np.flatnonzero(most > QUARTER):
         turned = (np.abs(program.rotary[cuts, axis]) > 0.0) | (np.abs(program.rotary0[cuts, axis]) > 0.0)
         letter = "ABC"[axis]
@@ -96,15 +96,16 @@ def _doubt_zero(machine: Machine, program: Program) -> None:
     first = np.array([row for row, _ in machine.systems])
     used = [machine.systems[i][1] for i in np.unique(np.searchsorted(first, cuts, "right") - 1)]
     for system in sorted(set(used) & set(machine.placed)):
-        origin = machine.store.values(5201 + 20 * system, 3)
-        if any(origin) or machine.store.numbered[5210 + 20 * system]:
+        place, turned = stored_system(machine, system)
+        origin = [machine.to_user(value) for value in place[:3]]
+        if any(origin) or turned:
             shown = " ".join(f"{letter}{value:g}" for letter, value in zip("XYZ", origin))
             text = (
-                f"the program itself places {g_name(system_code(system))} at {shown} (mm): the path lies that far from "
+                f"the program itself places {system_name(system)} at {shown} (mm): the path lies that far from "
                 "part zero; remove the G10 where part zero is meant to be there"
             )
             machine.findings.add("zero-placed", "warning", machine.placed[system], text)
-    unset = [g_name(system_code(system)) for system in sorted(set(used) - set(machine.placed))]
+    unset = [system_name(system) for system in sorted(set(used) - set(machine.placed))]
     if len(set(used)) > 1 and unset:
         several = f"{', '.join(unset)} are" if len(unset) > 1 else f"{unset[0]} is"
         text = (

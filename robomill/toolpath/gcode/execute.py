@@ -71,8 +71,7 @@ def restore_modes(machine: Machine, block: Block, saved: dict[str, Any]) -> None
     if saved["unit_code"] != machine.unit_code:
         machine.set_units(saved["unit_code"])
     if saved["system"] != machine.system:
-        code = next(code for code, system in offsets.SYSTEMS.items() if system == saved["system"])
-        offsets.select_system(machine, block, code)
+        offsets.select_system(machine, block, saved["system"])
     for name, value in saved.items():
         if name not in ("unit_code", "system", "automatic"):
             setattr(machine, name, value)
@@ -117,7 +116,7 @@ def _execute_g(machine: Machine, block: Block, plain: list[float]) -> None:
     if modal.LENGTH in g:
         offsets.tool_length(machine, block, g[modal.LENGTH])
     if modal.COORDINATES in g:
-        offsets.select_system(machine, block, g[modal.COORDINATES])
+        offsets.select_system(machine, block, offsets.SYSTEMS[g[modal.COORDINATES]])
     for group in (modal.CONTROL, modal.RETRACT):
         if group in g:
             machine.need_compensation_off(block, g_name(g[group]))

@@ -7,10 +7,13 @@ from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.fanuc_cycles import as_bored, repeats
 from robomill.toolpath.gcode.line_rules import MAX_LINE
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.macro import with_brackets
+from robomill.toolpath.gcode.motion_rules import keep_motion
 from robomill.toolpath.gcode.owords import File
+from robomill.toolpath.gcode.scaling import scale_words
 from robomill.toolpath.gcode.sinumerik_words import SinumerikWords
 from robomill.toolpath.gcode.stretches import Stretches
 from robomill.toolpath.gcode.subprograms import CALLS
@@ -69,7 +72,7 @@ class Interpreter(SinumerikWords):
             raw = raw if left == code.upper() else left + mark + comment
         macro = self.dialect.has_macros
         if macro:
-            raw = with_brackets(raw)
+            raw = with_brackets(self.filled_in(raw, line))
         text = normalise(self.dialect.line(raw, line, machine), line)
         if not text:
             return
@@ -84,7 +87,7 @@ class Interpreter(SinumerikWords):
         if text[reader.at : reader.at + 1] == "o":
             self.o_word(reader, index)
             return
-        if macro and self.macro_word(reader, index):
+        if macro and (self.macro_call(reader) or self.macro_word(reader, index)):
             return
         block = read_words(reader, machine.diameter_mode)
         self.execute(block)
@@ -96,7 +99,14 @@ class Interpreter(SinumerikWords):
             if self.fanuc_call(block):
                 return
             self.dialect.unknown(machine, block)
+        self.dialect.meant_otherwise(block)
+        if machine.is_fanuc:
+            as_bored(machine, block)
         check.choose_motion(machine, block, self.dialect)
+        said = block.motion
+        scale_words(machine, block)
+        if machine.is_fanuc and repeats(machine, block):
+            return
         for letter, use in check.check_words(block):
             self.dialect.unused_word(machine, block, letter, use)
         apply_settings(block, machine.store)
@@ -105,10 +115,13 @@ class Interpreter(SinumerikWords):
         level = machine.store.level
         saved = self.saved.setdefault(level, {})
         ends = execute(machine, block, saved)
+        if block.motion != said:  # mirrored
+            keep_motion(machine, said)
         if machine.corner is not None:
             raise block.refuse("a corner is rounded or chamfered at the end of a straight cut (G1) alone.")
         self.drill_modal(block)
         self.calls.special[level] = level in self.foreign or bool(saved)
+        self.call_modal(block)
         if ends:
             self.ended = True
             self._left_over_lines()
@@ -161,7 +174,7 @@ class Interpreter(SinumerikWords):
         for index in range(self.pc, min(self.pc + _LOOK_BEYOND, len(self.main.lines))):
             text = self.main.lines[index].strip()
             if text and text[0] not in "%(;":
-                if self.o_words(self.main).words:
+                if self.o_words(self.main).words or self.names:
                     return
                 self.machine.findings.add(
                     "after-end", "warning", index + 1, "the program ended before; this is not read"

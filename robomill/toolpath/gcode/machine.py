@@ -5,6 +5,8 @@ them; the rules of ``motion_rules`` make them m and rad in the machine frame.
 """
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 from robomill.errors import GCodeError
@@ -29,6 +31,18 @@ _SAVED = (
 XYZABC = "xyzabc"
 
 
+@dataclass(frozen=True)
+class Scale:
+    """Factors and centre along x, y and z, in program units."""
+
+    factors: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def place(self, axis: int, value: float) -> float:
+        """A place along an axis."""
+        return self.centre[axis] + self.factors[axis] * (value - self.centre[axis])
+
+
 class Machine:
     """State that lines change; the fields that the rules of ``motion_rules`` use are those of ``records.STATE``.
 
@@ -47,8 +61,10 @@ class Machine:
     itself (28, 30).
 
     ``corner`` is what the line says of the corner at its end (size in program units), ``polar_words`` says that X and Y
-    are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68.
-    ``modal`` is the cycle that MCALL holds, ``r_set`` are the R parameters that a program has set.
+    are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68, ``scale`` what G51 does to
+    words. ``extended`` are the origins and rotations of G54.1 P1 and on (program units), ``is_fanuc`` says that G10 and
+    variables mean what they mean there, ``variable`` what those are that nobody has set. ``modal`` is what MCALL or G66
+    holds, ``r_set`` are the R parameters that a program has set.
     """
 
     def __init__(self, tools: Tools | None) -> None:
@@ -59,6 +75,7 @@ class Machine:
         self.polar_words = False
         self.modal: Any = None
         self.r_set: set[int] = set()
+        self.scale: Scale | None = None
         self.before_turn: tuple[list[float], float] | None = None
         self.tools = None if tools is None else own_copy(tools)
         self.unit_code, self.units_said = 210, 0
@@ -79,6 +96,9 @@ class Machine:
         self.away: tuple[bool, ...] = (False, False, False)
         self.aways: list[tuple[int, tuple[bool, ...]]] = []
         self.homes: set[int] = set()
+        self.is_fanuc = False
+        self.variable: Callable[[int], float] | None = None
+        self.extended: dict[int, tuple[list[float], float]] = {}
         self.systems: list[tuple[int, int]] = [(0, 1)]
         self.placed: dict[int, int] = {}
         self.length_of: Tool | None = None
@@ -116,7 +136,7 @@ class Machine:
     def is_plain(self) -> bool:
         """True while the rules of ``mode_rules`` alone say what plain lines do."""
         held = self.compensation is not None or self.recorder.held is not None
-        other = self.diameter_mode or self.polar_words or self.modal is not None
+        other = self.diameter_mode or self.polar_words or self.modal is not None or self.scale is not None
         return not (held or other or any(self.away))
 
     def set_units(self, code: int) -> None:
@@ -127,8 +147,11 @@ class Machine:
         unit = UNITS[code]
         ratio = to_si(1.0, self.unit) / to_si(1.0, unit)
         turned = [] if self.before_turn is None else [self.before_turn[0]]
+        turned += [origin for origin, _ in self.extended.values()]
         for values in (self.p, self.sent, self.g5x, self.g92, self.length_offset, *turned):
             values[:3] = [v * ratio for v in values[:3]]
+        if self.scale is not None:
+            self.scale = replace(self.scale, centre=tuple(v * ratio for v in self.scale.centre))  # type: ignore[arg-type]
         self.feed *= ratio
         if self.compensation is not None:
             self.compensation.scale(ratio)
@@ -218,6 +241,8 @@ class Machine:
         return float(_PROVIDED[name](self))
 
     def _provided_number(self, index: int) -> float:
+        if self.variable is not None and index < 5400:
+            return self.variable(index)
         if index >= 5420:
             if self.compensation is not None:
                 raise GCodeError("the position cannot be read with cutter compensation on; use G40 first.")

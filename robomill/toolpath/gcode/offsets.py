@@ -3,17 +3,24 @@
 from robomill.toolpath.gcode.codes import COMPENSATION, g_name
 from robomill.toolpath.gcode.compensation import Compensation
 from robomill.toolpath.gcode.machine import XYZABC, Machine
+from robomill.toolpath.gcode.mode_rules import system_code
 from robomill.toolpath.gcode.motion_rules import rotate
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool
 from robomill.units import from_si, to_si
 
 SYSTEMS = {540: 1, 550: 2, 560: 3, 570: 4, 580: 5, 590: 6, 591: 7, 592: 8, 593: 9}
+LAST_SYSTEM, MOST_EXTENDED = 9, 300
+"""Behind these nine come those of G54.1 P1 (Fanuc) and G154 P1 (Haas), and on."""
+_FANUC_TOOLS = (1, 10, 11, 12, 13)
 _CORNER_OFF = "with cutter compensation on; use G40 first."
 
 
 def stored_system(machine: Machine, system: int) -> tuple[list[float], float]:
-    """Origin (x, y, z, a, b, c) in program units and degrees, and rotation (deg) of a coordinate system 1..9."""
+    """Origin (x, y, z, a, b, c) in program units and degrees, and rotation (deg) of a coordinate system."""
+    if system > LAST_SYSTEM:
+        origin, rotation = machine.extended.get(system, ([0.0] * 6, 0.0))
+        return list(origin), rotation
     at = 5201 + 20 * system
     values = machine.store.values(at, 6)
     return [machine.from_user(v) for v in values[:3]] + values[3:], machine.store.numbered[at + 9]
@@ -39,14 +46,19 @@ def _in_system(machine: Machine, absolute: list[float], origin: list[float], rot
     return point
 
 
-def select_system(machine: Machine, block: Block, code: int) -> None:
-    """G54 to G59.3."""
-    machine.need_compensation_off(block, g_name(code))
-    system = SYSTEMS[code]
+def system_name(system: int) -> str:
+    """``1`` -> ``"G54"``, ``12`` -> ``"G54.1 P3"``."""
+    return g_name(system_code(system)) if system <= LAST_SYSTEM else f"G54.1 P{system - LAST_SYSTEM}"
+
+
+def select_system(machine: Machine, block: Block, system: int) -> None:
+    """G54 to G59.3, G54.1 P1 and on."""
+    name = system_name(system)
+    machine.need_compensation_off(block, name)
     if system == machine.system:
         return
     if machine.before_turn is not None:
-        raise block.refuse(f"{g_name(code)} while coordinates are shifted or turned (G68, TRANS, ROT); end that first.")
+        raise block.refuse(f"{name} while coordinates are shifted or turned (G68, TRANS, ROT); end that first.")
     absolute = _absolute(machine)
     origin, rotation = stored_system(machine, system)
     machine.p = _in_system(machine, absolute, origin, rotation)
@@ -55,10 +67,19 @@ def select_system(machine: Machine, block: Block, code: int) -> None:
     machine.store.numbered[5220] = float(system)
 
 
+def select_extended(machine: Machine, block: Block, number: float) -> None:
+    """G54.1 P, G154 P and G54 P (Fanuc, Haas): one of the coordinate systems behind G59."""
+    if abs(number - round(number)) > 1e-4 or not 1 <= round(number) <= MOST_EXTENDED:
+        raise block.refuse(f"P{number:g} is no coordinate system; expected P1 to P{MOST_EXTENDED}.")
+    select_system(machine, block, LAST_SYSTEM + round(number))
+
+
 def turn_about(machine: Machine, block: Block) -> None:
     """G68: coordinates are turned by R degrees about X, Y (where they are not given: about where the tool is)."""
     machine.need_compensation_off(block, "G68")
     words = block.words
+    if machine.scale is not None:
+        raise block.refuse("G68 while coordinates are scaled (G51) is not read; end that first (G50).")
     if machine.plane != 17 or "r" not in words or not machine.absolute:
         raise block.refuse("G68 is read in G17 and G90, with R, its angle; write the moves out.")
     turn_back(machine)
@@ -134,6 +155,11 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
 def set_data(machine: Machine, block: Block) -> None:
     """G10 L1, L2, L10, L11 and L20."""
     kind = round(block.words.get("l", -1.0))
+    if machine.is_fanuc and kind in _FANUC_TOOLS:
+        machine.note(
+            "tool-set", "warning", f"G10 L{kind} sets a tool of the control, which is left out: the tool table holds"
+        )
+        return
     if kind not in (1, 2, 10, 11, 20):
         raise block.refuse("G10 needs L1, L2, L10, L11 or L20.")
     p = block.words.get("p")
@@ -141,6 +167,9 @@ def set_data(machine: Machine, block: Block) -> None:
         raise block.refuse("G10 needs P, a whole number.")
     if kind in (1, 10, 11):
         _set_tool(machine, block, kind, round(p))
+        return
+    if machine.is_fanuc:
+        _set_as_fanuc(machine, block, kind, round(p))
         return
     if not 0 <= round(p) <= 9:
         raise block.refuse(f"G10 L{kind} has P{p:g}; coordinate systems run from 1 to 9 (0: the current one).")
@@ -152,6 +181,22 @@ def set_data(machine: Machine, block: Block) -> None:
     if kind == 20 and "r" in block.words:
         raise block.refuse("G10 L20 takes no R.")
     _set_system(machine, block, kind, system)
+
+
+def _set_as_fanuc(machine: Machine, block: Block, kind: int, number: int) -> None:
+    """Fanuc's G10 L2 P1 to P6 places G54 to G59, L20 P1 and on G54.1 P1 and on: both by where they are."""
+    if kind == 2 and number == 0:
+        raise block.refuse(
+            "G10 L2 P0 moves all coordinate systems on a Fanuc control, which is not read; move G54 (P1) instead."
+        )
+    most = 6 if kind == 2 else MOST_EXTENDED
+    if not 1 <= number <= most:
+        raise block.refuse(f"G10 L{kind} has P{number}; expected P1 to P{most}.")
+    if "r" in block.words:
+        raise block.refuse(f"G10 L{kind} takes no R on a Fanuc control; turn coordinates with G68.")
+    if not machine.absolute:
+        raise block.refuse(f"G10 L{kind} in G91 adds to where a coordinate system is; use G90 before it.")
+    _set_system(machine, block, 2, number if kind == 2 else LAST_SYSTEM + number)
 
 
 def _set_system(machine: Machine, block: Block, kind: int, system: int) -> None:
@@ -173,9 +218,12 @@ def _set_system(machine: Machine, block: Block, kind: int, system: int) -> None:
         for axis, letter in enumerate(XYZABC):
             if letter in words:
                 new[axis] = words[letter]
-    for axis in range(6):
-        _store_axis(machine, system, axis, new[axis])
-    machine.store.numbered[5210 + 20 * system] = new_rotation
+    if system > LAST_SYSTEM:
+        machine.extended[system] = list(new), new_rotation
+    else:
+        for axis in range(6):
+            _store_axis(machine, system, axis, new[axis])
+        machine.store.numbered[5210 + 20 * system] = new_rotation
     machine.placed.setdefault(system, block.line)
     if system == machine.system:
         point = [p - n for p, n in zip(_unrotated(machine), new)]
@@ -276,6 +324,8 @@ def compensation_on(machine: Machine, block: Block) -> None:
     """G41, G42, G41.1 and G42.1."""
     code = block.g[COMPENSATION]
     name = g_name(code)
+    if machine.scale is not None and min(machine.scale.factors) < 0.0:
+        raise block.refuse(f"{name} while coordinates are mirrored is not read; end that first (G50.1).")
     if machine.plane not in (17, 18):
         raise block.refuse(f"{name} works in the planes G17 and G18 only.")
     if machine.compensation is not None:

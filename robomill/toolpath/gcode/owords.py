@@ -1,6 +1,6 @@
 """O words and subroutines as the interpreter follows them: where ``flow_rules`` hands a line back, and files."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +45,8 @@ class File:
 class Call:
     """A call that the rules cannot leave: it goes back into another file, or behind a line that has no O word.
 
-    ``start`` is the line (index) at which each of its ``repeats`` begins.
+    ``start`` is the line (index) at which each of its ``repeats`` begins. ``values`` are the variables that it begins
+    with, by number (None: those of its caller), and ``kept`` those of its caller.
     """
 
     label: str
@@ -53,6 +54,8 @@ class Call:
     pc: int
     repeats: int = 1
     start: int = 0
+    values: dict[int, float] | None = None
+    kept: list[float] = field(default_factory=list)
 
 
 class OWords:

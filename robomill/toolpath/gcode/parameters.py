@@ -2,7 +2,7 @@
 
 import math
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -187,6 +187,11 @@ class Parameters:
             raise GCodeError(f"#{key} does not exist; parameters run from 1 to {COUNT - 1}.")
         else:
             self.numbered[key] = value
+
+    def vacate(self, ranges: Iterable[range]) -> None:
+        """Nobody has set the numbered parameters of ``ranges``: what reads one asks the machine for it."""
+        for each in ranges:
+            self.numbered[each.start : each.stop] = array("d", [math.nan]) * len(each)
 
     # --- what the machine provides
     def ask(self, name: str | None) -> None:

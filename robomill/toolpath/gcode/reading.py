@@ -17,6 +17,7 @@ from robomill.toolpath.gcode.foreign import language_of
 from robomill.toolpath.gcode.interpreter import Interpreter
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.macro_calls import begin_empty
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program
 from robomill.toolpath.path import ROTARY_ASKED, TABLES, Toolpath
@@ -90,7 +91,7 @@ def interpret(
     chosen = choose_dialect(data[:SAMPLE].decode("utf-8", "replace"), dialect)
     if chosen.guessed and (foreign := language_of(data[:SAMPLE].decode("utf-8", "replace"))):
         raise GCodeError.at(*foreign)
-    machine = Machine(tools)
+    machine = _machine(tools, chosen)
     is_file = isinstance(source, Path) or (isinstance(source, str) and name != "program")
     folder = Path(source).parent if isinstance(source, str | Path) and is_file else None
     file = File(name, lines, folder)
@@ -110,11 +111,18 @@ def interpret(
     return _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
 
 
+def _machine(tools: Tools | None, dialect: Dialect) -> Machine:
+    machine = Machine(tools)
+    if dialect.name == "fanuc":
+        begin_empty(machine)
+    return machine
+
+
 def _offered(refused: GCodeError, machine: Machine, tools: Tools | None, file: File, dialect: Dialect) -> GCodeError:
     """What a program is refused with; of an arc off its circle also whether all arcs fit with absolute centres."""
     if not machine.arc_refused:
         return refused
-    again = Machine(tools)
+    again = _machine(tools, dialect)
     again.arc_absolute = True
     try:
         Interpreter(again, File(file.name, file.lines, file.folder), dialect).run()

@@ -13,7 +13,7 @@ from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.corners import BEVEL, LEGS, ROUND
 from robomill.toolpath.gcode.expressions import Reader
-from robomill.toolpath.gcode.macro import MacroB
+from robomill.toolpath.gcode.macro_calls import MacroCalls
 from robomill.toolpath.gcode.motion_rules import dwell
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
@@ -52,7 +52,7 @@ class Hole:
     pitch: float
 
 
-class SinumerikWords(MacroB):
+class SinumerikWords(MacroCalls):
     """Reads what stands beside moves; what is left of a line goes on to the reader of words."""
 
     modal_hole: Hole | None = None

@@ -1,5 +1,6 @@
 """Subprograms called by number, line or name: M97, M98, M198 with M99; L100, names and CALL with M17 and RET."""
 
+import math
 import re
 
 from robomill.errors import GCodeError
@@ -19,6 +20,8 @@ _NAMED = re.compile(
 _LEAVES = re.compile(r"\b(?:M17|M0?2|M30|RET)\b(?:[ \t]*\([^()]*\))?")
 _N = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?")
 CALLS = (97, 98, 198)
+LOCALS = 33
+"""Variables #1 to #33 of Macro B belong to the macro that is being run."""
 
 
 class Subprograms(OWords):
@@ -34,6 +37,9 @@ class Subprograms(OWords):
             return True
         if "p" not in block.words:
             raise block.refuse(f"M{code} needs P, the {'line' if code == 97 else 'number of the program'} to call.")
+        if "q" in block.words:
+            text = "is a line on some controls (Fanuc) and a count on others (Mach3); write L for repeats"
+            raise block.refuse(f"M{code} has Q{block.words['q']:g}, which {text}.")
         bare = self.o_words(self.main).bare
         number, repeats = self.dialect.subprogram(block, code, bare)
         if code == 97:
@@ -72,12 +78,22 @@ class Subprograms(OWords):
             found.setdefault(int(each[1]), []).append(lines.index_at(each.start()))
         return found
 
-    def _enter(self, block: Block, label: str, start: int, repeats: int) -> None:
+    def _enter(
+        self, block: Block, label: str, start: int, repeats: int, values: dict[int, float] | None = None
+    ) -> None:
+        """Call what begins at ``start``; ``values`` are its own variables, None if it shares those of its caller."""
         if repeats < 1:
             return
         if rules.enter(self.machine.store.arrays, self.o_words(self.main).plain, -1, -1, 0):
             raise block.refuse(SENTENCES[rules.TOO_MANY_LEVELS])
-        self._go_to(Call(label, self.file, self.pc, repeats, start), self.main, start)
+        call = Call(label, self.file, self.pc, repeats, start, values)
+        if values is not None:
+            call.kept = self.machine.store.values(1, LOCALS)
+            self._give(values)
+        self._go_to(call, self.main, start)
+
+    def _give(self, values: dict[int, float]) -> None:
+        self.machine.store.put(1, [values.get(number, math.nan) for number in range(1, LOCALS + 1)])
 
     def _return(self, block: Block) -> None:
         target = None
@@ -100,7 +116,11 @@ class Subprograms(OWords):
         if call is not None and call.repeats > 1:
             call.repeats -= 1
             self.pc = call.start
+            if call.values is not None:
+                self._give(call.values)
         else:
+            if call is not None and call.values is not None:
+                self.machine.store.put(1, call.kept)
             self._go_back(level, rules.leave(self.machine.store.arrays, self.o_words(self.file).plain))
 
     # --- Sinumerik: by name
@@ -129,9 +149,9 @@ class Subprograms(OWords):
         if found is None:
             found = _NAMED.fullmatch(plain)
             name = (found[1] or found[2]) if found else ""
-            if found is None or (found[1] is None and name not in self._names):
+            if found is None or (found[1] is None and name not in self.names):
                 return code
-        start = self._names.get(name)
+        start = self.names.get(name)
         repeats = int(found[found.re.groups] or 1)
         if start is None:
             text = f"{name} calls a subprogram that is not in this file; paste it in behind the end, below a line "
@@ -144,7 +164,8 @@ class Subprograms(OWords):
         return None
 
     @cached_property
-    def _names(self) -> dict[str, int]:
+    def names(self) -> dict[str, int]:
+        """Where the subprograms begin that a Sinumerik calls by name."""
         lines = self.main.lines
         found = ((each[1] or each[2], lines.index_at(each.start())) for each in _HEADER.finditer(lines.data))
         return {name.decode("ascii", "replace").upper(): at + 1 for name, at in found}

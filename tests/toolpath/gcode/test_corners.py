@@ -54,7 +54,7 @@ def test_a_chamfer_takes_its_length_off_both_cuts_and_corners_may_follow_one_ano
         ("G68 X0 Y0\n", "Line 4: G68 is read in G17 and G90, with R"),
         ("G68 X0 Y0 R30\nG55\n", "Line 5: G55 while coordinates are shifted or turned"),
         ("G16\nG91 X5 Y10\n", "Line 5: G16 is read in G17 and G90 alone"),
-        ("G51 X0 Y0 P2\n", "Line 4: G51 scales coordinates, which is not read"),
+        ("G51 X0 Y0\n", "Line 4: G51 needs P"),
         ("G68.2 X0 Y0 Z0 I0 J30 K0\n", "Line 4: G68.2 tilts the working plane"),
     ],
 )

@@ -42,7 +42,7 @@ def test_branches_and_loops_are_followed(body: str, places: list[float], dialect
         ("IF [1 EQ 1] THEN X5\n", "Line 4: THEN sets variables"),
         ("WHILE [1 EQ 1] DO1\nX5\n", "Line 4: WHILE ... DO and END do not match here"),
         ("X1\nEND1\n", "Line 5: WHILE ... DO and END do not match here"),
-        ("IF [#1 EQ #0] GOTO 5\nN5\n", "#0 does not exist"),
+        ("IF [#0 LT 1] GOTO 5\nN5\n", "#0 does not exist"),
         ("N5 X1\nGOTO 5\n", "more than 25000 lines were executed in loops; the program may not end"),
     ],
 )

@@ -181,3 +181,50 @@ def test_there_are_nine_coordinate_systems_and_the_current_one(p, stands):
                 interpret(text)
     with pytest.raises(GCodeError, match=r"^Line 2: G10 L20 takes no R\.$"):
         interpret("G21 G90\nG10 L20 P1 X1 R10\nM2\n")
+
+
+@pytest.mark.parametrize(
+    ("body", "ends"),
+    [
+        (
+            "G10 L20 P3 X10 Y20 Z0\nG0 G54.1 P3 X0 Y0\nX1\nG20\nX1\nG54 X0 Y0",
+            [(10, 20), (11, 20), (35.4, 20), (0, 0)],
+        ),
+        ("G10 L2 P2 X7 Y0 Z0\nG55 G0 X0\nG154 P4 X1\nG113 X2", [(7, 0), (1, 0), (2, 0)]),
+        ("G0 G54 P2 X3\nG54 X4\nG10 L20 P2 X50\nG54 P2 X1", [(3, 0), (4, 0), (51, 0)]),
+    ],
+)
+def test_further_systems_of_fanuc_and_haas_are_placed_and_selected(body: str, ends: list[tuple[float, float]]) -> None:
+    """G10 L20 says where G54.1 P lies on a Fanuc; LinuxCNC's L20 says what the tool's place shall be."""
+    program = interpret(f"G21 G90\n{body}\nM30\n", dialect="fanuc")
+    np.testing.assert_allclose(program.end[:, :2] * 1e3, ends, atol=1e-9)
+
+
+def test_further_systems_that_nobody_has_placed_lie_over_one_another() -> None:
+    program = interpret("G21 G90 G0 G54.1 P2 X0 Z5\nG1 Z-1 F9\nG54.1 P3 X0\nX5\nM30\n", dialect="fanuc")
+    said = next(f.message for f in program.findings if f.code == "zeros-overlaid")
+    assert "G54.1 P2, G54.1 P3 are nowhere placed" in said
+
+
+@pytest.mark.parametrize(
+    ("code", "says"),
+    [
+        ("G90 G10 L2 P0 X5", "G10 L2 P0 moves all coordinate systems"),
+        ("G90 G10 L2 P7 X5", "G10 L2 has P7; expected P1 to P6"),
+        ("G90 G10 L2 P1 X5 R30", "G10 L2 takes no R on a Fanuc"),
+        ("G91\nG10 L2 P1 X5", "G10 L2 in G91 adds"),
+        ("G54.1 X5", "G54.1 needs P"),
+        ("G54.1 P0 X5", "P0 is no coordinate system"),
+        ("G7", "G7 of a Fanuc control is not read"),
+        ("M98 P2 Q3", "M98 has Q3, which is a line on some controls"),
+    ],
+)
+def test_words_that_mean_something_else_on_a_fanuc_are_refused(code: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=f"Line [23]: {says}"):
+        interpret(f"G21\n{code}\nM30\n", dialect="fanuc")
+
+
+def test_tools_that_a_fanuc_program_sets_are_left_out_with_a_word() -> None:
+    program = interpret("G21 G90\nG10 L10 P1 R50.\nG10 L12 P1 R5.\nG0 Z5\nM30\n", dialect="fanuc")
+    assert [f.line for f in program.findings if f.code == "tool-set"] == [2, 3]
+    assert program.end[-1, 2] == pytest.approx(5e-3)

@@ -132,3 +132,21 @@ def test_what_is_not_read_is_refused_by_name(body: str, says: str) -> None:
     with pytest.raises(GCodeError) as caught:
         ends(body)
     assert says in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("code", "says"),
+    [
+        ("X10 L100", "L100 calls a subprogram; put it on a line of its own"),
+        ("G58 X5", "G58 shifts coordinates on a Sinumerik"),
+        ("G59 Y5", "G59 shifts coordinates on a Sinumerik"),
+    ],
+)
+def test_words_that_would_be_read_wrongly_are_refused(code: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=f"Line 2: {says}"):
+        interpret(f"G90 G1 F100\n{code}\nM30\n", dialect="sinumerik")
+
+
+def test_subprograms_behind_the_end_are_not_said_to_be_left_out() -> None:
+    program = interpret("G91 G1 F100\nL100\nM30\n%_N_L100_SPF\nX10\nM17\n", dialect="sinumerik")
+    assert "after-end" not in {f.code for f in program.findings}

@@ -15,7 +15,7 @@ SAYS = {
     "other G codes": "may move",
     "G70 to G72": "may move",
     "U V W, G17.1": "no U axis",
-    "G51 G68.2": "scales coordinates",
+    "G68.2": "tilts the working plane",
     "$H $J": "moves the machine",
 }
 TOOLS = {n: Tool(n, 3e-3, (0.0, 0.0, n * 1e-2)) for n in range(1, 9)}
