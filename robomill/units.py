@@ -269,9 +269,9 @@ def format_si(
     return format_value(from_si(float(value), unit), unit, digits, sign, with_unit, missing)
 
 
-def format_short(value: SupportsFloat, unit: str) -> str:
-    """An SI value with the digits that say it, six at most: ``format_short(8e-3, "mm") == "8 mm"``."""
-    return _with_label(format_significant(from_si(float(value), unit)), unit)
+def format_short(value: SupportsFloat, unit: str, digits: int = 6) -> str:
+    """An SI value with the digits that say it, so many at most: ``format_short(8e-3, "mm") == "8 mm"``."""
+    return _with_label(format_significant(from_si(float(value), unit), digits), unit)
 
 
 def format_many(

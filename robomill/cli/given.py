@@ -6,7 +6,7 @@ from typing import Any
 
 from robomill.errors import GCodeError, LoadTestError, ProjectError, RobomillError, RobotError
 from robomill.files import PROGRAM, ROBOT, SETUP, TABLE, TOOLS, FileKind, check_size, name_of, read_file
-from robomill.io.samples import find_sample
+from robomill.io.samples import find_sample, sample_or_file
 
 STDIN, CALLED = "-", "standard input"
 
@@ -56,7 +56,11 @@ def program(name: str) -> Path | bytes:
     """The file of a program; where that is a stream, which can be read once, what comes out of it."""
     if name == STDIN:
         return stdin(PROGRAM, GCodeError)
-    file = find_sample("program", name) or Path(name)
+    file = sample_or_file("program", name, GCodeError)
+    if file.suffix.lower() == ".toml":
+        raise GCodeError(
+            f"{name_of(file)}: this is TOML (a set-up, a robot, a material), not a program; give its program."
+        )
     return file if file.is_file() else read_file(file, PROGRAM, GCodeError)
 
 

@@ -2,21 +2,28 @@
 
 import argparse
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from robomill.errors import RobomillError
 
 
 def numbers(text: str, option: str, count: int | None, what: str) -> list[float]:
-    try:
-        values = [float(word) for word in text.split(",")]
-    except ValueError:
-        values = []
-    if len(values) != (count or max(len(values), 1)) or not all(map(math.isfinite, values)):
+    values = floats(text.split(","))
+    if len(values) != (count or max(len(values), 1)):
         raise RobomillError(
-            f"{option}: expected {count or 'one or more'} numbers separated by commas ({what}), found {text!r}."
+            f"{option}: expected {count or 'one or more'} numbers separated by commas ({what}), found {text!r:.80}."
         )
     return values
+
+
+def floats(words: Sequence[str]) -> list[float]:
+    """The numbers that words say; none where one of them says none."""
+    try:
+        values = [float(word) for word in words]
+    except ValueError:
+        return []
+    return values if all(map(math.isfinite, values)) else []
 
 
 def wholes(text: str, option: str) -> tuple[int, ...]:
@@ -45,6 +52,8 @@ def axis(text: str, option: str) -> Any:
     from robomill.units import to_si
     from robomill.workspace.grid import axis_points
 
-    words = text.split(":")
-    low, *rest = numbers(",".join(words), option, 3 if len(words) != 1 else 1, "low:high:step or one number, in mm")
+    values = floats(text.split(":"))
+    if len(values) not in (1, 3):
+        raise RobomillError(f"{option}: expected low:high:step or one number, in mm, found {text!r:.80}.")
+    low, *rest = values
     return to_si(axis_points(low, rest[0], rest[1], option), "mm") if rest else to_si(low, "mm")

@@ -25,7 +25,7 @@ def run_pose(arguments: Any) -> int:
 
     robot = _robot(arguments)
     record = pose_record(at_pose(robot, options.theta(robot, arguments.theta_deg)))
-    return say(arguments, record, pose_lines(record))
+    return say(arguments, record, pose_lines(record), 0 if record["reached"] else 1)
 
 
 def run_ik(arguments: Any) -> int:
@@ -84,12 +84,12 @@ def run_map(arguments: Any) -> int:
     grid = Grid(*(options.axis(getattr(arguments, axis), f"--{axis}") for axis in "xyz"))
     A, B = to_si(arguments.a_deg, "deg"), to_si(arguments.b_deg, "deg")
     everything = compliance_map(robot, grid, A, B)
-    fields = [everything.field(name) for name in ",".join(arguments.quantity).split(",")]
+    fields = [everything.field(name) for name in dict.fromkeys(",".join(arguments.quantity).split(","))]
     files = Written.before([Path(arguments.out)] if arguments.out else [])
     if arguments.out:
         write_map(arguments.out, fields)
     record = map_record(fields)
-    return say(arguments, record, map_lines(record), files=files)
+    return say(arguments, record, map_lines(record), 0 if record["reached"]["count"] else 1, files)
 
 
 def run_samples(arguments: Any) -> int:
@@ -104,7 +104,7 @@ def run_samples(arguments: Any) -> int:
     rows = [{"kind": each.kind, "name": each.name, "title": each.title, "path": str(each.path)} for each in chosen]
     record: dict[str, Any] = {"samples": rows}
     lines = sample_lines(record)
-    if arguments.copy:
+    if arguments.copy is not None:
         copies = copy_samples(arguments.copy, arguments.names)
         record["copied"] = [str(copy) for copy in copies]
         lines.append(f"copied    {len(copies)} files to {Path(arguments.copy)}")

@@ -113,10 +113,11 @@ class ProcessForce(ForceModel):
         usual = f"{format_si(low, 'mm', 2)} to {format_si(high, 'mm', 2)}"
         for i in (int(np.argmin(np.nan_to_num(c, nan=low))), int(np.argmax(np.nan_to_num(c, nan=high)))):
             if c[i] < low or c[i] > high:
+                fed = format_short(c[i], "mm", 3)
                 text = (
-                    f"each tooth is fed {format_short(c[i], 'mm')}; the material's coefficients are measured at about "
+                    f"each tooth is fed {fed}; the material's coefficients are measured at about {usual}, and carried "
                 )
-                text += f"{usual}, and carried on from there."
+                text += "on from there."
                 found.append(Finding("warning", text, int(conditions.block[i]), code="feed-per-tooth"))
         return tuple(found)
 

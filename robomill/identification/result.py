@@ -233,7 +233,8 @@ class IdentificationResult(Tabled):
         """
         source = f"identified from {len(self.row)} load tests ({name}), {self.choice.title.lower()}"
         applied = self.applied_to(robot)
-        marked = {**applied.provenance, IDENTIFIED: Provenance("computed", source)}
+        kind: Kind = self.kind if self.kind in ("synthetic", "assumed") else "computed"  # made up tests stay so
+        marked = {**applied.provenance, IDENTIFIED: Provenance(kind, source)}
         found = self.springs(robot)
         taken = {_place(spring) for spring in found}
         earlier = ("measured", "synthetic") if IDENTIFIED in before.provenance else ()

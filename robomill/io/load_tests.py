@@ -35,7 +35,7 @@ from robomill.identification.suspicion import suspicions
 from robomill.io.columns import Columns, frame_columns, read_columns
 from robomill.io.load_test_columns import LAYOUT, POSTURE, XYZ, axes, group, head_of, kind_of
 from robomill.io.load_test_poses import ABC, WPR, force_and_points, gauges, poses, rotation_vector
-from robomill.io.samples import find_sample
+from robomill.io.samples import sample_or_file
 from robomill.provenance import Finding, Provenance
 from robomill.robot.model import Robot
 from robomill.units import from_si
@@ -90,7 +90,8 @@ def read_load_tests(path_or_text: str | Path | bytes | DataFrame, robot: Robot |
 
 def _read(given: str | Path | bytes | DataFrame, robot: Robot | None, name: str = "") -> LoadTests | JointTests:
     if isinstance(given, str | Path):
-        given = find_sample("load tests", given) or given
+        text = isinstance(given, str) and any(mark in given for mark in "\n,;\t")  # a table, not the name of one
+        given = given if text else sample_or_file("load tests", given, LoadTestError)
     table, name = frame_columns(given, LAYOUT) if is_frame(given) else read_columns(given, LAYOUT, name)
     if any(key in table for key in COMPLIANCES):
         tests: LoadTests | JointTests = _compliances(table, robot)

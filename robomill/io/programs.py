@@ -4,7 +4,7 @@ from pathlib import Path
 
 from robomill.errors import ProjectError
 from robomill.files import PROGRAM, check_size, name_of, read_file
-from robomill.io.samples import find_sample
+from robomill.io.samples import sample_or_file
 from robomill.toolpath.source import GCodeSource
 
 
@@ -34,7 +34,7 @@ def read_program(path: str | Path, dialect: str = "auto") -> GCodeSource:
     >>> rm.read_program("heart").name
     'heart.nc'
     """
-    file = find_sample("program", path) or path
+    file = sample_or_file("program", path, ProjectError)
     return program_from_bytes(read_file(file, PROGRAM, ProjectError), name_of(file), dialect)
 
 

@@ -21,7 +21,7 @@ from robomill.io.points import POINTS, points_from_table, points_to_table
 from robomill.io.programs import program_from_bytes
 from robomill.io.robot_reader import ANGLE
 from robomill.io.robots import load_robot, read_robot, robot_from_toml, robot_names, robot_to_toml
-from robomill.io.samples import find_sample
+from robomill.io.samples import sample_or_file
 from robomill.io.sketches import sketch_from_table, sketch_to_table
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.io.texts import read_text
@@ -78,7 +78,7 @@ def load_setup(path: str | Path, allow_outside: bool = False) -> SimulationSetup
     >>> setup.cutter, setup.tolerance
     (<Cutter 8.00 mm flat end mill, 3 flutes>, 0.0003)
     """
-    file = find_sample("set-up", path) or Path(path)
+    file = sample_or_file("set-up", path, ProjectError)
     if file.is_dir():
         file = file / "setup.toml"
     if file.suffix.lower() in SUFFIXES and file.suffix.lower() != ".txt":  # which a set-up may end in, too

@@ -29,6 +29,8 @@ def robot_from_toml(text: str, where: str = "robot") -> Robot:
     """The robot written in ``text``; ``where`` names it in refusals. Raises RobotError with one sentence."""
     top = Table(parse_toml(text, where, RobotError), where, RobotError)
     found = top.text("format", FORMAT), top.whole("version", VERSION)
+    if found[0] == "robomill-setup":
+        raise top.refuse("format", "this is a set-up, not a robot; give the robot that it names.")
     if found != (FORMAT, VERSION):
         raise top.refuse("version", f"expected format {FORMAT!r}, version {VERSION}; found {found[0]!r}, {found[1]}.")
     joints = top.tables("joint")

@@ -8,7 +8,7 @@ from robomill.errors import RobotError
 from robomill.files import ROBOT, name_of, read_file
 from robomill.io.robot_reader import robot_from_toml
 from robomill.io.robot_writer import robot_to_toml
-from robomill.io.samples import sample_names, samples_dir
+from robomill.io.samples import sample_names, sample_or_file, samples_dir
 from robomill.io.texts import read_text
 from robomill.io.urdf import read_urdf
 from robomill.robot.model import Robot
@@ -80,11 +80,7 @@ def load_robot(name_or_path: str | Path, *, tip: str | None = None) -> Robot:
     >>> rm.load_robot("slavkovic_5r")
     <Robot slavkovic_5r: 5 joints, standard D-H, compliance set 'table_2'>
     """
-    text = str(name_or_path)
-    path = robot_folder() / f"{text}.toml" if text in robot_names() else Path(name_or_path)
-    if not path.exists():
-        presets = ", ".join(robot_names())
-        raise RobotError(f"Robot {text!r:.80}: no such preset or file; the presets are {presets}.", where=text)
+    path = sample_or_file("robot", name_or_path, RobotError)
     data, name = read_file(path, ROBOT, RobotError), name_of(path)
     if tip is None:
         return read_robot(data, name)

@@ -4,11 +4,12 @@ import shutil
 import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Literal
 
-from robomill.errors import ProjectError
+from robomill.errors import ProjectError, RobomillError
 
 SampleKind = Literal["set-up", "robot", "program", "load tests", "material"]
 TITLED: tuple[SampleKind, ...] = ("set-up", "robot", "material")  # TOML files, which say what they are called
@@ -89,6 +90,25 @@ def find_sample(kind: SampleKind, name: str | Path) -> Path | None:
     return None if found is None or Path(called).exists() else found
 
 
+def sample_or_file(kind: SampleKind, name: str | Path, error: type[RobomillError]) -> Path:
+    """The file of a sample, or the one named. Raises ``error`` for a mere name that is neither, with those known."""
+    if not str(name).strip():
+        raise error(f"The name of the {kind} is empty; give a file, or one of {', '.join(sample_names(kind))}.")
+    path = find_sample(kind, name) or Path(name)
+    if path.suffix or len(path.parts) != 1 or path.exists():
+        return path
+    names = sample_names(kind)
+    close = get_close_matches(str(name).lower(), names, 1, 0.5)
+    other = next((sample.kind for sample in samples() if sample.name == str(name)), None)
+    meant = f"; {str(name)!r} is a {other}" if other else f"; did you mean {close[0]!r}?" if close else ""
+    refusal = error(
+        f"{str(name)!r:.80}: there is no such file here and no {kind} of this name; those that come with robomill are "
+        f"{', '.join(names)}{meant}{'' if meant.endswith('?') else '.'}"
+    )
+    refusal.where = str(name)
+    raise refusal
+
+
 def copy_samples(folder: str | Path, names: Sequence[str] = ()) -> list[Path]:
     """Copy samples, with what lies beside them, into a folder of one's own.
 
@@ -116,6 +136,8 @@ def copy_samples(folder: str | Path, names: Sequence[str] = ()) -> list[Path]:
     >>> sorted(path.name for path in rm.copy_samples(tempfile.mkdtemp(), ["slavkovic_5r", "nine_points"]))
     ['nine_points.csv', 'slavkovic_5r.toml']
     """
+    if not str(folder).strip():
+        raise ProjectError("The folder to copy to has no name; give one, or . for the folder you are in.")
     here, there = samples_dir(), Path(folder)
     chosen = {path: there / path.relative_to(here) for path in _to_copy(here, names)}
     for path, copy in chosen.items():

@@ -109,6 +109,17 @@ def explain(result: IKResult, T_MT: FloatArray, residual: float) -> str:
     return _past_limit(robot, turned[best], over[best])
 
 
+def beyond_limits(robot: Robot, theta: FloatArray) -> list[str]:
+    """A sentence for each joint of theta (n,) that is past its limits."""
+    over, (low, high) = overshoot(robot, theta), robot.limits.T
+    return [
+        f"joint {robot.joint_numbers[i]} is at {format_si(theta[i], unit, 1)}, beyond its limits of "
+        f"{format_si(low[i], unit, 1)} to {format_si(high[i], unit, 1)}"
+        for i, unit in enumerate(robot.joint_units)
+        if abs(over[i]) > LIMIT_SLACK
+    ]
+
+
 def _past_limit(robot: Robot, theta: FloatArray, over: FloatArray) -> str:
     joint = int(np.argmax(np.abs(over)))
     limit = robot.limits[joint, 0 if over[joint] < 0 else 1]

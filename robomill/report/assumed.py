@@ -88,12 +88,13 @@ def assumed_of_tests(tests: Any) -> list[Assumed]:
 
 
 def _of_sources(rows: Sequence[Source], robot: Robot) -> list[Assumed]:
-    chosen = [row for row in rows if row.provenance.kind == "assumed" and row.provenance is not MODEL]
-    return [Assumed(_words(row.what, robot), row.value, row.provenance.source) for row in chosen]
+    chosen = [row for row in rows if row.provenance.kind in MADE_UP and row.provenance is not MODEL]
+    return [Assumed(_words(row, robot), row.value, row.provenance.source) for row in chosen]
 
 
-def _words(what: str, robot: Robot) -> str:
-    lengths = list(robot_lengths(robot))
+def _words(row: Source, robot: Robot) -> str:
+    what, lengths = row.what, list(robot_lengths(robot))
     if what == "Link lengths" and len(lengths) <= MANY:
         return f"link lengths {', '.join(lengths)}"
-    return f"{what[0].lower()}{what[1:]}" if what[1].islower() else what
+    said = f"{what[0].lower()}{what[1:]}" if what[1].islower() else what
+    return f"{said} (synthetic)" if row.provenance.kind == "synthetic" else said

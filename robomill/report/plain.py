@@ -69,7 +69,7 @@ def pose_lines(record: dict[str, Any]) -> list[str]:
     lines += ["C (um/N)", *matrix_lines(record["C_um_per_N"])]
     for joint, share in zip(record["joints"], record["joint_share_um_per_N"], strict=True):
         lines += [f"of joint {joint}", *matrix_lines(share)]
-    return lines
+    return lines if record["reached"] else [*lines, f"not reached: {record['reason']}"]
 
 
 def ik_lines(record: dict[str, Any]) -> list[str]:
@@ -158,7 +158,7 @@ def _section_line(section: dict[str, Any]) -> str:
     if section["kind"] == "groove":
         signed = {name: signed[name] for name in ("centre", "floor")}
     found = [f"{name} {v:.3f}" for name, v in told.items() if not math.isnan(v)]
-    found += [f"{name} {v:+.4f}" for name, v in signed.items() if not math.isnan(v)]
+    found += [f"{name} {format_value(v, '1', 4, sign=True)}" for name, v in signed.items() if not math.isnan(v)]
     return start + (", ".join(found) or str(section["note"]) or "nothing can be measured")
 
 
@@ -175,7 +175,14 @@ def _reading(found: dict[str, Any]) -> str:
 
 def map_lines(record: dict[str, Any]) -> list[str]:
     sizes = " x ".join(str(len(record[f"{axis.lower()}_mm"])) for axis in AXES)
-    lines = [f"{record['robot']}, {sizes} points, {record['reached']['count']} of {record['reached']['of']} reached"]
+    reached, of = record["reached"]["count"], record["reached"]["of"]
+    lines = [f"{record['robot']}, {sizes} points, {reached} of {of} reached"]
+    for axis in AXES:
+        places = record[f"{axis.lower()}_mm"]
+        ends = [format_value(place, "mm", 1) for place in (places[0], places[-1])[: len(places)]]
+        lines.append(f"{axis:18} {' to '.join(ends)}")
+    if not reached:
+        return [*lines, "The arm reaches none of these points; look at --x, --y, --z and the tilts."]
     for quantity in record["quantities"]:
         low, high = (format_value(quantity[end], quantity["unit"]) for end in ("min", "max"))
         lines.append(f"{quantity['name']:18} {low} to {high}   {quantity['title']}")

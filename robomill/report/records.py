@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.kinematics.inverse import IKResult
+from robomill.kinematics.result import beyond_limits
 from robomill.report.assumed import assumed_of_program, assumed_of_robot
 from robomill.report.settled import settled
 from robomill.robot.model import Robot
@@ -73,13 +74,17 @@ def said_of(robot: Robot) -> dict[str, dict[str, str]]:
 
 
 def pose_record(pose: PoseReport) -> dict[str, Any]:
-    """One configuration: pose, Jacobian, det(J), compliance and its joint shares. T_MT and J in SI."""
+    """One configuration: pose, Jacobian, det(J), compliance and its joint shares. T_MT and J in SI; not reached is one
+    with a joint beyond its limits, which ``reason`` names."""
     robot = pose.robot
+    beyond = beyond_limits(robot, pose.theta)
     return {
         "robot": robot.name,
         "compliance_set": robot.compliance_set,
         "joints": list(robot.joint_numbers),
         "theta_deg": shown_theta(robot, pose.theta).tolist(),
+        "reached": not beyond,
+        "reason": "; ".join(beyond),
         "T_MT": pose.T_MT.tolist(),
         "J": pose.J.tolist(),
         "det_J": pose.det_J if pose.has_det_J else None,

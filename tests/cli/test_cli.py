@@ -238,6 +238,15 @@ def test_gcode(capsys) -> None:
         (("simulate", FLUTE, "--tol", "0"), "Tolerance"),
         (("simulate", FLUTE, "--program", "nowhere.nc"), "nowhere.nc"),
         (("gcode", "nowhere.nc"), "nowhere.nc"),
+        (("simulate", "paper_flut"), "did you mean 'paper_flute'?"),
+        (("simulate", "kuka_kr270"), "'kuka_kr270' is a robot."),
+        (("gcode", "hart"), "did you mean 'heart'?"),
+        (("identify", "slavkovic_5r", "nine_point"), "did you mean 'nine_points'?"),
+        (("pose", "KUKA_KR27", "--theta-deg", "0"), "did you mean 'kuka_kr270'?"),
+        (("pose", FLUTE / "setup.toml", "--theta-deg", "0"), "this is a set-up, not a robot"),
+        (("gcode", FLUTE / "setup.toml"), "setup.toml: this is TOML"),
+        (("simulate", ""), "is empty"),
+        (("samples", "--copy", ""), "has no name"),
     ],
 )
 def test_refusals_exit_with_2_and_one_sentence(capsys, words, sentence: str) -> None:
@@ -274,6 +283,40 @@ def test_map_marks_what_is_not_reached(capsys, tmp_path: Path) -> None:
     assert (tmp_path / "map.csv").read_text().count("\n") == 26
 
 
+def test_a_map_of_which_nothing_is_reached_is_not_green(capsys) -> None:
+    code, out, _ = run(capsys, "map", "slavkovic_5r", "--quantity", "C_yy,C_yy", "--z", "9000", "--x", "0", "--y", "0")
+    assert code == 1
+    assert "The arm reaches none of these points" in out
+
+
+def test_a_map_says_where_its_last_point_is_and_each_quantity_once(capsys) -> None:
+    """With steps of 50 mm from 0 no point falls on 120."""
+    words = ("--quantity", "C_yy,C_yy", "--z", "0", "--x", "0:120:50", "--y", "-1300")
+    code, out, _ = run(capsys, "map", "slavkovic_5r", *words)
+    assert code == 0
+    assert "0.0 mm to 100.0 mm" in out
+    assert out.count("\nC_yy ") == 1
+
+
+def test_a_joint_beyond_its_limits_is_not_reached(capsys) -> None:
+    words = ("pose", "slavkovic_5r", "--theta-deg", "500,0,0,0,0")
+    code, out, _ = run(capsys, *words)
+    assert code == 1
+    assert "not reached: joint 1 is at 500.0°, beyond its limits of −120.0° to 120.0°" in out
+    code, out, _ = run(capsys, *words, "--json")
+    found = json.loads(out)
+    assert (code, found["reached"]) == (1, False)
+    assert found["C_um_per_N"][1][1] > 0.0  # what a person asked for is there all the same
+    assert record(capsys, "pose", "slavkovic_5r", "--theta-deg", "119,0,0,0,0")["reached"] is True
+
+
+def test_what_made_up_load_tests_gave_stays_marked_so(capsys, tmp_path: Path) -> None:
+    file = tmp_path / "ident.toml"
+    assert run(capsys, "identify", "slavkovic_5r", "nine_points", "--out", file)[0] == 0
+    found = record(capsys, "simulate", FLUTE, "--robot", file)
+    assert "joint compliances (synthetic)" in [each["what"] for each in found["assumed"]]
+
+
 def test_map_at_the_papers_point(capsys) -> None:
     r = record(capsys, "map", "slavkovic_5r", "--quantity", "C_yy", "--z", "0", "--x", "0", "--y", "-1300")
     assert r["quantities"][0]["values"][0][0][0] == pytest.approx(2.295, abs=5e-4)
@@ -283,7 +326,10 @@ def test_map_at_the_papers_point(capsys) -> None:
     ("words", "sentence"),
     [
         (("--quantity", "C_qq", "--z", "0", "--x", "0", "--y", "-1300"), "C_qq"),
-        (("--quantity", "C_yy", "--z", "0", "--x", "0:1", "--y", "-1300"), "--x: expected 3 numbers"),
+        (
+            ("--quantity", "C_yy", "--z", "0", "--x", "0:1", "--y", "-1300"),
+            "--x: expected low:high:step or one number, in mm",
+        ),
         (("--quantity", "C_yy", "--z", "0", "--x", "0:100:0", "--y", "-1300"), "step above zero"),
     ],
 )

@@ -121,6 +121,8 @@ def test_springs_found_take_the_place_of_others_and_of_what_was_found_earlier():
     robot, springs = found.adopted(ROBOT, "mine.csv", ROBOT, given)
     assert [*springs] == [by_hand[1], *measured, *made_up, *found.springs(ROBOT)]
     np.testing.assert_array_equal(robot.C_theta, found.applied_to(ROBOT).C_theta)
-    assert robot.provenance["compliance.identified"].kind == "computed"
+    assert robot.provenance["compliance.identified"].kind == "synthetic"  # as the tests are
+    real = replace(found, kind="measured").adopted(ROBOT, "mine.csv", ROBOT, ())[0]
+    assert real.provenance["compliance.identified"].kind == "computed"
     _, springs = found.adopted(ROBOT, "mine.csv", robot, given)  # once more, beside what was identified
     assert [*springs] == [by_hand[1], *found.springs(ROBOT)]
