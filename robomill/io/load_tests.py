@@ -90,8 +90,8 @@ def read_load_tests(path_or_text: str | Path | bytes | DataFrame, robot: Robot |
 
 def _read(given: str | Path | bytes | DataFrame, robot: Robot | None, name: str = "") -> LoadTests | JointTests:
     if isinstance(given, str | Path):
-        text = isinstance(given, str) and any(mark in given for mark in "\n,;\t")  # a table, not the name of one
-        given = given if text else sample_or_file("load tests", given, LoadTestError)
+        is_table = isinstance(given, str) and any(mark in given for mark in "\n,;\t")  # and not the name of one
+        given = given if is_table else sample_or_file("load tests", given, LoadTestError)
     table, name = frame_columns(given, LAYOUT) if is_frame(given) else read_columns(given, LAYOUT, name)
     if any(key in table for key in COMPLIANCES):
         tests: LoadTests | JointTests = _compliances(table, robot)
