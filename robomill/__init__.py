@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from robomill.identification.load_test import JointTests as JointTests
     from robomill.identification.load_test import LoadTests as LoadTests
     from robomill.identification.result import IdentificationResult as IdentificationResult
+    from robomill.io.drawings import read_drawing as read_drawing
     from robomill.io.force_models import process_force as process_force
     from robomill.io.forces import read_forces as read_forces
     from robomill.io.identified import identify as identify
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from robomill.io.materials import load_material as load_material
     from robomill.io.materials import material_names as material_names
     from robomill.io.meshes import read_stock as read_stock
+    from robomill.io.point_tables import read_points as read_points
     from robomill.io.programs import read_program as read_program
     from robomill.io.projects import load_setup as load_setup
     from robomill.io.robots import load_robot as load_robot
@@ -72,6 +74,8 @@ if TYPE_CHECKING:
     from robomill.surface.groove import GrooveSection as GrooveSection
     from robomill.surface.stock import Stock as Stock
     from robomill.surface.zmap import ZMap as ZMap
+    from robomill.toolpath.drawing import Drawing as Drawing
+    from robomill.toolpath.drawing import LayerCut as LayerCut
     from robomill.toolpath.gcode import read_gcode as read_gcode
     from robomill.toolpath.part_zero import frame_from_points as frame_from_points
     from robomill.toolpath.path import Toolpath as Toolpath
@@ -120,6 +124,7 @@ _PUBLIC = {
     "JointTests": "robomill.identification.load_test",
     "LoadTests": "robomill.identification.load_test",
     "IdentificationResult": "robomill.identification.result",
+    "read_drawing": "robomill.io.drawings",
     "process_force": "robomill.io.force_models",
     "read_forces": "robomill.io.forces",
     "read_load_tests": "robomill.io.load_tests",
@@ -127,6 +132,7 @@ _PUBLIC = {
     "load_material": "robomill.io.materials",
     "material_names": "robomill.io.materials",
     "read_stock": "robomill.io.meshes",
+    "read_points": "robomill.io.point_tables",
     "read_program": "robomill.io.programs",
     "load_setup": "robomill.io.projects",
     "load_robot": "robomill.io.robots",
@@ -157,6 +163,8 @@ _PUBLIC = {
     "GrooveSection": "robomill.surface.groove",
     "Stock": "robomill.surface.stock",
     "ZMap": "robomill.surface.zmap",
+    "Drawing": "robomill.toolpath.drawing",
+    "LayerCut": "robomill.toolpath.drawing",
     "read_gcode": "robomill.toolpath.gcode",
     "frame_from_points": "robomill.toolpath.part_zero",
     "Toolpath": "robomill.toolpath.path",

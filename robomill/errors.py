@@ -45,6 +45,10 @@ class ToolpathError(RobomillError):
     """A path that cannot be followed: no points, no motion, not finite."""
 
 
+class UnitAskedError(ToolpathError):
+    """Numbers of a file that does not say their unit: whoever knows it has to say it."""
+
+
 class GCodeError(ToolpathError):
     """A program refused at a line. ``line`` is the 1-based source line, 0 for the whole file."""
 

@@ -17,6 +17,9 @@ BROUGHT_BY = {
     "matplotlib": ("matplotlib", "plot"),
     "PIL": ("pillow", "render"),
     "imageio_ffmpeg": ("imageio-ffmpeg", "film"),
+    "ezdxf": ("ezdxf", "drawing"),
+    "svgelements": ("svgelements", "drawing"),
+    "shapely": ("shapely", "drawing"),
 }
 
 

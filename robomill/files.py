@@ -31,6 +31,8 @@ ROBOT = FileKind("a robot (.toml or .urdf)", 5)
 MATERIAL = FileKind("a material row (.toml)", 1)
 TOOLS = FileKind("a tool table (.tbl, .csv or .toml)", 2)
 TABLE = FileKind("a CSV table", 60)
+POINTS = FileKind("points of a path (.csv or .parquet)", 60)
+DRAWING = FileKind("a drawing (.dxf or .svg)", 10)
 STL = FileKind("a stock as STL", 80)
 
 

@@ -10,6 +10,7 @@ PROJECT = Path(__file__).resolve().parents[2] / "pyproject.toml"
 WORDS = {
     "app": "the app in the browser: `robomill` alone, `robomill serve`",
     "data": "tables and maps as pandas DataFrames, xarray and Parquet",
+    "drawing": "paths along the lines of DXF and SVG drawings",
     "plot": "the pictures that `robomill simulate --out` writes",
     "render": "rendered pictures of the machined part",
     "film": "films of the cut",

@@ -4,11 +4,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from robomill.errors import GCodeError, LoadTestError, ProjectError, RobomillError, RobotError
+from robomill.errors import GCodeError, LoadTestError, ProjectError, RobomillError, RobotError, ToolpathError
 from robomill.files import PROGRAM, ROBOT, SETUP, TABLE, TOOLS, FileKind, check_size, name_of, read_file
 from robomill.io.samples import find_sample, sample_or_file
 
 STDIN, CALLED = "-", "standard input"
+DRAWN = (".dxf", ".svg")
 
 
 def check_once(arguments: Any) -> None:
@@ -64,13 +65,27 @@ def program(name: str) -> Path | bytes:
     return file if file.is_file() else read_file(file, PROGRAM, GCodeError)
 
 
-def source(name: str) -> Any:
-    """A program as the path of a set-up."""
+def source(name: str, unit: str = "", feed_mm_min: float | None = None) -> Any:
+    """A program, or points, as the path of a set-up."""
     from robomill.io.programs import program_from_bytes, read_program
 
     if name == STDIN:
         return program_from_bytes(stdin(PROGRAM, ProjectError), "stdin.nc")
-    return read_program(name)
+    if Path(name).suffix.lower() in DRAWN:
+        raise ProjectError(f"{name}: this is a drawing; make a program of it with 'robomill drawing', and name that.")
+    return points(name, unit, feed_mm_min) or read_program(name)
+
+
+def points(name: str, unit: str = "", feed_mm_min: float | None = None) -> Any:
+    """A table of points as the path of a set-up; None where the name ends otherwise."""
+    from robomill.files import POINTS
+    from robomill.io.point_tables import SUFFIXES, points_from_bytes
+    from robomill.units import to_si
+
+    if Path(name).suffix.lower() not in SUFFIXES:
+        return None
+    feed = None if feed_mm_min is None else to_si(feed_mm_min, "mm/min")
+    return points_from_bytes(read_file(name, POINTS, ToolpathError), name_of(name), unit, feed)
 
 
 def load_tests(name: str, robot: Any) -> tuple[Any, str]:

@@ -21,6 +21,7 @@ EXAMPLES = {
     "pose": "robomill pose slavkovic_5r --theta-deg 0,0,0,0,0",
     "ik": 'robomill ik slavkovic_5r --pose "0,-1300,0,0,0"',
     "gcode": "robomill gcode heart",
+    "drawing": "robomill drawing bracket --cut slots:inside:3 --feed 600 --diameter 8 --out bracket.nc",
     "map": "robomill map slavkovic_5r --quantity C_yy --z 0 --x -600:600:100 --y -1600:-1000:100 --out map.csv",
     "identify": "robomill identify slavkovic_5r nine_points --out identified.toml",
     "simulate": "robomill simulate paper_flute --out result",
@@ -31,6 +32,8 @@ EXAMPLES = {
 }
 NOTES = {
     "ik": "Exits 1 where the pose is not reached.",
+    "drawing": "The tool goes straight down at the plunge feed where a line begins, and round a closed one pass by "
+    "pass.",
     "simulate": "Exits 1 where the verdict is red, and where nothing or not all can be judged: never 0 on a number "
     "that is not known.",
     "reproduce": "Exits 1 where a claim of the paper that should hold does not.",
@@ -71,7 +74,8 @@ def make_parser() -> argparse.ArgumentParser:
     ik = told("ik", "Joint coordinates for a pose.")
     _robot(ik)
     ik.add_argument("--pose", required=True, help='"X,Y,Z,A,B" in mm and degrees')
-    _gcode_options(told("gcode", "Read a program: moves, lengths, extents, findings."))
+    _gcode_options(told("gcode", "Read a program, or a table of points: moves, lengths, extents, findings."))
+    _drawing_options(told("drawing", "Layers and lines of a DXF or SVG drawing, and a program that cuts along them."))
     _map_options(told("map", "A quantity over a plane or a box, NaN where the robot cannot reach."))
     _identify_options(told("identify", "Joint compliances from load tests, with their intervals."))
     _simulate_options(told("simulate", "Run a set-up: deviation, groove, verdict."))
@@ -89,7 +93,7 @@ def make_parser() -> argparse.ArgumentParser:
 
 def _run(name: str, arguments: Any) -> int:
     """Load the verb's own module and run it."""
-    module = {"simulate": "simulate", "identify": "identify", "serve": "serve"}.get(name, "verbs")
+    module = name if name in ("simulate", "identify", "serve", "drawing") else "verbs"
     run: Callable[[Any], int] = getattr(import_module(f"robomill.cli.{module}"), f"run_{name}")
     return run(arguments)
 
@@ -122,11 +126,45 @@ def _pose_options(pose: argparse.ArgumentParser) -> None:
 
 
 def _gcode_options(gcode: argparse.ArgumentParser) -> None:
-    _named(gcode, "file", "a program, a sample's name, or - for standard input", "program")
+    _named(gcode, "file", "a program, points (.csv, .parquet), a sample's name, or - for standard input", "program")
+    _points_options(gcode)
     gcode.add_argument("--tools", help="tool table: LinuxCNC's .tbl, CSV tool,diameter_mm,length_mm,..., TOML")
     gcode.add_argument("--tools-unit", default="mm", choices=("mm", "in"), help="unit of a .tbl, which does not say it")
     gcode.add_argument("--moves", metavar="OUT.jsonl", help="write the canonical moves, one a line")
     gcode.add_argument("--dialect", default="auto", help="auto, linuxcnc, fanuc, grbl or sinumerik")
+
+
+def _points_options(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument(
+        "--unit", default="", choices=("mm", "in", "cm", "m"), help="unit of points whose header is silent"
+    )
+    sub.add_argument("--feed", type=float, metavar="MM_MIN", help="feed of points that have none, mm/min")
+
+
+def _drawing_options(sub: argparse.ArgumentParser) -> None:
+    _named(sub, "file", "a drawing (.dxf or .svg), or a sample's name", "drawing")
+    units = ("mm", "in", "cm", "m", "px", "pt")
+    sub.add_argument("--unit", default="", choices=units, help="unit of the drawing where it does not say it")
+    sub.add_argument(
+        "--origin", default="drawing", choices=("drawing", "corner", "centre"), help="where the part zero is"
+    )
+    sub.add_argument(
+        "--cut",
+        action="append",
+        metavar="LAYER:SIDE:DEPTH",
+        help="cut the lines of a layer: on, left, right, inside or outside, depth in mm; one --cut a layer",
+    )
+    for name, metavar, text in (
+        ("depth", "MM", "depth of layers that say none, mm"),
+        ("step-down", "MM", "deepest pass, mm (one pass)"),
+        ("feed", "MM_MIN", "feed along the lines, mm/min"),
+        ("diameter", "MM", "of the cutter, mm: for cuts beside their line"),
+        ("plunge", "MM_MIN", "feed of the plunges, mm/min (300)"),
+        ("clearance", "MM", "height of rapids, mm (5)"),
+        ("spindle", "1_MIN", "spindle speed, 1/min"),
+    ):
+        sub.add_argument(f"--{name}", type=float, metavar=metavar, help=text)
+    sub.add_argument("--out", metavar="PROGRAM.nc", help="write the path there as G-code; an older file is replaced")
 
 
 def _map_options(grid: argparse.ArgumentParser) -> None:
@@ -169,7 +207,8 @@ def _identify_options(fit: argparse.ArgumentParser) -> None:
 
 def _simulate_options(run: argparse.ArgumentParser) -> None:
     _named(run, "setup", "a set-up (.toml), its folder, a sample's name, or - for standard input", "set-up")
-    _named(run, "--program", "another program than the set-up's", "program")
+    _named(run, "--program", "another program than the set-up's, or points (.csv, .parquet)", "program")
+    _points_options(run)
     _named(run, "--robot", "another robot than the set-up's: a name or a file", "robot")
     run.add_argument("--tol", type=float, metavar="MM", help="another tolerance of walls and floors, mm")
     run.add_argument("--compliance-set", help="another of the robot's compliance sets")

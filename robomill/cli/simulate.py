@@ -46,8 +46,8 @@ def _asked(arguments: Any) -> Any:
     said = dict(setup.provenance)
     changes: dict[str, Any] = {}
     if arguments.program:
-        changes["source"] = given.source(arguments.program)
-        said["path"] = Provenance("user", f"program {changes['source'].name}")
+        changes["source"] = given.source(arguments.program, arguments.unit, arguments.feed)
+        said["path"] = Provenance("user", f"{changes['source'].kind} {changes['source'].name}")
         force = said.get("force", setup.force.provenance)
         if force.kind in ("paper", "measured"):  # on one cut; on another it is an assumption
             said["force"] = replace(force.carried(setup.name), carried_from="")

@@ -54,9 +54,12 @@ def run_gcode(arguments: Any) -> int:
     from robomill.toolpath.apt import read_apt
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 
-    source = given.program(arguments.file)
+    table = given.points(arguments.file, arguments.unit, arguments.feed)
+    source = b"" if table else given.program(arguments.file)
     files = Written.before([Path(arguments.moves)] if arguments.moves else [])
-    if given.is_apt(source):
+    if table:
+        record, assumed, files = path_record(table.path), assumed_of_program(table.path.findings), []
+    elif given.is_apt(source):
         path = read_apt(source)
         record, assumed, files = path_record(path), assumed_of_program(path.findings), []
     else:

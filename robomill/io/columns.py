@@ -38,6 +38,7 @@ class Layout:
     """What a table may hold: quantities by lower-case name, each with the units (of ``units.UNITS``) it may come in.
 
     ``aliases`` maps other names of a quantity to the one of ``units``; cells of ``open_cells`` may be empty: NaN.
+    ``silent`` are the units of quantities whose header names none.
     """
 
     subject: str
@@ -47,6 +48,7 @@ class Layout:
     fewest: int = 1
     aliases: Mapping[str, str] = field(default_factory=dict)
     open_cells: frozenset[str] = frozenset()
+    silent: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -245,6 +247,7 @@ def _known(names: list[str], layout: Layout, place: Place) -> tuple[dict[str, Co
         quantity = layout.aliases.get(stem, stem)
         units = {spelled(unit): unit for unit in layout.units[quantity]}
         unit = units.get(suffix) or {short.lower(): unit for short, unit in units.items()}.get(suffix.lower())
+        unit = unit or (None if suffix else layout.silent.get(quantity))
         if unit is None:
             what = f"unit {suffix!r} is not known" if suffix else "the unit is missing"
             good = ", ".join("_".join(filter(None, (written[: len(stem)], short))) for short in units)

@@ -11,7 +11,7 @@ from typing import Literal
 
 from robomill.errors import ProjectError, RobomillError
 
-SampleKind = Literal["set-up", "robot", "program", "load tests", "material"]
+SampleKind = Literal["set-up", "robot", "program", "load tests", "material", "drawing"]
 TITLED: tuple[SampleKind, ...] = ("set-up", "robot", "material")  # TOML files, which say what they are called
 
 
@@ -68,6 +68,8 @@ def _found(folder: Path) -> Iterator[Sample]:
         yield Sample("set-up", case if path.stem == "setup" else f"{case}/{path.stem}", path)
     for path in sorted(folder.glob("*/*.nc")):
         yield Sample("program", path.parent.name, path)
+    for path in sorted(folder.glob("drawings/*.dxf")) + sorted(folder.glob("drawings/*.svg")):
+        yield Sample("drawing", path.stem if path.suffix == ".dxf" else path.name, path)
     kinds: tuple[tuple[SampleKind, str], ...] = (
         ("robot", "robots/*.toml"),
         ("load tests", "load_tests/*.csv"),
@@ -153,7 +155,7 @@ def copy_samples(folder: str | Path, names: Sequence[str] = ()) -> list[Path]:
 
 
 def _to_copy(here: Path, names: Sequence[str]) -> list[Path]:
-    """Whole folders of cases; of robots, load tests and materials the file alone."""
+    """Whole folders of cases; of robots, load tests, materials and drawings the file alone."""
     if not names:
         return sorted(path for path in here.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
     files: set[Path] = set()

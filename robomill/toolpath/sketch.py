@@ -95,22 +95,7 @@ class Element(Replaceable):
 
     def outline(self) -> FloatArray:
         """(q, 2) m: the corners of the cut in order, arcs as chords within the chord error of the G-code reader."""
-        if self.shape == "polygon":
-            return np.vstack([self.points, self.points[:1]])
-        if self.shape == "rectangle":
-            (x0, y0), (x1, y1) = self.points
-            return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])
-        if self.shape == "circle":
-            centre, rim = self.points
-            return _chords(rim, rim, centre, clockwise=False)
-        if self.shape == "arc":
-            start, way, end = self.points
-            side = _cross(end - start, way - start)
-            middle = _centre(start, way, end)
-            if middle is None:
-                return np.array(self.points)
-            return _chords(start, end, middle, clockwise=side > 0)
-        return np.array(self.points)
+        return outline(self.shape, self.points)
 
 
 @in_units(ToolpathError, "Sketch")
@@ -211,6 +196,26 @@ class Sketch(Replaceable):
             yield [at[0], at[1], self.clearance], 0.0, len(self.elements)
 
 
+def outline(shape: Shape, points: FloatArray) -> FloatArray:
+    """(q, 2) m: the corners of a shape of ``points`` (r, 2) m in order, arcs as chords within ``CHORD_ERROR``."""
+    if shape == "polygon":
+        return np.vstack([points, points[:1]])
+    if shape == "rectangle":
+        (x0, y0), (x1, y1) = points
+        return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])
+    if shape == "circle":
+        centre, rim = points
+        return _chords(rim, rim, centre, clockwise=False)
+    if shape == "arc":
+        start, way, end = points
+        side = _cross(end - start, way - start)
+        middle = centre_of(start, way, end)
+        if middle is None:
+            return np.array(points)
+        return _chords(start, end, middle, clockwise=side > 0)
+    return np.array(points)
+
+
 def tidy(value: Any, unit: str) -> Any:
     """An SI value cut to nine decimals in ``unit``, so that files and the screen read it back exactly."""
     return to_si(np.round(from_si(np.asarray(value, dtype=float), unit), 9), unit)
@@ -238,7 +243,7 @@ def _cross(a: FloatArray, b: FloatArray) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
 
 
-def _centre(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray | None:
+def centre_of(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray | None:
     """Centre of the circle through three points; None where they are on a line."""
     ab, ac = b - a, c - a
     twice = 2.0 * _cross(ab, ac)

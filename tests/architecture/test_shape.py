@@ -42,7 +42,6 @@ UNUSED = {
     "__dir__": "Python lists the package",
     "over_time": "public: forces from arrays",
     "from_dh": "public: robots in code",
-    "from_points": "public: paths in code",
     "__signature__": "what completion and help ask a function for",
     "to_dataframe": "public name",
     "run_*": "the parser of the command line finds what a verb runs by its name",

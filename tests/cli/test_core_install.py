@@ -36,6 +36,8 @@ WORKS = {
 NEEDS = {
     "serve": (("serve",), "The app needs streamlit", "app"),
     "": ((), "The app needs streamlit", "app"),
+    "drawing": (("drawing", "bracket"), "A DXF drawing needs ezdxf", "drawing"),
+    "drawing as SVG": (("drawing", "bracket.svg"), "An SVG drawing needs svgelements", "drawing"),
     "map as Parquet": ((*MAP, "--out", "map.parquet"), "A map as Parquet needs pyarrow", "data"),
     "map as VTI": ((*MAP, "--out", "map.vti"), "A map as VTI needs pyvista", "render"),
 }

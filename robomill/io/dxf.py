@@ -1,0 +1,255 @@
+"""DXF drawings as lines by layer: read by ezdxf, blocks opened where they are inserted, no other file followed."""
+
+import io
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import ToolpathError
+from robomill.extras import needed
+from robomill.progress import checkpoint
+from robomill.toolpath.contour import Contour
+from robomill.toolpath.gcode.arcs import CHORD_ERROR
+from robomill.toolpath.sketch import MAX_POINTS, Shape, outline
+from robomill.units import to_si
+
+MOST_ENTITIES = 50_000  # looked at, with those of blocks each time that one is inserted
+DEEPEST_BLOCK = 16
+LONGEST_S = 30.0
+# What $INSUNITS says, by the key of ``units.UNITS``; other numbers of it are units that no part is drawn in.
+UNITS_OF_DXF = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 8: "uin", 9: "thou", 13: "um"}
+PER_INCH = {"px": 96, "pt": 72}  # pixels as browsers and Inkscape count them, points as Illustrator does
+FLAT = 1e-9
+
+
+def metres(unit: str) -> float:
+    """A unit of length of a drawing, a key of ``units.UNITS`` or of ``PER_INCH``, in m."""
+    return float(to_si(1.0 / PER_INCH[unit], "in") if unit in PER_INCH else to_si(1.0, unit))
+
+
+@dataclass(frozen=True)
+class Read:
+    """What a file holds: its lines in m, layers that are switched off, and what was not taken, by its name."""
+
+    pieces: list[Contour] = field(default_factory=list)
+    hidden: set[str] = field(default_factory=set)
+    left_out: Counter[str] = field(default_factory=Counter)
+
+
+class Dxf:
+    """A DXF document; ``unit`` is what it says its numbers are in, "" where it is silent."""
+
+    def __init__(self, data: bytes, name: str) -> None:
+        with needed("A DXF drawing"):
+            from ezdxf import DXFError
+        self.name = name
+        try:
+            self.doc = _document(data)
+            self.unit = UNITS_OF_DXF.get(int(self.doc.header.get("$INSUNITS", 0)), "")
+        except (DXFError, OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError):
+            # ezdxf names most of what is wrong with a file by DXFError; a file that is none meets the others.
+            text = f"{name}: this is no DXF file, or one that is damaged or cut off; export the drawing again as DXF."
+            raise ToolpathError(text) from None
+
+    def scale(self, unit: str) -> float:
+        """m: its unit of length, where that is a ``unit``."""
+        return metres(unit)
+
+    def read(self, scale: float) -> Read:
+        """Its lines, with ``scale`` (m) for its unit of length."""
+        return _Reading(self.name, self.doc, scale).read()
+
+
+def _document(data: bytes) -> Any:
+    """As it should be read, which is quick; where that fails, with ezdxf's mending of old and odd files."""
+    import ezdxf
+    from ezdxf import recover
+
+    try:
+        return ezdxf.read(io.StringIO(data.decode("utf-8-sig").replace("\r\n", "\n")))
+    except (UnicodeDecodeError, ezdxf.DXFError):
+        return recover.read(io.BytesIO(data))[0]
+
+
+class _Reading:
+    """One pass through the model space."""
+
+    def __init__(self, name: str, doc: Any, scale: float) -> None:
+        self.name, self.doc, self.scale = name, doc, scale
+        self.found = Read()
+        self.looked_at = self.points = 0
+        self.until = time.monotonic() + LONGEST_S
+
+    def read(self) -> Read:
+        space = self.doc.modelspace()
+        for entity, layer in self._walk(space, "", 0):
+            self._take(entity, layer)
+        for layer in self.doc.layers:
+            if layer.is_off() or layer.is_frozen():
+                self.found.hidden.add(str(layer.dxf.name))
+        return self.found
+
+    def _walk(self, entities: Iterable[Any], around: str, depth: int) -> Iterator[tuple[Any, str]]:
+        """Every entity with its layer; what a block has on layer 0 is on the layer of its insert."""
+        for entity in entities:
+            self._count()
+            own = str(entity.dxf.get("layer", "0"))
+            layer = around if own == "0" and around else own
+            if entity.dxftype() != "INSERT":
+                yield entity, layer
+                continue
+            for one in self._each(entity):
+                yield from self._opened(one, layer, depth + 1)
+
+    def _each(self, insert: Any) -> Iterator[Any]:
+        """An insert, or those that an array of it stands for."""
+        if insert.mcount > MOST_ENTITIES:
+            raise self._refuse(f"a block is inserted {insert.mcount:,} times in an array")
+        return iter(insert.multi_insert()) if insert.mcount > 1 else iter([insert])
+
+    def _opened(self, insert: Any, layer: str, depth: int) -> Iterator[tuple[Any, str]]:
+        block = insert.block()
+        if block is None or block.block is None or block.block.is_xref or block.block.is_xref_overlay:
+            self.found.left_out["reference to another drawing, or to a block that is not there"] += 1
+            return
+        if depth > DEEPEST_BLOCK:
+            raise self._refuse(f"blocks are nested deeper than {DEEPEST_BLOCK}, or hold themselves")
+
+        def skipped(entity: Any, why: str) -> None:
+            self.found.left_out[entity.dxftype()] += 1
+
+        yield from self._walk(insert.virtual_entities(skipped_entity_callback=skipped), layer, depth)
+
+    def _count(self, points: int = 0) -> None:
+        self.looked_at += 1
+        self.points += points
+        checkpoint()
+        if self.looked_at > MOST_ENTITIES:
+            raise self._refuse(f"it holds more than {MOST_ENTITIES:,} entities, blocks opened")
+        if self.points > MAX_POINTS:
+            raise self._refuse(f"its lines have more than {MAX_POINTS:,} points")
+        if time.monotonic() > self.until:
+            raise self._refuse(f"it takes longer than {LONGEST_S:.0f} s to read")
+
+    def _refuse(self, why: str) -> ToolpathError:
+        return ToolpathError(f"{self.name}: {why}; save what is to be cut in a drawing of its own.")
+
+    def _take(self, entity: Any, layer: str) -> None:
+        kind = entity.dxftype()
+        make = MAKERS.get(kind)
+        try:
+            made = None if make is None else make(entity, self.scale)
+        except (ValueError, TypeError, ZeroDivisionError, AttributeError, ArithmeticError):
+            made = None  # ezdxf's words for a curve that cannot be: too few points, a degree that does not fit
+        if made is None:
+            self.found.left_out[kind] += 1
+            return
+        shape, points = made
+        if not np.isfinite(points).all():
+            raise self._refuse(f"a {kind} on layer {layer} has a point that is no number")
+        self._count(len(points))
+        self.found.pieces.append(Contour(layer, shape, points))
+
+
+Made = tuple[Shape, FloatArray] | None
+
+
+def _flat(points: Iterable[Any], scale: float) -> FloatArray:
+    """(r, 2) m: points of ezdxf seen from above."""
+    return np.array([(p[0], p[1]) for p in points], dtype=float).reshape(-1, 2) * scale
+
+
+def _chain(points: FloatArray) -> Made:
+    """A line or polyline."""
+    return None if len(points) < 2 else ("line" if len(points) == 2 else "polyline", points)
+
+
+def _line(entity: Any, scale: float) -> Made:
+    return "line", _flat([entity.dxf.start, entity.dxf.end], scale)
+
+
+def _upright(entity: Any) -> bool:
+    """Whether a plane figure lies in a plane of the drawing, seen from above or below."""
+    x, y, _ = entity.dxf.extrusion.normalize()
+    return abs(x) < FLAT and abs(y) < FLAT
+
+
+def _circle(entity: Any, scale: float) -> Made:
+    if not _upright(entity):
+        return _chain(_flat(entity.flattening(CHORD_ERROR / scale), scale))
+    centre = _flat([entity.ocs().to_wcs(entity.dxf.center)], scale)[0]
+    return "circle", np.array([centre, centre + np.array([abs(entity.dxf.radius) * scale, 0.0])])
+
+
+def _arc(entity: Any, scale: float) -> Made:
+    if not _upright(entity):
+        return _chain(_flat(entity.flattening(CHORD_ERROR / scale), scale))
+    begin, end = entity.dxf.start_angle % 360.0, entity.dxf.end_angle % 360.0
+    turn = (end - begin) % 360.0
+    if turn < FLAT:
+        return _circle(entity, scale)
+    angles = np.radians(begin + turn * np.array([0.0, 0.5, 1.0]))
+    centre, radius = entity.dxf.center, entity.dxf.radius
+    own = [(centre[0] + radius * np.cos(a), centre[1] + radius * np.sin(a), centre[2]) for a in angles]
+    return "arc", _flat([entity.ocs().to_wcs(p) for p in own], scale)
+
+
+def _bulged(corners: list[tuple[float, float, float]], closed: bool, height: float, ocs: Any, scale: float) -> Made:
+    """A polyline of (x, y, bulge); a bulge is the tangent of a quarter of the arc's angle, to the right if positive."""
+    if len(corners) < 2:
+        return None
+    pairs = zip(corners, corners[1:] + corners[:1] * closed, strict=False)
+    chains = [np.array([corners[0][:2]])]
+    for (x, y, bulge), (u, v, _) in pairs:
+        p, q = np.array([x, y]), np.array([u, v])
+        if abs(bulge) < FLAT or np.allclose(p, q, rtol=0.0, atol=FLAT):
+            chains.append(np.array([q]))
+            continue
+        way = 0.5 * (p + q) + 0.5 * bulge * np.array([v - y, x - u])
+        chains.append(outline("arc", np.array([p, way, q]) * scale)[1:] / scale)
+    own = np.vstack(chains)
+    return _chain(_flat([ocs.to_wcs((x, y, height)) for x, y in own.tolist()], scale))
+
+
+def _lwpolyline(entity: Any, scale: float) -> Made:
+    corners = [(float(x), float(y), float(b)) for x, y, b in entity.get_points("xyb")]
+    return _bulged(corners, bool(entity.closed), float(entity.dxf.elevation), entity.ocs(), scale)
+
+
+def _polyline(entity: Any, scale: float) -> Made:
+    if entity.is_3d_polyline:
+        points = _flat([v.dxf.location for v in entity.vertices], scale)
+        return _chain(np.vstack([points, points[:1]]) if entity.is_closed else points)
+    if not entity.is_2d_polyline:
+        return None
+    corners = [
+        (float(v.dxf.location[0]), float(v.dxf.location[1]), float(v.dxf.get("bulge", 0.0))) for v in entity.vertices
+    ]
+    height = float(entity.vertices[0].dxf.location[2]) if entity.vertices else 0.0
+    return _bulged(corners, bool(entity.is_closed), height, entity.ocs(), scale)
+
+
+def _curve(entity: Any, scale: float) -> Made:
+    """An ellipse or a spline, in as many chords as ``CHORD_ERROR`` asks for."""
+    points = []
+    for p in entity.flattening(CHORD_ERROR / scale):
+        points.append((p[0], p[1]))
+        if len(points) > MAX_POINTS:
+            break
+    return _chain(np.array(points, dtype=float).reshape(-1, 2) * scale)
+
+
+MAKERS: dict[str, Callable[[Any, float], Made]] = {
+    "LINE": _line,
+    "CIRCLE": _circle,
+    "ARC": _arc,
+    "LWPOLYLINE": _lwpolyline,
+    "POLYLINE": _polyline,
+    "ELLIPSE": _curve,
+    "SPLINE": _curve,
+}

@@ -1,0 +1,292 @@
+"""SVG drawings as lines by layer: read by svgelements, after a look of our own at what an untrusted file may hold.
+
+Layers are those of Inkscape, else the groups of the page. Y points up from the lower edge of the page, X from its left.
+"""
+
+import io
+import math
+import re
+import time
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import ToolpathError
+from robomill.extras import needed
+from robomill.io.dxf import LONGEST_S, PER_INCH, Read, metres
+from robomill.progress import checkpoint
+from robomill.toolpath.contour import Contour
+from robomill.toolpath.gcode.arcs import CHORD_ERROR
+from robomill.toolpath.sketch import MAX_POINTS
+
+DEEPEST = 200  # elements in elements
+MOST_ELEMENTS, OF_ONE = 20_000, 50  # drawn, each time they are used; so many characters of a path count as one
+MOST_STYLE, MOST_TRANSFORM = 100_000_000, 1_000  # characters: of styles, times elements; of one transform
+ABSOLUTE = {"mm": "mm", "cm": "cm", "in": "in", "pt": "pt", "pc": "pt", "q": "mm"}  # and what of it people know
+TIMES = {"pc": 12.0, "q": 0.25}
+SVG, INKSCAPE = "{http://www.w3.org/2000/svg}", "{http://www.inkscape.org/namespaces/inkscape}"
+LAYER, NO_LAYER = "robomill-layer", "drawing"
+NOT_DRAWN = ("symbol", "marker", "mask", "clipPath", "pattern")  # unless something uses them
+WORDS = ("text", "image", "foreignObject")
+# All that says where a line is; the rest would be handed down to every element below.
+XLINK = "{http://www.w3.org/1999/xlink}href"
+PLACES = "d points x y x1 y1 x2 y2 cx cy r rx ry width height viewBox preserveAspectRatio transform"
+KEPT = frozenset((*PLACES.split(), "style", "display", "class", "id", "href", XLINK, LAYER))
+_SIZE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([A-Za-z%]*)\s*")
+
+
+class Svg:
+    """An SVG document; ``unit`` is that of the size of its page, "" where that is in pixels, or nowhere."""
+
+    def __init__(self, data: bytes, name: str) -> None:
+        with needed("An SVG drawing"):
+            import svgelements  # noqa: F401 (before anything is read)
+        self.name, self.left_out = name, Counter[str]()
+        self.root = self._parsed(_text_of(data, name))
+        self._look()
+        self.unit = self._sized()
+
+    def _parsed(self, text: str) -> ElementTree.Element:
+        if re.search(r"<!\s*ENTITY", text):
+            raise ToolpathError(
+                f"{self.name}: it declares entities (<!ENTITY), which no plain drawing needs; save it as plain SVG."
+            )
+        try:
+            root = ElementTree.fromstring(text)
+        except ElementTree.ParseError as exc:
+            raise ToolpathError(
+                f"{self.name}: this is no SVG file, or one that is damaged or cut off ({exc}); export it again as SVG."
+            ) from None
+        level = [root]
+        for _ in range(DEEPEST):
+            level = [child for element in level for child in element]
+        if level:
+            raise self._refuse(f"its elements are nested deeper than {DEEPEST}")
+        if root.tag not in ("svg", f"{SVG}svg"):
+            raise ToolpathError(f"{self.name}: the file holds <{root.tag:.60}>, expected <svg>; export it as SVG.")
+        return root
+
+    def _refuse(self, why: str) -> ToolpathError:
+        return ToolpathError(f"{self.name}: {why}; save what is to be cut in a drawing of its own.")
+
+    # ---- a look at everything before it is drawn -------------------------------------------------------------------
+    def _look(self) -> None:
+        """Names layers, puts away what is drawn only where it is used, and counts what all uses come to."""
+        known = {e.attrib["id"]: e for e in self.root.iter() if "id" in e.attrib}
+        self._count_of(self.root, known, {}, set())
+        style = sum(len(e.text or "") for e in self.root.iter() if _kind(e) == "style")
+        if style * sum(1 for _ in self.root.iter()) > MOST_STYLE:
+            raise self._refuse(f"its styles are {style:,} characters long")
+        for parent in list(self.root.iter()):
+            for child in list(parent):
+                self._look_at(parent, child)
+        for element in self.root.iter():
+            for key in [key for key in element.attrib if key not in KEPT]:
+                del element.attrib[key]
+            if len(element.get("transform", "")) > MOST_TRANSFORM or len(element.get("class", "")) > MOST_TRANSFORM:
+                raise self._refuse(f"a transform or class in it has more than {MOST_TRANSFORM:,} characters")
+
+    def _look_at(self, parent: ElementTree.Element, child: ElementTree.Element) -> None:
+        kind = _kind(child)
+        if kind == "g" and (parent is self.root or child.get(f"{INKSCAPE}groupmode") == "layer"):
+            label = child.get(f"{INKSCAPE}label") or child.get("id")
+            if label:
+                child.set(LAYER, label[:200])
+        if kind in NOT_DRAWN and _kind(parent) != "defs":
+            put_away = ElementTree.Element(f"{SVG}defs")
+            parent[list(parent).index(child)] = put_away
+            put_away.append(child)
+        if kind in WORDS:
+            self.left_out[kind] += 1
+
+    def _count_of(
+        self,
+        element: ElementTree.Element,
+        known: dict[str, ElementTree.Element],
+        counted: dict[ElementTree.Element, int],
+        around: set[ElementTree.Element],
+    ) -> int:
+        """Elements that it comes to with all that it uses. Raises ToolpathError for too many, and for a circle."""
+        if element in around or len(around) > 4 * DEEPEST:
+            raise self._refuse("an element uses itself (<use>)")
+        if element not in counted:
+            around.add(element)
+            inside = list(element)
+            named = (element.get(XLINK) or element.get("href") or "").strip()
+            own = (
+                1
+                + (len(element.get("d", "")) + len(element.get("points", "")) + len(element.get("style", ""))) // OF_ONE
+            )
+            if _kind(element) == "use" and named[1:] in known:
+                inside.append(known[named[1:]])
+            if _kind(element) == "use" and not named.startswith("#"):
+                self.left_out["use of another file"] += 1
+            counted[element] = own + sum(self._count_of(each, known, counted, around) for each in inside)
+            around.discard(element)
+        if counted[element] > MOST_ELEMENTS:
+            raise self._refuse(f"it holds more than {MOST_ELEMENTS:,} elements, each as often as it is used")
+        return counted[element]
+
+    def _sized(self) -> str:
+        """Whether the page has a size in a unit of length; one of the two follows from the other by the view box."""
+        sizes = {key: _SIZE.fullmatch(self.root.get(key, "")) for key in ("width", "height")}
+        box = [float(n) for n in re.findall(r"[-+.\deE]+", self.root.get("viewBox", "")) if _is_number(n)]
+        good = {key: m for key, m in sizes.items() if m and m[2] != "%" and float(m[1]) > 0.0}
+        if len(box) == 4 and len(good) == 1 and box[2] > 0.0 and box[3] > 0.0:
+            (key, m), ratio = *good.items(), box[3] / box[2]
+            other, times = ("height", ratio) if key == "width" else ("width", 1.0 / ratio)
+            self.root.set(other, f"{float(m[1]) * times!r}{m[2]}")
+        elif len(good) < 2:
+            for key in sizes:
+                self.root.attrib.pop(key, None)
+        said = {m[2].lower() for m in good.values()}
+        for key in sizes:  # in pixels, to the last digit
+            read = _SIZE.fullmatch(self.root.get(key, ""))
+            if read and (unit := read[2].lower()) in ABSOLUTE:
+                pixels = float(read[1]) * TIMES.get(unit, 1.0) * metres(ABSOLUTE[unit]) / metres("px")
+                self.root.set(key, repr(pixels))
+        return ABSOLUTE.get(min(said), "") if len(said) == 1 else ""
+
+    def scale(self, unit: str) -> float:
+        """m: a pixel, which is a ``unit`` where the page does not say how large it is. Raises ToolpathError."""
+        if self.unit and unit != self.unit:
+            raise ToolpathError(
+                f"{self.name}: the page says its size in {self.unit}, which fixes every length; leave the unit out.",
+                where="unit",
+            )
+        return metres("px" if self.unit else unit)
+
+    # ---- the lines -------------------------------------------------------------------------------------------------
+    def read(self, scale: float) -> Read:
+        """Its lines, with ``scale`` (m) for a pixel."""
+        import svgelements
+
+        found, until, points = Read(left_out=self.left_out.copy()), time.monotonic() + LONGEST_S, 0
+        try:
+            page = svgelements.SVG.parse(
+                io.StringIO(ElementTree.tostring(self.root, encoding="unicode")), ppi=PER_INCH["px"], on_error="raise"
+            )
+            height = float(page.height) if page.viewbox is not None or "height" in self.root.attrib else 0.0
+            for element in page.elements():
+                if not isinstance(element, svgelements.Shape):
+                    continue
+                layer = str(element.values.get(LAYER, NO_LAYER))
+                for shape, line in _lines(abs(svgelements.Path(element)), scale):
+                    checkpoint()
+                    points += len(line)
+                    if points > MAX_POINTS:
+                        raise self._refuse(f"its lines have more than {MAX_POINTS:,} points")
+                    if time.monotonic() > until:
+                        raise self._refuse(f"it takes longer than {LONGEST_S:.0f} s to read")
+                    turned = line * [1.0, -1.0] + [0.0, height * scale]
+                    found.pieces.append(Contour(layer, shape, turned))
+        except ToolpathError:
+            raise
+        except (ValueError, TypeError, KeyError, IndexError, AttributeError, ArithmeticError, RecursionError) as exc:
+            # svgelements has no error of its own: what a broken path or transform makes it stumble over.
+            raise ToolpathError(
+                f"{self.name}: a path or a transform in it cannot be read ({type(exc).__name__}: {str(exc)[:80]}); "
+                "export it again as SVG."
+            ) from None
+        return found
+
+
+def _text_of(data: bytes, name: str) -> str:
+    """The text without its declaration: what is looked at is what is parsed, whatever encoding it names."""
+    try:
+        text = data.decode("utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    if "\0" in text:
+        raise ToolpathError(f"{name}: this is a binary file; expected an SVG drawing in text.")
+    return re.sub(r"^\s*<\?xml[^>]*\?>", "", text)
+
+
+def _kind(element: ElementTree.Element) -> str:
+    return element.tag.removeprefix(SVG) if isinstance(element.tag, str) else ""
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
+def _lines(path: Any, scale: float) -> Iterator[tuple[Any, FloatArray]]:
+    """Shape and points (r, 2) m of every stretch of a path that is drawn without lifting."""
+    run: list[Any] = []
+    for segment in path:
+        if type(segment).__name__ == "Move" and run:
+            yield _line(run, scale)
+            run = []
+        if type(segment).__name__ != "Move":
+            run.append(segment)
+            if type(segment).__name__ == "Close":
+                yield _line(run, scale)
+                run = []
+    if run:
+        yield _line(run, scale)
+
+
+def _line(run: list[Any], scale: float) -> tuple[Any, FloatArray]:
+    """One stretch: a circle where all of it is, else a line or a polyline."""
+    arcs = [each for each in run if type(each).__name__ == "Arc"]
+    others = [each for each in run if each not in arcs and abs(each.end - each.start) * scale > CHORD_ERROR]
+    begin = _at(run[0].start)
+    if arcs and not others and _one_circle(arcs, scale):
+        return "circle", np.array([_at(arcs[0].center), begin]) * scale
+    points = np.vstack([begin[None], *(_corners(each, scale) for each in run)]) * scale
+    if not np.isfinite(points).all():
+        raise ValueError("a point is no number")
+    return ("line" if len(points) == 2 else "polyline"), points
+
+
+def _at(point: Any) -> FloatArray:
+    return np.array([float(point.x), float(point.y)])
+
+
+def _one_circle(arcs: list[Any], scale: float) -> bool:
+    first = arcs[0]
+    turn = sum(float(arc.sweep) for arc in arcs)
+    alike = all(
+        abs(arc.rx - arc.ry) * scale < CHORD_ERROR
+        and abs(arc.rx - first.rx) * scale < CHORD_ERROR
+        and abs(arc.center - first.center) * scale < CHORD_ERROR
+        for arc in arcs
+    )
+    return alike and math.isclose(abs(turn), 2.0 * math.pi, rel_tol=1e-9)
+
+
+def _corners(segment: Any, scale: float) -> FloatArray:
+    """(r, 2) px: the corners behind the start of a segment, within ``CHORD_ERROR`` of it."""
+    kind = type(segment).__name__
+    if kind == "Arc":
+        largest = max(float(segment.rx), float(segment.ry)) * scale
+        step = 2.0 * math.acos(max(1.0 - CHORD_ERROR / max(largest, CHORD_ERROR), 0.5))
+        count = max(2, math.ceil(abs(float(segment.sweep)) / step))
+    elif kind in ("QuadraticBezier", "CubicBezier"):
+        count = _bezier_chords([_at(p) * scale for p in _controls(segment)])
+    else:
+        return _at(segment.end)[None]
+    if count > MAX_POINTS:
+        raise ValueError(f"a curve of {count:,} chords")
+    return np.array([_at(segment.point(t)) for t in np.arange(1, count) / count] + [_at(segment.end)])
+
+
+def _controls(segment: Any) -> list[Any]:
+    if type(segment).__name__ == "QuadraticBezier":
+        return [segment.start, segment.control, segment.end]
+    return [segment.start, segment.control1, segment.control2, segment.end]
+
+
+def _bezier_chords(controls: list[FloatArray]) -> int:
+    """How many equal steps of the parameter keep the chords of a Bezier curve within ``CHORD_ERROR``: its second
+    derivative is at most n (n - 1) times the largest second difference of its control points."""
+    n = len(controls) - 1
+    most = max(float(np.linalg.norm(a - 2.0 * b + c)) for a, b, c in zip(controls, controls[1:], controls[2:]))
+    return max(1, math.ceil(math.sqrt(n * (n - 1) * most / (8.0 * CHORD_ERROR))))
