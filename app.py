@@ -24,14 +24,14 @@ def start() -> None:
     result = ui.attempt(ui.result, setup)
     story.purpose()
     if result is None:
-        ui.headline(setup.name, "Nothing is computed yet.")
+        ui.headline(f"Start · {setup.name}", "Nothing is computed yet.")
         ui.note(
             "Where numbers above were refused, undo the last change, or mend it on the Robot, Toolpath or Milling page."
         )
         story.doors(take_program)
         st.stop()
 
-    ui.headline(setup.name, ui.verdict_sentence(result, unit), story.cause(result, unit))
+    ui.headline(f"Start · {setup.name}", ui.verdict_sentence(result, unit), story.cause(result, unit))
     ui.open_question(result)
     ui.tiles(ui.verdict_tiles(result, unit))
 

@@ -16,13 +16,13 @@ if result is None or result.worst < 0 or result.setup.digest() != setup.digest()
     ui.note("The cut has no result: mend what is named above, or bring the path within reach on the Toolpath page.")
     st.stop()
 changed = stiffen.changed(result)
+heading = st.container()
 ranked = ui.attempt(stiffen.found, setup)
-if ranked is None:
-    ui.headline(title, "Which joint is worth stiffening?", changed)
-    stiffen.ask(setup)
-    st.stop()
-
-ui.headline(title, stiffen.sentence(ranked, joints, unit), changed)
+with heading:
+    if ranked is None:
+        ui.headline(title, stiffen.meanwhile(result), changed)
+        st.stop()
+    ui.headline(title, stiffen.sentence(ranked, joints, unit), f"{stiffen.together(ranked, joints)} {changed}".strip())
 ui.tiles(stiffen.tiles(ranked, joints, unit))
 left, right = ui.split([1, 1.7], "page", gap="large")
 with left, st.container(border=True):

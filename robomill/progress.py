@@ -97,6 +97,19 @@ def gathered(count: int, stage: str, make: Callable[[slice], Array]) -> Array:
     return cast("Array", whole)
 
 
+@contextmanager
+def step(index: int, count: int, stage: str) -> Iterator[None]:
+    """What is done meanwhile is the ``index``-th (0-based) of ``count`` equal steps of ``stage``: its own stages are
+    not told."""
+    progress = _watching.get()
+    if progress is None:
+        yield
+        return
+    progress.reach(index / count, stage)
+    with watched(Progress(stop=progress.stop)):
+        yield
+
+
 def checkpoint(share: float | None = None, stage: str = "") -> None:
     """Say that ``share`` of ``stage`` is done. Raises Cancelled where it is wanted no more."""
     progress = _watching.get()

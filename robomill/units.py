@@ -165,10 +165,12 @@ def format_number(value: SupportsFloat, digits: int, sign: bool = False, missing
     return _typeset(text.lstrip("+-") if float(text) == 0.0 else text)
 
 
-def format_significant(value: SupportsFloat, digits: int = 6) -> str:
+def format_significant(value: SupportsFloat, digits: int = 6, sign: bool = False) -> str:
     """A bare number by its leading digits, without trailing zeros: ``format_significant(-0.12345, 3) == "−0.123"``."""
     number = float(value)
-    return _typeset(f"{number:.{digits}g}") if math.isfinite(number) else format_number(number, 0)
+    if not math.isfinite(number):
+        return format_number(number, 0)
+    return _typeset(f"{number:+.{digits}g}" if sign and number != 0.0 else f"{number:.{digits}g}")
 
 
 def format_plain(value: float, digits: int) -> str:

@@ -46,7 +46,7 @@ def ranges(result: SimulationResult, known: Knowledge | None) -> tuple[Range, ..
     if lengths(result.worst) is not None:
         found.append(_range(result, "assumed lengths", "assumed", lengths))
     if spread is not None and len(spread.titles) > 1:
-        found.append(_range(result, "the alloy's rows", "assumed", lambda i: spread.delta[:, i] @ result.R_MF[i]))
+        found.append(_range(result, "published coefficients", "assumed", lambda i: spread.delta[:, i] @ result.R_MF[i]))
     if (turn := tooth(result)) is not None:
         at = np.stack([turn.mean, turn.low, turn.high])
         found.append(_range(result, "as teeth come by", "computed", lambda i: at[:, i]))

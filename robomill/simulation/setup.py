@@ -104,18 +104,18 @@ class SimulationSetup(Replaceable, Value):
         hint="Of the tip on its way, and where a cut begins or ends in the material. Left out: given, but not judged.",
     )
     step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0, slip=0.5)
-    cell: float = quantity("Cell of the surface", "mm", default=1e-4, above=0.0, digits=4, slip=0.04)
+    cell: float = quantity("Surface grid", "mm", default=1e-4, above=0.0, digits=4, slip=0.04)
     engagement: bool = switch(
-        "Engagement from the part",
+        "Use the material actually left",
         default=False,
         hint="The arc and depth of each step come from the stock as it stands: no force in air, less in a side cut. "
         "Off: a full slot everywhere. Models with fixed numbers push wherever the path is at feed.",
     )
     coupling: bool = switch(
-        "Deflection changes the cut",
+        "Deflection feeds back on the force",
         default=False,
-        hint="Force and deflection are iterated until they agree. Needs a force from the material and the engagement "
-        "from the part.",
+        hint="Force and deflection are iterated until they agree. Needs a force from the material, and the "
+        "material actually left.",
     )
     spin: float | str = LEAST_MOTION
     tools: ToolTable = NO_TOOLS

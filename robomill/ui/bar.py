@@ -109,7 +109,9 @@ def _force(result: SimulationResult) -> Html:
     setup, i = result.setup, verdict.decides_at(result)
     said = setup.provenance.get("force", setup.force.provenance)
     value = format_si(float(np.linalg.norm(result.F[i])), "N", 0) if i >= 0 else "–"
-    inner = f"<small>Force {pieces.badge(said.kind)}</small><b>{html.escape(value)}</b>"
+    # A person who said a material has typed no force: it is computed.
+    kind = "computed" if (said.kind, setup.force.provenance.kind) == ("user", "computed") else said.kind
+    inner = f"<small>Force {pieces.badge(kind)}</small><b>{html.escape(value)}</b>"
     return Html(f'<div class="rm-cell" title="{html.escape(said.source, quote=True)}">{inner}</div>')
 
 

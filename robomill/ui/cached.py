@@ -28,11 +28,13 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 commons = Commons()
 
 
-def shared(key: Callable[..., Any], doing: str = "") -> Callable[[Function], Function]:
+def shared(
+    key: Callable[..., Any], doing: str = "", seconds: Callable[..., float] | None = None
+) -> Callable[[Function], Function]:
     """Keeps the answers of a function for everyone on the server, by the fingerprint of ``key(*arguments)``.
 
     A refusal is not kept. What is ``doing`` may take long: a page has it made beside itself, and ``Underway`` is raised
-    while it is not there.
+    while it is not there. Where it takes more than a minute, which ``seconds(*arguments)`` tells, it is asked for.
     """
 
     def keep(function: Function) -> Function:
@@ -46,7 +48,8 @@ def shared(key: Callable[..., Any], doing: str = "") -> Callable[[Function], Fun
             if commons.find(name, NOTHING) is not NOTHING:
                 job.give_up(place)  # it ended between two runs of the page, or somebody else had it made
                 return make()
-            return beside.made(place, name, make, doing, group=name[0])
+            takes = 0.0 if seconds is None else seconds(*arguments)
+            return beside.made(place, name, make, doing, takes, group=name[0])
 
         return cast("Function", asked)
 
@@ -111,7 +114,7 @@ def asked_for(label: str, key: str, about: Any, make: Callable[[], Any]) -> Any:
     if found is not NOTHING:
         return found
     if session.kept(f"{FILE}.asked") != name:
-        raise Underway(partial(inputs.button, label, f"{key}.ask", "play_arrow", beside.begin, FILE, name))
+        raise Underway(partial(inputs.button, label, f"{key}.ask", "download", beside.begin, FILE, name))
     try:
         return beside.made(FILE, name, partial(commons.get, name, make), label)
     except RobomillError:

@@ -54,8 +54,8 @@ def _papers(process: bool) -> list[Claim]:
         Claim("paper, measured on the part", "measured", SLOT.measured, note="in the paper's words", rough=True),
     ]
     if process:
-        rows.append(_computed("process data, Table 2", _process_setup()))
-        rows.append(_computed("process data, Table 3", _process_setup().replace(robot=third)))
+        rows.append(_computed("robomill, force from process data and Table 2", _process_setup()))
+        rows.append(_computed("robomill, force from process data and Table 3", _process_setup().replace(robot=third)))
     return rows
 
 
@@ -89,7 +89,8 @@ def panel(project: Project, dark: bool) -> None:
             "kind": [c.kind for c in shown],
             **{f"{k}_{unit}": [getattr(c, k) for c in shown] for k in lengths},
         },
-        caption="Bars: every coefficient row of 7075 in the literature. The paper names neither alloy nor helix; "
+        caption="Dashed: measured. Bars: every coefficient of 7075 in the literature. The paper names neither alloy "
+        "nor helix; "
         "7075-T6 and a right-hand helix are assumed, and nothing is tuned.",
         alt="The paper's predictions and measurement beside the values computed from process data, with their band.",
     )

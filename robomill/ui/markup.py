@@ -26,9 +26,19 @@ def as_html(*parts: str) -> Html:
     return Html(" ".join(part if isinstance(part, Html) else html.escape(part) for part in parts))
 
 
+# A number and what follows it as its unit, or how many times: a line never ends between the two.
+_UNIT = re.compile(r"(?<=\d) (?=(?:%|mm|µm|in|thou|N|m|s)(?!\w))|(?<=×) (?=\d)")
+
+
+def unparted(text: str) -> str:
+    """``text`` with every number held together with its unit; HTML stays HTML."""
+    held = _UNIT.sub("\u00a0", text)
+    return Html(held) if isinstance(text, Html) else held
+
+
 def quiet(*parts: str) -> Html:
     """A quiet line of words and badges, as HTML."""
-    return Html(f'<p class="rm-note">{as_html(*parts)}</p>')
+    return Html(f'<p class="rm-note">{unparted(as_html(*parts))}</p>')
 
 
 def as_markdown(text: str) -> str:

@@ -17,7 +17,7 @@ from robomill.provenance import Provenance
 from robomill.report.settled import settled
 from robomill.ui import beside, cached, session
 from robomill.ui.job import Underway
-from robomill.ui.markup import Html, as_html, as_markdown, quiet
+from robomill.ui.markup import Html, as_html, as_markdown, quiet, unparted
 from robomill.units import split_unit
 
 if TYPE_CHECKING:
@@ -65,12 +65,12 @@ def tiles(items: Sequence[Tile]) -> None:
 def _tile(tile: Tile) -> str:
     number, unit = split_unit(tile.value)
     value = html.escape(number) + (f"<small>{html.escape(unit)}</small>" if unit else "")
-    note = subscripts(tile.note)
+    note = unparted(subscripts(tile.note))
     if tile.was and tile.was != tile.value:
-        moved = f" · {html.escape(tile.change)}" if tile.change else ""
+        moved = f" · {unparted(html.escape(tile.change))}" if tile.change else ""
         note = Html(f'was <span class="rm-was">{html.escape(tile.was)}</span>{moved}')
     mark = f"{badge(tile.kind)} " if tile.kind else ""
-    ranges = "".join(f'<div class="rm-range">{html.escape(words)}</div>' for words in tile.ranges)
+    ranges = "".join(f'<div class="rm-range">{unparted(html.escape(words))}</div>' for words in tile.ranges)
     return (
         f'<div class="rm-tile {html.escape(tile.tone)}"><div class="rm-label">{subscripts(tile.label)}</div>'
         f'<div class="rm-value">{value}</div><div class="rm-sub">{mark}{note}</div>{ranges}</div>'
@@ -94,8 +94,9 @@ def sourced(said: Provenance) -> Html:
 
 def headline(kicker: str, title: str, lead: str = "") -> None:
     """The page's one sentence."""
-    lead_html = f'<p class="rm-lead">{as_html(lead)}</p>' if lead else ""
-    st.html(f'<p class="rm-kicker">{html.escape(kicker)}</p><h1 class="rm-title">{html.escape(title)}</h1>{lead_html}')
+    lead_html = f'<p class="rm-lead">{unparted(as_html(lead))}</p>' if lead else ""
+    said = unparted(html.escape(title))
+    st.html(f'<p class="rm-kicker">{html.escape(kicker)}</p><h1 class="rm-title">{said}</h1>{lead_html}')
 
 
 def note(*parts: str) -> None:

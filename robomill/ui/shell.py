@@ -1,15 +1,13 @@
 """What every page begins with: page config, style, project store and sidebar."""
 
 import sys
-import threading
 
 import streamlit as st
 
-from robomill import compiled
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import SETUP
 from robomill.io.texts import read_text
-from robomill.ui import bar, declared, inputs, menu, pieces, rendered, session
+from robomill.ui import bar, declared, inputs, menu, pieces, preparing, rendered, session
 from robomill.ui.closing import settle
 from robomill.ui.commons import weight
 from robomill.ui.keeping import autosave, snapshots
@@ -62,7 +60,6 @@ export default function (component) {
 # it then waits so long to have it back, two hundred times a run: at Python's own 5 ms a page took a second longer.
 SWITCH_S = 0.0005
 sys.setswitchinterval(SWITCH_S)
-_ready = threading.Event()  # once kernels were looked for in this process
 _watch = st.components.v2.component("robomill_theme_watch", html="<i></i>", css="i { display: none }", js=THEME_WATCH)
 
 
@@ -74,11 +71,7 @@ def begin(title: str) -> Project:
     p = palette(dark())
     st.html(f"<style>:root {{ --rm-ground: {p.background}; --rm-accent: {p.accent}; }}</style>")
     rendered.queue().worker.start()
-    if not _ready.is_set():
-        if compiled.missing():
-            with st.spinner(f"{compiled.WORDS} ..."):
-                compiled.build()
-        _ready.set()
+    preparing.wait()
     st.logo(LOGO.format(accent=p.accent, text=p.text), size="large")
     try:
         autosave.take_up()

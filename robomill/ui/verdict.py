@@ -33,7 +33,14 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     """What a gauge would read of walls and floors, the tip's deviation as detail, and the verdict."""
     made, found = plain_tiles(result, unit), ranges_of(result)
     words = {name: [range_words(each, name, unit) for each in found] for name in made}
+    if may_be_out(result, found):
+        words["share"].append("so it could be out of tolerance")
     return [replace(tile, ranges=[ends for ends in words[name] if ends]) for name, tile in made.items()]
+
+
+def may_be_out(result: SimulationResult, found: tuple[Range, ...]) -> bool:
+    """Whether a cut within tolerance is out of it at one of the ends ``found``."""
+    return result.verdict.level in ("ok", "tight") and any(each.share[1] > 1.0 for each in found)
 
 
 def plain_tiles(result: SimulationResult, unit: str = "mm") -> dict[str, Tile]:
@@ -124,9 +131,15 @@ def tip_tile(result: SimulationResult, unit: str) -> Tile:
     if old is not None:
         was = shown(old.max_deviation)
         change = format_si(result.max_deviation - old.max_deviation, unit, sign=True)
-    parts = " · ".join(f"{a} {format_si(v, unit, sign=True, with_unit=False)}" for a, v in zip("XYZ", result.delta[i]))
-    fate = f" · {result.stray.words}" if result.stray is not None else ""
-    note = f"{parts} · line {result.worst_block}{fate} · RMS {shown(result.rms_deviation)}"
+    most = 0.02 * result.max_deviation  # what is smaller is no part of it that one reads
+    parts = [
+        f"{a} {format_si(v, unit, sign=True, with_unit=False)}"
+        for a, v in zip("XYZ", result.delta[i], strict=True)
+        if abs(v) > most
+    ]
+    stray = result.stray
+    fate = f": {stray.words}" if stray is not None and stray.fate != "stays" else ""
+    note = f"{', '.join(parts)} · most at line {result.worst_block}{fate}"
     value = uncertainty.tile_text(result, unit) or shown(result.max_deviation)
     return Tile("Tip off its path", value, note, was, change)
 

@@ -34,7 +34,7 @@ def film_frame(result: SimulationResult, shown: Enlarged, picture: SurfacePictur
     return replace(
         picture,
         z=from_si(now.drawn.z, "mm"),
-        error=from_si(now.error, "um"),
+        error=now.error * (picture.limit / result.setup.tolerance),  # in the unit of its limit
         solids=posed(result, index, tip_drawn(result, shown, index), arm=False),
         captions=(*picture.captions, f"Line {result.path.block[index]}"),
     )

@@ -42,7 +42,7 @@ def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, da
     inside = {"fillcolor": rgba(p.muted, 0.07), "line": {"width": 0}, "layer": "below"}
     plot.fig.shape(type="rect", xref="x domain", x0=0, x1=1, y0=-most, y1=most, **inside)
     if curves.band is not None:
-        plot.shade((curves.band[0], curves.band[1]), "alloy's rows", rgba(p.accent, 0.16))
+        plot.shade((curves.band[0], curves.band[1]), "published coefficients", rgba(p.accent, 0.16))
     hover = "%{y:+.4f} " + unit + ", line %{customdata}"
     for value, name, colour in ((curves.offset, "centre offset", p.accent), (curves.floor, "floor", p.text)):
         if np.isfinite(value).any():

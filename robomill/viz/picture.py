@@ -29,7 +29,7 @@ class SurfacePicture:
     where a section plane is drawn or, with ``cutaway``, what lies before it is taken away. ``layout`` "pair" shows
     ideal and machined side by side under one camera; ``ghost`` lays the ideal over the machined; ``solids`` stand
     beside them (tool, arm), ``headroom`` mm above the block stays in the picture for them, with ``whole`` they are
-    seen from end to end.
+    seen from end to end. Without ``scale`` the page says what the colours mean.
     """
 
     x: FloatArray
@@ -39,7 +39,7 @@ class SurfacePicture:
     error: FloatArray
     limit: float
     bottom: float
-    unit: str = "µm"
+    unit: str = "mm"
     camera: str = "iso"
     dark: bool = False
     size: tuple[int, int] = (1280, 720)
@@ -52,3 +52,4 @@ class SurfacePicture:
     solids: tuple[Solid, ...] = ()
     headroom: float = 0.0
     whole: bool = False
+    scale: bool = True

@@ -66,9 +66,10 @@ def image(picture: SurfacePicture) -> Any:
         look(plotter, picture, aspect=aspect, room=ROOM_PAIR, beside=False)
         plotter.subplot(0, 1)
     _fill(plotter, picture, colours, ideal=False)
-    stage.colour_bar(plotter, picture, colours, 0.74 if pair else 0.835)
+    if picture.scale:
+        stage.colour_bar(plotter, picture, colours, 0.74 if pair else 0.835)
     stage.words(plotter, replace(picture, captions=()) if pair else picture, "Machined" if pair else "")
-    look(plotter, picture, aspect=aspect, room=ROOM_PAIR if pair else ROOM)
+    look(plotter, picture, aspect=aspect, room=ROOM_PAIR if pair else ROOM if picture.scale else 0.0)
     plotter.enable_anti_aliasing("ssaa")
     shot = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()

@@ -76,9 +76,11 @@ def _marks(name: str, names: Sequence[str], values: FloatArray, colour: str, uni
     }
 
 
-def _amount(value: float, top: float) -> str:
-    """Three digits; what is a thousandth of the largest or less is none."""
-    return format_significant(value, 3) if abs(value) > 1e-3 * top else "0"
+def _amount(value: float, top: float, unit: str) -> str:
+    """Three digits, of a share whole per cent; what is a thousandth of the largest or less is none."""
+    if abs(value) <= 1e-3 * top:
+        return "0"
+    return format_number(value, 0) if unit == "%" else format_significant(value, 3)
 
 
 def gain_bars(title: str, gain: FloatArray, unit: str, joints: Sequence[int], *, dark: bool, height: int) -> Chart:
@@ -87,14 +89,17 @@ def gain_bars(title: str, gain: FloatArray, unit: str, joints: Sequence[int], *,
     order = np.argsort(-gain, kind="stable")
     top, low = float(np.nanmax(gain, initial=0.0)) or 1.0, float(np.nanmin(gain, initial=0.0))
     fig = figure(dark=dark, height=height, revision="gains", bargap=0.25, showlegend=False)
-    fig.layout["margin"] = {"l": 58, "r": 24, "t": 20, "b": 32, "autoexpand": False}
+    fig.layout["margin"] = {"l": 58, "r": 24, "t": 20, "b": 44, "autoexpand": False}
     fig.add(
         "bar",
         y=[f"joint {joints[i]}" for i in order],
         x=gain[order],
         orientation="h",
         marker={"color": [colours[i % 7] for i in order]},
-        text=[f"{_amount(gain[i], top)} {unit}" if gain[i] > 1e-3 * top else "0" for i in order],
+        text=[
+            f"{_amount(gain[i], top, unit)} {unit}" if gain[i] > (0.5 if unit == "%" else 1e-3 * top) else "0"
+            for i in order
+        ],
         textposition="outside",
         cliponaxis=False,
         textfont={"color": p.text, "size": 12.5},
@@ -102,7 +107,7 @@ def gain_bars(title: str, gain: FloatArray, unit: str, joints: Sequence[int], *,
     )
     span = [1.3 * low if low < 0 else 0.0, 1.16 * top]
     fig.layout["xaxis"] = axis(unit, dark=dark, nticks=6, range=span, automargin=False)
-    fig.layout["xaxis"]["title"]["standoff"] = 2
+    fig.layout["xaxis"]["title"]["standoff"] = 6
     fig.layout["yaxis"] = axis("", dark=dark, autorange="reversed", ticks="", automargin=False) | {"title": None}
     say(fig, f"<b>{title}</b>", 0.0, 1.0, p.text, size=13, yshift=2, align="left", **ABOVE)
     return fig

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.units import format_significant
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.theme import palette
 
@@ -202,22 +203,22 @@ def colour_bar(plotter: Any, picture: SurfacePicture, colours: Any, left: float 
         title="",
         mapper=actor.mapper,
         vertical=True,
-        n_labels=5,
-        fmt="%+.0f",
+        n_labels=0,
         color=p.text,
         position_x=left + 0.39 * spare,
         position_y=0.22,
         width=0.21 * spare,
         height=0.56,
-        label_font_size=font(picture, 17),
     )
     size = font(picture, 11)
     for words, y, colour, less in (
         (f"Error, {picture.unit}", 0.885, p.text, 0),
         ("+ material left", 0.815, p.muted, 2),
         ("\u2212 cut too deep", 0.145, p.muted, 2),
+        *((f"{format_significant(k * picture.limit, 3, sign=True)}", 0.485 + 0.27 * k, p.text, 2) for k in (-1, 0, 1)),
     ):
-        plotter.add_text(words, position=(left, y), viewport=True, font_size=size - less, color=colour)
+        beside = left + (0.65 * spare if words[-1].isdigit() else 0.0)
+        plotter.add_text(words, position=(beside, y), viewport=True, font_size=size - less, color=colour)
 
 
 def words(plotter: Any, picture: SurfacePicture, title: str = "") -> None:

@@ -4,7 +4,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.simulation.enlarged import Enlarged
-from robomill.units import decimals, from_si, in_lengths, unit_label
+from robomill.units import decimals, from_si, unit_label
 from robomill.viz.chart import Chart
 from robomill.viz.theme import DIVERGING, axis3d, colour_bar, figure, palette
 
@@ -31,9 +31,8 @@ def surface_figure(
     It is seen as the ``camera`` has it until it is turned.
     """
     drawn = [from_si(v, unit) for v in (shown.drawn.x, shown.drawn.y, shown.drawn.z)]
-    small = in_lengths("um", unit)
-    x, y, z, error = thinned(*drawn, from_si(shown.error, small))
-    shown_limit = float(from_si(limit, small))
+    x, y, z, error = thinned(*drawn, from_si(shown.error, unit))
+    shown_limit = float(from_si(limit, unit))
     p = palette(dark)
     revision = f"surface-{camera}"
     eye, up = EYES[camera]
@@ -51,11 +50,11 @@ def surface_figure(
         lighting={"ambient": 0.62, "diffuse": 0.5, "specular": 0.08, "roughness": 0.8, "fresnel": 0.05},
         lightposition={"x": -400, "y": -800, "z": 1500},
         contours={a: {"highlight": False} for a in "xyz"},
-        colorbar=colour_bar(f"Error, {unit_label(small)} (+ material left, − too deep)", dark=dark, len=0.8, x=0.97),
+        colorbar=colour_bar(f"Error, {unit_label(unit)} (+ material left, − too deep)", dark=dark, len=0.8, x=0.97),
         customdata=colour,
         name="machined",
         hovertemplate=f"x %{{x:.2f}}, y %{{y:.2f}}, z %{{z:.3f}} {unit}<br>"
-        f"error %{{customdata:+.{decimals(small, 0)}f}} {unit_label(small)}<extra></extra>",
+        f"error %{{customdata:+.{decimals(unit, 3)}f}} {unit_label(unit)}<extra></extra>",
     )
     height_span = max(float(np.nanmax(z) - np.nanmin(z)), 1e-9)
     span = max(float(np.ptp(x)), float(np.ptp(y)))

@@ -22,7 +22,7 @@ def surface_picture(
     *,
     station: float | None = None,
     at: float | None = None,
-    error_unit: str = "um",
+    error_unit: str = "mm",
     **more: Any,
 ) -> SurfacePicture:
     """What the drawing process needs for the machined surface; ``station`` (m of length cut) marks the section.

@@ -139,3 +139,30 @@ def test_the_surface_comes_as_ply_and_a_film_as_gif(milling: Any, tmp_path: Path
     film = Image.open(io.BytesIO((tmp_path / "cut.gif").read_bytes()))
     assert film.n_frames >= 12
     assert film.size == (960, 544)
+
+
+@pytest.mark.parametrize("width", [390, 800, 1024])
+def test_in_a_narrow_window_inputs_stand_between_the_picture_and_the_questions(milling: Any, width: int) -> None:
+    """They were below six charts, a film and downloads: at 390 px five screens down."""
+    milling.set_viewport_size({"width": width, "height": 900})
+    milling.wait_for_selector("text=Section at the position")
+    milling.wait_for_timeout(500)
+
+    def top(selector: str) -> float:
+        box = milling.locator(selector).first.bounding_box()
+        assert box is not None
+        return float(box["y"])
+
+    picture, force = top(".st-key-milling-look"), top(".st-key-milling-open-force")
+    accuracy, question = top(".st-key-milling-open-accuracy"), top(".st-key-milling-more")
+    assert picture < top("[data-testid='stMain'] .rm-tiles") < force <= accuracy < question
+
+
+def test_each_group_of_inputs_says_its_value_beside_its_title(milling: Any) -> None:
+    def said(name: str) -> str:
+        script = f"getComputedStyle(document.querySelector('.st-key-milling-open-{name} summary'), '::after').content"
+        return str(milling.evaluate(script)).strip('"')
+
+    assert said("force") == "100 N"
+    assert said("cutter") == "8 mm, 3 flutes"
+    assert said("accuracy") == "0.30 mm"

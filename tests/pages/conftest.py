@@ -66,7 +66,7 @@ def words(app: AppTest) -> str:
     parts = [element.proto.body for element in app.get("html")] if app.get("html") else []
     for kind in ("markdown", "caption", "error", "info", "warning"):
         parts += [element.value for element in app.get(kind)]
-    return "\n".join(parts)
+    return "\n".join(parts).replace("\u00a0", " ")  # a number and its unit are held together
 
 
 def looked(app: AppTest, **view: Any) -> None:

@@ -1,4 +1,5 @@
-"""The improve page: joints ranked, the best one used and undone, an empty state where the cut has no result."""
+"""The improve page: joints ranked, the best one used and undone, several together where one is not enough, and an
+empty state where the cut has no result."""
 
 from __future__ import annotations
 
@@ -6,8 +7,11 @@ import numpy as np
 from conftest import go, store, words
 from streamlit.testing.v1 import AppTest
 
+from robomill.improve.stiffening import some_stiffer
 from robomill.simulation.run import simulate
 from robomill.toolpath.source import GCodeSource
+from robomill.ui.improve.stiffen import made_by, meanwhile
+from robomill.ui.project import preset_setup
 
 
 def test_the_best_joint_can_be_used_and_taken_back(app: AppTest) -> None:
@@ -21,11 +25,42 @@ def test_the_best_joint_can_be_used_and_taken_back(app: AppTest) -> None:
     assert "Verdict then" in words(app)
     app.button(key=f"improve.use.{best}").click().run()
     assert not app.exception
-    assert "of the tolerance is used, 77 % before it" in words(app)
+    assert "of the tolerance is used, 77 % before it: within tolerance. Undo leads back." in words(app)
     used = store(app).project.setup
     assert abs(simulate(used).max_deviation - left.min()) < 1e-9 * left.min()
     app.button(key="undo").click().run()
     assert store(app).project.setup.digest() == before.digest()
+
+
+def test_where_one_joint_is_not_enough_the_best_ones_together_are_told_and_can_be_used(app: AppTest) -> None:
+    kept = store(app)
+    kept.project = kept.project.replace(setup=kept.project.setup.replace(tolerance=0.15e-3))
+    before = kept.project.setup
+    share = simulate(before.replace(robot=some_stiffer(before.robot, [2, 4]))).verdict.share
+    go(app, "7_Improve")
+    assert not app.exception
+    assert "No joint alone brings the cut within tolerance: joint 3 twice as stiff still uses 104 %" in words(app)
+    assert f"Joints 3, 5 together twice as stiff: within tolerance, {100 * share:.0f} %" in words(app)
+    app.button(key="improve.use.3.5").click().run()
+    assert not app.exception
+    assert abs(simulate(store(app).project.setup).verdict.share - share) < 1e-12
+    assert f"{100 * share:.0f} % of the tolerance is used, 153 % before it: within tolerance" in words(app)
+
+
+def test_where_not_even_all_joints_are_enough_the_page_says_what_else_there_is(app: AppTest) -> None:
+    kept = store(app)
+    kept.project = kept.project.replace(setup=kept.project.setup.replace(tolerance=0.05e-3))
+    go(app, "7_Improve")
+    assert "No joint alone brings the cut within tolerance" in words(app)
+    assert "a smaller cut (Milling), another place of the part (Toolpath)" in words(app)
+
+
+def test_before_the_ranking_is_there_the_joints_that_make_the_error_are_named() -> None:
+    result = simulate(preset_setup("paper_flute"))
+    name, share = made_by(result)
+    assert name == "wall error"
+    np.testing.assert_allclose(share.sum(), 1.0, rtol=1e-12)
+    assert meanwhile(result).startswith(f"The wall error at line 7 comes {100 * share[2]:.0f} % from joint 3 and ")
 
 
 def test_a_cut_that_is_not_judged_is_not_called_good_with_a_stiffer_joint(app: AppTest) -> None:

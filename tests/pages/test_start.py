@@ -10,7 +10,7 @@ def test_the_first_screen_says_the_papers_numbers(app: AppTest) -> None:
     assert not app.exception
     text = words(app)
     assert "The groove is 0.23 mm off in Y and 0.10 mm too deep: within tolerance (77 % of it used)." in text
-    for word in ("Wall error", "Floor error", "Tip off its path", "RMS", "Verdict"):
+    for word in ("Wall error", "Floor error", "Tip off its path", "Verdict"):
         assert word in text
     assert "I design robots" in text
     assert "I mill parts" in text

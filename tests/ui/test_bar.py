@@ -10,6 +10,7 @@ import pytest
 import streamlit as st
 
 from robomill.cutting.unjudged import Unjudged
+from robomill.provenance import Provenance
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import bar, cached, session
@@ -114,3 +115,13 @@ def test_a_refusal_is_said_in_full_where_it_is_pointed_at(setup: SimulationSetup
     assert 'title="Line 3, &quot;S&quot;: &lt;no speed&gt;."' in text
     assert "Not computed" in text
     assert "rm-top unjudged" in text
+
+
+def test_the_force_of_a_material_that_somebody_said_is_computed_not_typed() -> None:
+    """After the question what a program cuts was answered the bar said "user": nobody had typed a force."""
+    setup = preset_setup("heart")
+    said = setup.replace(provenance={**setup.provenance, "force": Provenance("user", "said of the program")})
+    assert "rm-badge rm-computed" in shown(said)
+    plain = preset_setup("paper_flute")
+    typed = plain.replace(provenance={**plain.provenance, "force": Provenance("user", "entered in the app")})
+    assert "rm-badge rm-user" in shown(typed)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from robomill.cutting.unjudged import Unjudged
+from robomill.report.ranges import Range
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
@@ -76,3 +77,23 @@ def test_inputs_in_the_other_direction_lead_to_the_other_wall(setup: SimulationS
     tile = tiles(simulate(setup.replace(force=force)))["Wall error"]
     assert tile.value == f"−{WALL:.3f} mm"
     assert "to the right" in tile.note
+
+
+@pytest.mark.parametrize(("high", "may"), [(0.99, False), (1.09, True)])
+def test_a_green_cut_whose_ends_lie_beyond_the_tolerance_says_so(
+    setup: SimulationSetup, high: float, may: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    none = (float("nan"), float("nan"))
+    found = (Range("assumed lengths", "assumed", none, none, none, (0.7, high)),)
+    monkeypatch.setattr(panel, "ranges_of", lambda result: found)
+    result = simulate(setup)
+    said = tiles(result)["Verdict"].ranges
+    assert ("so it could be out of tolerance" in said) is may
+    assert "so it could be out of tolerance" not in tiles(simulate(setup.replace(tolerance=1e-4)))["Verdict"].ranges
+
+
+def test_what_a_later_pass_cleans_up_is_said_and_what_is_nothing_is_left_out(setup: SimulationSetup) -> None:
+    assert tiles(simulate(setup))["Tip off its path"].note == "Y +0.230, Z −0.102 · most at line 7"
+    assert tiles(simulate(preset_setup("pocket_arcs")))["Tip off its path"].note.endswith(
+        "most at line 6: a later pass cleans that place up"
+    )

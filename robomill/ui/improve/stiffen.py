@@ -1,58 +1,60 @@
-"""One remedy for the project's cut: a stiffer joint, ranked by what it leaves of what the verdict judges."""
+"""One remedy for the project's cut: stiffer joints, ranked by what they leave of what the verdict judges."""
 
-from functools import partial
+from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
 import streamlit as st
 
-from robomill.improve.stiffening import Stiffening, one_stiffer, stiffer_joints
+from robomill.arrays import FloatArray
+from robomill.improve.stiffening import Stiffening, some_stiffer, stiffer_joints
 from robomill.provenance import named
 from robomill.simulation.estimate import run_seconds
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.stations import joint_shares
 from robomill.simulation.verdict_words import Verdict
 from robomill.ui import cached, inputs, pieces, session
-from robomill.ui import job as jobs
-from robomill.ui.job import Job
-from robomill.ui.verdict import WORDS, previous, share_words, tone
+from robomill.ui.verdict import WORDS, decides_at, previous, share_words, tone
 from robomill.units import format_percent, format_share, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 
-KEY, AT_ONCE_S = "improve.ranking", 1.0
 LEAST = 0.005  # of the tolerance; what saves less is not offered
-ERRORS = {
-    "wall": "a wall error",
-    "floor": "a floor error",
-    "feed": "an error along the feed",
-    "end": "an error of an end wall",
-}
+ERRORS = {"wall": "wall error", "floor": "floor error", "feed": "error along the feed", "end": "error of an end wall"}
+AXES = {"wall": 1, "floor": 2, "feed": 0, "end": 0}  # of feed, feed-normal and axial
+ASKED = "Which joint is worth stiffening?"
 
 
-def found(setup: SimulationSetup) -> Stiffening | None:
-    """The ranking: at once where that is short, else beside the page when it is asked for. Raises the simulation's
-    refusal."""
-    if run_seconds(setup) * (setup.robot.n + 1) <= AT_ONCE_S:
-        return stiffer_joints(setup, cached.result)
-    job: Job | None = session.kept(KEY)
-    if job is None or job.about.digest() != setup.digest():
-        return None
-    ended = jobs.finished(KEY, AT_ONCE_S)
-    if ended is None:
-        return None
-    if ended.error is not None:
-        raise ended.error
-    made: Stiffening | None = ended.made
-    return made
+def _seconds(setup: SimulationSetup) -> float:
+    """About how long the ranking takes: a run as it is, and one for each joint."""
+    return run_seconds(setup) * (setup.robot.n + 1)
 
 
-def ask(setup: SimulationSetup) -> None:
-    """The button that ranks the joints of a long path, or how far that has come."""
-    if session.kept(KEY) is not None and session.kept(KEY).about.digest() == setup.digest():
-        jobs.waiting(KEY, lambda job: f"Cutting once with each joint twice as stiff: {job.progress.stage}")
-        return
-    rank = Job(partial(stiffer_joints, setup, cached.result), setup)
-    inputs.button("Rank the joints", "improve.rank", "play_arrow", jobs.begin, KEY, rank, type="primary")
-    pieces.note(f"Not computed yet: the cut is simulated {setup.robot.n} times more, once for each joint.")
+@cached.shared(cached.by_setup, "Each joint alone twice as stiff", _seconds)
+def found(setup: SimulationSetup) -> Stiffening:
+    """The ranking, kept or made. Raises the simulation's refusal."""
+    return stiffer_joints(setup, cached.result)
+
+
+def meanwhile(result: SimulationResult) -> str:
+    """What one knows before any joint was made stiffer: which joints make the error that decides."""
+    name, share = made_by(result)
+    numbers = result.setup.robot.joint_numbers
+    first = [int(j) for j in np.argsort(-share, kind="stable")[:2] if share[j] > LEAST]
+    if not first:
+        return ASKED
+    parts = " and ".join(f"{format_percent(share[j])} from joint {numbers[j]}" for j in first)
+    return f"The {name} at line {result.path.block[decides_at(result)]} comes {parts}. {ASKED}"
+
+
+def made_by(result: SimulationResult) -> tuple[str, FloatArray]:
+    """What decides the verdict, and the share (n,) of each joint in it: of its deflection there, along that error."""
+    i, rests = decides_at(result), result.verdict.deciding
+    if rests is None:
+        return "deviation of the tip", joint_shares(result, i)
+    along = result.R_MF[i, :, AXES[rests[0]]]
+    whole = float(result.delta[i] @ along)
+    return ERRORS[rests[0]], np.asarray(result.delta_joint[i] @ along) / (whole or np.inf)
 
 
 def changed(result: SimulationResult) -> str:
@@ -61,7 +63,10 @@ def changed(result: SimulationResult) -> str:
     if old is None or old.setup.replace(robot=result.setup.robot).digest() != result.setup.digest():
         return ""
     was, now = (format_share(each.verdict.share) for each in (old, result))
-    return f"With the last change of the robot {now} of the tolerance is used, {was} before it; undo leads back."
+    return (
+        f"With the last change of the robot {now} of the tolerance is used, {was} before it: "
+        f"{WORDS[result.verdict.level].lower()}. Undo leads back."
+    )
 
 
 def sentence(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> str:
@@ -70,6 +75,11 @@ def sentence(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> str:
     if not ranked.saved[best] > LEAST:
         return "No joint twice as stiff would make this cut noticeably truer."
     then = ranked.after[best]
+    if ranked.with_together is not None:
+        return (
+            f"No joint alone brings the cut within tolerance: joint {joints[best]} twice as stiff still uses "
+            f"{format_share(then.share)} of it (now {format_share(ranked.before.share)})."
+        )
     now, left = _worst(ranked.before, ranked.tip[0], unit), _worst(then, ranked.tip[best + 1], unit)
     same = now.rpartition(" of ")[0] + " of "
     return (
@@ -78,12 +88,26 @@ def sentence(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> str:
     )
 
 
+def together(ranked: Stiffening, joints: tuple[int, ...]) -> str:
+    """What the best joints do together where one alone is not enough; "" where it is."""
+    then = ranked.with_together
+    if then is None:
+        return ""
+    both = f"Joints {named([joints[i] for i in ranked.together])} together twice as stiff"
+    if then.level != "out":
+        return f"{both}: {WORDS[then.level].lower()}, {format_share(then.share)} of the tolerance used."
+    return (
+        f"{both} still use {format_share(then.share)} of the tolerance: a smaller cut (Milling), another place of the "
+        "part (Toolpath) or more than twice the stiffness has to do the rest."
+    )
+
+
 def _worst(verdict: Verdict, tip: float, unit: str) -> str:
     """What decides the verdict, in words: "a wall error of 0.230 mm"."""
     if verdict.deciding is None:
         return f"a deviation of the tip of {format_si(tip, unit)}"
     name, reading = verdict.deciding
-    return f"{ERRORS[name]} of {format_si(abs(reading.value), unit)}"
+    return f"{'an' if ERRORS[name][0] == 'e' else 'a'} {ERRORS[name]} of {format_si(abs(reading.value), unit)}"
 
 
 def tiles(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> list[pieces.Tile]:
@@ -91,18 +115,19 @@ def tiles(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> list[pieces
     best = int(ranked.ranking[0])
     then, saved = ranked.after[best], float(ranked.saved[best])
     if not saved > LEAST:
-        return [_used("Used now", ranked.before, ranked.tip[0], unit)]
+        return [_used("Tolerance used now", ranked.before, ranked.tip[0], unit)]
     return [
-        _used("Used now", ranked.before, ranked.tip[0], unit),
-        pieces.Tile("Stiffen first", f"joint {joints[best]}", f"saves {format_percent(saved)} of the tolerance"),
-        _used("Used then", then, ranked.tip[best + 1], unit),
+        _used("Tolerance used now", ranked.before, ranked.tip[0], unit),
+        pieces.Tile(
+            "Stiffen first", f"joint {joints[best]}", f"twice as stiff: {format_percent(saved)} of the tolerance saved"
+        ),
+        _used("Tolerance used then", then, ranked.tip[best + 1], unit),
         pieces.Tile("Verdict then", WORDS[then.level], share_words(then), tone=tone(then)),
     ]
 
 
 def _used(label: str, verdict: Verdict, tip: float, unit: str) -> pieces.Tile:
-    words = f"of the tolerance: {_worst(verdict, tip, unit)}"
-    return pieces.Tile(label, format_share(verdict.share), words, kind="computed")
+    return pieces.Tile(label, format_share(verdict.share), _worst(verdict, tip, unit))
 
 
 def columns(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> dict[str, list[Any]]:
@@ -131,7 +156,7 @@ def ranking(ranked: Stiffening, joints: tuple[int, ...], unit: str, dark: bool) 
             unit_label("%"),
             joints,
             dark=dark,
-            height=88 + 34 * len(joints),
+            height=100 + 34 * len(joints),
         ),
         "improve-joints",
         name="stiffer-joints",
@@ -143,28 +168,38 @@ def ranking(ranked: Stiffening, joints: tuple[int, ...], unit: str, dark: bool) 
 
 
 def remedies(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> None:
-    """The joints that save something, from best to least, what each leaves and its button; the rest in a line."""
+    """The joints that save something, from best to least, what each leaves and its button; those that have to be
+    stiffer together; the rest in a line."""
     idle = []
     for i in map(int, ranked.ranking):
         if not ranked.saved[i] > LEAST:
             idle.append(joints[i])
             continue
-        words, button = st.columns([2.2, 1], vertical_alignment="center")
         then = ranked.after[i]
-        words.markdown(
-            f"**Joint {joints[i]}**: {format_share(then.share)} of the tolerance used, "
-            f"{_worst(then, ranked.tip[i + 1], unit)}"
-        )
-        with button:
-            hint = "Halves this joint's compliance in the project; undo leads back."
-            inputs.button(
-                f"Stiffen joint {joints[i]}", f"improve.use.{joints[i]}", "check", _use, i, width="stretch", help=hint
-            )
+        words = f"{_verdict(then)}, {_worst(then, ranked.tip[i + 1], unit)}"
+        _remedy(f"Joint {joints[i]}", words, f"Stiffen joint {joints[i]}", (i,))
+    if ranked.with_together is not None:
+        which = named([joints[i] for i in ranked.together])
+        _remedy(f"Joints {which} together", _verdict(ranked.with_together), "Stiffen them all", ranked.together)
     if idle:
         pieces.note(
             f"Joint{'s' * (len(idle) > 1)} {named(idle)}: twice as stiff, the error that decides stays as it is."
         )
 
 
-def _use(joint: int) -> None:
-    session.change(robot=one_stiffer(session.project().setup.robot, joint))
+def _verdict(then: Verdict) -> str:
+    return f"{WORDS[then.level].lower()}, {format_share(then.share)} of the tolerance used"
+
+
+def _remedy(what: str, words: str, label: str, joints: tuple[int, ...]) -> None:
+    name = ".".join(str(session.project().setup.robot.joint_numbers[i]) for i in joints)
+    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
+        with st.container(gap=None):
+            pieces.strong(what)
+            pieces.note(f"{words[0].upper()}{words[1:]}.")
+        hint = "Halves the compliance in the project; undo leads back."
+        inputs.button(label, f"improve.use.{name}", "", _use, joints, width="content", help=hint)
+
+
+def _use(joints: Iterable[int]) -> None:
+    session.change(robot=some_stiffer(session.project().setup.robot, joints))

@@ -48,11 +48,13 @@ _page = st.components.v2.component(
 class Notice:
     """Words shown until they are put away or, where they are about ``project``, until its set-up changes.
 
-    ``instead`` is work that can be had in its place, ``refused`` a file that could not be opened, to be taken away.
+    What is about a project is put away with its page, too. ``instead`` is work that can be had in its place,
+    ``refused`` a file that could not be opened, to be taken away.
     """
 
     words: str
     project: Project | None = None
+    page: str = ""  # where it was first shown
     instead: Head | None = None
     refused: str = ""
 
@@ -218,6 +220,11 @@ def notices() -> None:
         words = f"{notice.words} The change that was on its way is in it."
         session.keep(NOTICE, notice := replace(notice, words=words, project=session.project()))
     if notice is None or (notice.project is not None and notice.project.setup is not session.project().setup):
+        return
+    if notice.project is not None and not notice.page:
+        session.keep(NOTICE, notice := replace(notice, page=session.store().page))
+    elif notice.page and notice.page != session.store().page:
+        session.drop(NOTICE)
         return
     with st.container(horizontal=True, vertical_alignment="center", gap="small", key="autosave-notice"):
         st.markdown(f":material/history: {as_markdown(notice.words)}", width="stretch")

@@ -22,8 +22,8 @@ from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling import station as station_views
 from robomill.ui.milling import tools as tools_panel
 from robomill.ui.pieces import Tile
-from robomill.ui.verdict import NOT_COUNTED, verdict_tiles
-from robomill.units import format_many, format_si
+from robomill.ui.verdict import NOT_COUNTED, decides_at, verdict_tiles
+from robomill.units import format_count, format_limit, format_many, format_si
 
 QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}
 QUESTION = "milling.question"
@@ -36,13 +36,11 @@ def spread_of(result: SimulationResult) -> tuple[AlloySpread | None, ForceSpread
 
 
 def tiles(result: SimulationResult, made: list[Tile]) -> list[Tile]:
-    """The page's tiles with the band of the alloy beside the verdict and the influence of the spin at the tip."""
+    """The page's tiles with the influence of the spin at the tip."""
     unit = session.project().view.length
     *first, tip, verdict = made
     if words := _spin_words(result, unit):
         tip = dataclasses.replace(tip, ranges=[*tip.ranges, words])
-    if band := linked.band_words(spread_of(result)[0], result, unit):
-        verdict = dataclasses.replace(verdict, note=f"{verdict.note} · {band}")
     return [*first, tip, verdict]
 
 
@@ -58,16 +56,19 @@ def _spin_words(result: SimulationResult, unit: str) -> str:
 
 def _mean_and_peak(result: SimulationResult) -> str:
     """Which force the verdict is of, where a tooth is known to push harder."""
-    peak, i = spread_of(result)[1], result.worst
+    peak, i = spread_of(result)[1], decides_at(result)
     if peak is None or i < 0:
         return ""
     mean, most = (format_si(float(np.linalg.norm(F[i])), "N", 0) for F in (result.force_components, peak.at_peak))
-    return f"The verdict is of the mean force, {mean} at its worst; a tooth pushes with up to {most} there. "
+    return f"The verdict is of the mean force, {mean} where it decides; a tooth pushes with up to {most} there. " * (
+        mean != most
+    )
 
 
 def inputs_column(result: SimulationResult | None) -> None:
     """Force, cutter, stock, what else gives, tolerance."""
     setup = session.project().setup
+    _beside_titles(result)
     with st.expander("**Force on the tool**", expanded=True, key="milling.open.force"):
         force_panel.inputs_panel()
         if result is not None and result.coupling is not None and not result.coupling.converged:
@@ -82,10 +83,22 @@ def inputs_column(result: SimulationResult | None) -> None:
                     pieces.said("warning", finding.sentence, "warning")
     with st.expander("**Stock** in {W}", expanded=False, key="milling.open.stock"):
         cut_panel.stock_inputs()
-    with st.expander("**Beside the joints**", expanded=False, key="milling.open.springs"):
+    with st.expander("**Other flexibility**", expanded=False, key="milling.open.springs"):
         springs_panel.inputs_panel()
     with st.expander("**Tolerance and accuracy**", expanded=True, key="milling.open.accuracy"):
         cut_panel.judgement_inputs()
+
+
+def _beside_titles(result: SimulationResult | None) -> None:
+    """What each group of inputs says, at the end of its title: one reads it with the group folded away. By style, since
+    Streamlit unfolds what gets another title."""
+    setup, unit = session.project().setup, session.project().view.length
+    said = {"cutter": format_count(len(setup.tools), "tool") if setup.tools else cut_panel.cutter_words()}
+    said |= {"stock": cut_panel.stock_words(), "accuracy": format_limit(setup.tolerance, unit)}
+    if result is not None and (i := decides_at(result)) >= 0:
+        said["force"] = format_si(float(np.linalg.norm(result.F[i])), "N", 0)
+    rules = [f'.st-key-milling-open-{name} summary::after {{ content: "{words}" }}' for name, words in said.items()]
+    st.html(f"<style>{' '.join(rules)}</style>")
 
 
 def workbench(dark: bool) -> None:
@@ -160,6 +173,14 @@ def _looks(digest: str, dark: bool) -> None:
             picture_panel.rendered_picture(result, i, dark)
     if known is None:
         return
+    with st.container(key="milling-more"):
+        _answers(result, i, known, dark)
+
+
+def _answers(
+    result: SimulationResult, i: int, known: tuple[AlloySpread | None, ForceSpread | None], dark: bool
+) -> None:
+    """One of three questions, which share the position along the cut."""
     spread, peak = known
     question = inputs.pick("Question", QUESTION, QUESTIONS, "part", inputs.HIDDEN)
     if question == "force":
@@ -226,7 +247,7 @@ def _part(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bo
         st.markdown("**Over the whole surface**")
         metrology_panel.spread_panel(result, dark)
     if evidence_panel.is_papers_path(session.project()):
-        st.subheader("The paper's test, and ours")
+        st.subheader("The paper's test beside this calculation")
         with st.container(border=True):
             evidence_panel.panel(session.project(), dark)
     st.subheader("Downloads")

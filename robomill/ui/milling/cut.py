@@ -9,7 +9,7 @@ from robomill.io.meshes import UNITS_OF_STL, read_stl_stock
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.stock import Stock
 from robomill.ui import declared, inputs, pieces, running, session
-from robomill.units import format_count, format_many
+from robomill.units import format_count, format_many, format_short
 
 STOCKS = {"path": "Around the path", "block": "Block", "stl": "From STL"}
 FILE, UNIT = "milling.stock.file", "milling.stock.unit"
@@ -24,6 +24,18 @@ def cutter_inputs() -> None:
     for names in (("diameter", "flutes"), cutter.family.needs, ("stick_out", "flute_length"), ("helix", "helix_angle")):
         if names:
             declared.in_row([f"cutter.{name}" for name in names], declared.field)
+
+
+def cutter_words() -> str:
+    """The cutter in short: its diameter and its teeth."""
+    cutter = session.project().setup.cutter
+    return f"{format_short(cutter.diameter, session.project().view.length)}, {format_count(cutter.flutes, 'flute')}"
+
+
+def stock_words() -> str:
+    """The size of the stock."""
+    stock = session.project().setup.stock
+    return _around(session.project().setup) if stock is None else _size(stock)
 
 
 def stock_inputs() -> None:

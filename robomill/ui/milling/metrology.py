@@ -99,7 +99,7 @@ def _measured(section: GrooveSection, name: str) -> tuple[str, str]:
         beside = ANGLES[name]
         if name.startswith("wall"):
             form = float(getattr(section, name.replace("angle", "straightness")))
-            beside = f"straight within {format_si(form, view.of('um'))}"
+            beside = f"straight within {format_si(form, view.length)}"
         return format_si(value, "deg", 3 if name == "floor_tilt" else 2), beside
     signed = name in SIGNED or name.startswith("wall")
     remark = SIGNED.get(name, "") or ("positive to the left of the feed" if name.startswith("wall") else "")
@@ -135,9 +135,7 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     )
     missing = ""
     if found.missing:
-        missing = (
-            f" At {found.missing} of {len(found.station)} stations no groove of one pass is cut, so there is no middle."
-        )
+        missing = f" At {found.missing} of {len(found.station)} places no groove has two walls: no middle there."
     pieces.figure(
         profile_figure(curves, block, float(from_si(station_m(result), unit)), dark=dark),
         "profile",
@@ -150,12 +148,16 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
         side, floor = fit.side, fit.floor
         pieces.facts(
             [
-                ("Shift", f"{format_si(side.offset, unit, sign=True)}", "zeroing the part again would take it out"),
+                (
+                    "Shift",
+                    f"{format_si(side.offset, unit, sign=True)}",
+                    "on average: zeroing the part again would take it out",
+                ),
                 ("Turn", f"{format_si(side.rotation, 'urad', sign=True)}", "of the middle line"),
                 (
                     "Form error",
-                    format_si(side.form_error, session.project().view.of("um")),
-                    f"left after both; the floor keeps {format_si(floor.form_error, session.project().view.of('um'))}",
+                    format_si(side.form_error, unit),
+                    f"left after both; the floor keeps {format_si(floor.form_error, unit)}",
                 ),
             ]
         )
@@ -252,8 +254,8 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
         "histogram",
         name="error-histogram",
         table=lambda: {
-            "from_um": from_si(edges[:-1], "um"),
-            "to_um": from_si(edges[1:], "um"),
+            "from_mm": from_si(edges[:-1], "mm"),
+            "to_mm": from_si(edges[1:], "mm"),
             **{f"{name}_mm2": from_si(each, "mm2") for name, each in area.items()},
         },
         caption="Walls and floors as a gauge reads them, each by its own area: what the verdict rests on.",
@@ -289,5 +291,5 @@ def _volumes(error: Deviation) -> list[tuple[str, str, str]]:
     return [
         ("Material left", format_si(error.excess_volume, view.of("mm3")), "on walls and floors together"),
         ("Cut too deep", format_si(error.gouge_volume, view.of("mm3")), "into walls and floors together"),
-        ("RMS error", format_si(error.rms, view.of("um")), "over the cut area"),
+        ("RMS error", format_si(error.rms, view.length), "over the cut area"),
     ]

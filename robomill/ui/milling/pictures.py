@@ -51,7 +51,7 @@ def scene(result: SimulationResult, i: int, dark: bool) -> tuple[tuple[object, .
         return surface_picture(
             result,
             so_far(result, shown, i) if "so_far" in extras else shown,
-            error_unit=view.of("um"),
+            error_unit=view.length,
             camera=view.camera,
             dark=dark,
             station=station if extras & {"plane", "away"} else None,
@@ -94,11 +94,13 @@ def downloads(result: SimulationResult, i: int) -> None:
             pieces.download(f"Surface {kind.upper()}", solid, name, f"milling.get.{kind}", long, disabled=off)
     for refusal in filter(None, refusals.values()):
         pieces.note(str(refusal))
-    every = format_si(max(_spacing(result, most), setup.cell), session.project().view.length, 2)
+    unit = session.project().view.length
+    every = format_si(max(_spacing(result, most), setup.cell), unit, 2)
+    thinned = f", thinned from {format_si(setup.cell, unit, 2)}" if _spacing(result, most) > setup.cell else ""
     inputs.switch("Surfaces with every cell", FULL, full, partial(session.keep, FULL))
     pieces.note(
-        f"Surfaces are closed solids in mm, true to size, with a height every {every} and each wall in its place; "
-        "VTP carries the signed error."
+        f"Surfaces are closed solids in mm, true to size, with each wall in its place and a height every {every}"
+        f"{thinned}; VTP carries the signed error."
     )
 
 

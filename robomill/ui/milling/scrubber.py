@@ -10,7 +10,7 @@ import streamlit as st
 
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
-from robomill.simulation.stations import largest_deviations, nearest_judged
+from robomill.simulation.stations import nearest_judged
 from robomill.ui import pieces, session, uncertainty
 from robomill.units import format_many, from_si
 from robomill.viz.along import add_picks, add_point, at_feed, shade
@@ -53,7 +53,7 @@ def _range(spread: AlloySpread | None, i: int, unit: str) -> str:
     if spread is None or len(spread.titles) < 2:
         return ""
     low, high = float(spread.deviation[:, i].min()), float(spread.deviation[:, i].max())
-    return f"{format_many((low, high), unit, between=' to ')} by alloy row"
+    return f"{format_many((low, high), unit, between=' to ')} by published coefficients"
 
 
 def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bool) -> None:
@@ -66,8 +66,8 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
     caption = "Deflected minus commanded, in {M}. Click the curve to go there."
     if spread is not None and len(spread.titles) > 1:
         at = from_si(at_feed(result, spread.deviation.T), unit)
-        shade(fig, s, (at.min(axis=1), at.max(axis=1)), "alloy's rows", rgba(palette(dark).text, 0.18))
-        caption = "Deflected minus commanded, in {M}; shaded: the alloy's other coefficient rows. Click to go there."
+        shade(fig, s, (at.min(axis=1), at.max(axis=1)), "published coefficients", rgba(palette(dark).text, 0.18))
+        caption = "Deflected minus commanded, in {M}; shaded: by the alloy's other coefficients. Click to go there."
     if uncertainty.banded(fig, result, unit, dark=dark):
         caption = f"{caption} {uncertainty.band_caption(result.setup)}"
     if i >= 0:
@@ -96,12 +96,3 @@ def deviation_plot(result: SimulationResult, i: int, spread: AlloySpread | None,
 def _station_at(result: SimulationResult, point: Mapping[str, Any]) -> None:
     total = float(from_si(float(result.path.s[-1]), session.project().view.length))
     session.look(station=min(max(float(point["x"]) / total, 0.0), 1.0))
-
-
-def band_words(spread: AlloySpread | None, result: SimulationResult, unit: str) -> str:
-    """``"0.18 to 0.33 mm by alloy row"`` for the largest deviation, or nothing."""
-    if spread is None or len(spread.titles) < 2 or not result.judged.any():
-        return ""
-    largest = largest_deviations(result, spread)
-    ends = format_many((largest.min(), largest.max()), unit, 2, " to ")
-    return f"{ends} by alloy row"

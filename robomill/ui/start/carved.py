@@ -9,6 +9,7 @@ import streamlit as st
 
 from robomill.simulation.verdict_words import Level
 from robomill.ui import inputs, pieces, session
+from robomill.ui.markup import Html, unparted
 from robomill.ui.project import preset_setup
 from robomill.ui.verdict import WORDS
 from robomill.units import format_beside, format_limit, format_times, to_si
@@ -53,7 +54,8 @@ def strip(unit: str) -> None:
                 alt = f"{title}: {off} allowed, {WORDS[row.level].lower()}; displacement shown {format_times(times)}."
                 st.image(str(row.picture), alt=alt, width="stretch")
                 inputs.button(title, f"start.open.{row.sample}", "", session.open_preset, row.sample, type="tertiary")
-                pieces.note(off + (", out of tolerance" if row.level == "out" else ""))
+                out = Html(' <span class="rm-card-out">out of tolerance</span>') if row.level == "out" else ""
+                pieces.note(unparted(off), out)
     pieces.note(
         "Six example programs as this robot would mill them; under each its largest surface error, of the tolerance "
         f"allowed. {_shown(times)}"

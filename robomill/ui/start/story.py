@@ -1,7 +1,8 @@
 """What the start page tells: the cause in one line, the groove, where the numbers come from, the doors."""
 
 import html
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,16 +15,18 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
 from robomill.ui import cached, evidence, inputs, pieces, rendered, session
+from robomill.ui.markup import unparted
 from robomill.ui.project import Project, View
 from robomill.ui.verdict import decides_at, verdict_sentence
-from robomill.units import format_count, format_percent, format_si, format_times
+from robomill.units import format_beside, format_count, format_si, format_times
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.surfaces import surface_figure
+from robomill.viz.theme import DIVERGING
 from robomill.viz.views import surface_picture
 
 PURPOSE = "robomill predicts how far a milling robot is pushed off its path by the cutting force, and why."
 DOORS = (
-    ("I design robots", "Which joint is worth stiffening?", "pages/1_Robot.py", "Stiffen a joint"),
+    ("I design robots", "Which joint is worth stiffening?", "pages/7_Improve.py", "Stiffen a joint"),
     ("I teach", "Why does a robot bend sideways?", "pages/8_Learn.py", "Start the lesson"),
 )
 CHECKED = "start.checked"
@@ -45,7 +48,8 @@ def cause(result: SimulationResult, unit: str) -> str:
     share = joint_shares(result, i)
     main = [j for j in order if share[j] > 0.08][:3]
     numbers = result.setup.robot.joint_numbers
-    blame = " and ".join(f"joint {numbers[j]} ({format_percent(share[j])})" for j in main)
+    per_cent = _whole([float(share[j]) for j in main])
+    blame = " and ".join(f"joint {numbers[j]} ({each} %)" for j, each in zip(main, per_cent, strict=True))
     force = format_si(float(np.linalg.norm(result.F[i])), "N", 0)
     moved = ", ".join(
         f"{format_si(float(v), unit, sign=True)} in {a}"
@@ -54,6 +58,14 @@ def cause(result: SimulationResult, unit: str) -> str:
     )
     most = "It" if sum(share[j] for j in main) > 0.98 else "Most of it"
     return f"{force} on the tool moves the tip by {moved}. {most} comes from {blame}."
+
+
+def _whole(shares: Sequence[float]) -> list[int]:
+    """Shares of 1 in whole per cent whose sum is that of the shares: what is cut off most is rounded up first."""
+    floors = [math.floor(100.0 * share) for share in shares]
+    short = round(100.0 * sum(shares)) - sum(floors)
+    order = sorted(range(len(shares)), key=lambda k: floors[k] - 100.0 * shares[k])
+    return [floors[k] + (k in order[:short]) for k in range(len(shares))]
 
 
 def groove_picture(result: SimulationResult, view: View, height: int, dark: bool) -> None:
@@ -66,8 +78,8 @@ def groove_picture(result: SimulationResult, view: View, height: int, dark: bool
     )
 
     def scene() -> SurfacePicture:
-        how: dict[str, Any] = {"camera": "iso", "dark": dark, "size": size, "captions": ()}
-        return surface_picture(result, cached.pictured(setup, times), error_unit=view.of("um"), **how)
+        how: dict[str, Any] = {"camera": "iso", "dark": dark, "size": size, "captions": (), "scale": False}
+        return surface_picture(result, cached.pictured(setup, times), error_unit=view.length, **how)
 
     def turnable() -> None:
         shown = pieces.attempt(cached.pictured, setup, times)
@@ -77,10 +89,14 @@ def groove_picture(result: SimulationResult, view: View, height: int, dark: bool
 
     rendered.picture("start.groove", (setup.digest(), times, "start", dark, size, view.units), scene, alt, turnable)
     what = "groove" if result.path.on_one_line else "part"
-    pieces.note(
-        f"The {what} as milled, displacement shown {format_times(times, 6)}. Colours end at the tolerance, "
-        f"± {format_si(setup.tolerance, view.of('um'), 0)}."
+    ends = [format_beside(k * setup.tolerance, setup.tolerance, view.length, 2, sign=True) for k in (-1, 1)]
+    colours = ",".join(str(colour) for _, colour in DIVERGING)
+    st.html(
+        f'<div class="rm-key"><span>{unparted(ends[0])} cut too deep</span>'
+        f'<i style="background:linear-gradient(90deg,{colours})"></i>'
+        f"<span>{unparted(ends[1])} material left</span></div>"
     )
+    pieces.note(f"The {what} as milled; its colours end at the tolerance. Displacement shown {format_times(times, 6)}.")
 
 
 def where_from(setup: SimulationSetup) -> None:
@@ -128,7 +144,7 @@ def doors(take: Callable[[bytes, str], None]) -> None:
     """A card for each kind of visitor; the one who mills drops a program there, which ``take`` gets."""
     with st.container(key="doors"):
         with st.container(border=True, key="door-mill"):
-            _door("I mill parts", "Will my part come out true? Drop its G-code.")
+            _door("I mill parts", "Will my part come out true? Drop its G-code here: .nc, .ngc, .tap")
             inputs.upload("Check my program", "start.program", _then(take), most_MB=PROGRAM.most_MB)
         for title, text, page, label in DOORS:
             with st.container(border=True, key=f"door-{label.split()[-1]}"):

@@ -18,7 +18,7 @@ def test_a_number_is_named_as_on_the_page_and_has_its_unit() -> None:
     other = SETUP.replace(cutter=SETUP.cutter.replace(diameter=10e-3), cell=2e-4)
     assert differences([SETUP, other]) == [
         ["Cutter: Diameter", "8 mm", "10 mm"],
-        ["Cell of the surface", "0.1 mm", "0.2 mm"],
+        ["Surface grid", "0.1 mm", "0.2 mm"],
     ]
 
 
