@@ -69,7 +69,7 @@ def begin(title: str) -> Project:
     if menu.group_pages():
         st.rerun()
     p = palette(dark())
-    st.html(f"<style>:root {{ --rm-ground: {p.background}; --rm-accent: {p.accent}; }}</style>")
+    st.html(f"<style>:root {{ --rm-ground: {p.background}; --rm-accent: {p.accent}; --rm-text: {p.text}; }}</style>")
     rendered.queue().worker.start()
     preparing.wait()
     st.logo(LOGO.format(accent=p.accent, text=p.text), size="large")
