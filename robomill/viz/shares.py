@@ -78,9 +78,8 @@ def _marks(name: str, names: Sequence[str], values: FloatArray, colour: str, uni
 
 def _amount(value: float, top: float, unit: str) -> str:
     """Three digits, of a share whole per cent; what is a thousandth of the largest or less is none."""
-    if abs(value) <= 1e-3 * top:
-        return "0"
-    return format_number(value, 0) if unit == "%" else format_significant(value, 3)
+    text = format_number(value, 0) if unit == "%" else format_significant(value, 3)
+    return "0" if abs(value) <= 1e-3 * top or text == "0" else f"{text} {unit}"
 
 
 def gain_bars(title: str, gain: FloatArray, unit: str, joints: Sequence[int], *, dark: bool, height: int) -> Chart:
@@ -96,10 +95,7 @@ def gain_bars(title: str, gain: FloatArray, unit: str, joints: Sequence[int], *,
         x=gain[order],
         orientation="h",
         marker={"color": [colours[i % 7] for i in order]},
-        text=[
-            f"{_amount(gain[i], top, unit)} {unit}" if gain[i] > (0.5 if unit == "%" else 1e-3 * top) else "0"
-            for i in order
-        ],
+        text=[_amount(gain[i], top, unit) for i in order],
         textposition="outside",
         cliponaxis=False,
         textfont={"color": p.text, "size": 12.5},

@@ -3,15 +3,18 @@ empty state where the cut has no result."""
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 from conftest import go, store, words
 from streamlit.testing.v1 import AppTest
 
-from robomill.improve.stiffening import some_stiffer
+from robomill.improve.stiffening import Stiffening, some_stiffer
 from robomill.simulation.run import simulate
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.improve.stiffen import made_by, meanwhile
 from robomill.ui.project import preset_setup
+from robomill.viz.shares import gain_bars
 
 
 def test_the_best_joint_can_be_used_and_taken_back(app: AppTest) -> None:
@@ -40,7 +43,7 @@ def test_where_one_joint_is_not_enough_the_best_ones_together_are_told_and_can_b
     go(app, "7_Improve")
     assert not app.exception
     assert "No joint alone brings the cut within tolerance: joint 3 twice as stiff still uses 104 %" in words(app)
-    assert f"Joints 3, 5 together twice as stiff: within tolerance, {100 * share:.0f} %" in words(app)
+    assert f"Joints 3 and 5 together twice as stiff: within tolerance, {100 * share:.0f} %" in words(app)
     app.button(key="improve.use.3.5").click().run()
     assert not app.exception
     assert abs(simulate(store(app).project.setup).verdict.share - share) < 1e-12
@@ -81,3 +84,11 @@ def test_a_cut_out_of_reach_has_nothing_to_improve(app: AppTest) -> None:
     go(app, "7_Improve")
     assert not app.exception
     assert "There is no cut to improve yet." in words(app)
+
+
+def test_a_joint_that_makes_it_worse_is_not_said_to_change_nothing() -> None:
+    verdict = simulate(preset_setup("paper_flute")).verdict
+    after = tuple(dataclasses.replace(verdict, share=share) for share in (0.5, 0.9, 0.7653))
+    ranked = Stiffening(dataclasses.replace(verdict, share=0.7653), after, np.zeros(4))
+    fig = gain_bars("Saved", 100.0 * ranked.saved, "%", (1, 2, 3), dark=False, height=200)
+    assert fig.traces[0]["text"] == ["27 %", "0", "−13 %"]

@@ -8,7 +8,6 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.improve.stiffening import Stiffening, some_stiffer, stiffer_joints
-from robomill.provenance import named
 from robomill.simulation.estimate import run_seconds
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
@@ -82,8 +81,9 @@ def sentence(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> str:
         )
     now, left = _worst(ranked.before, ranked.tip[0], unit), _worst(then, ranked.tip[best + 1], unit)
     same = now.rpartition(" of ")[0] + " of "
+    moves = f"{now} becomes {left.removeprefix(same)}" if left.startswith(same) else f"{left} decides, no more {now}"
     return (
-        f"Joint {joints[best]} twice as stiff: {now} becomes {left.removeprefix(same)}, {WORDS[then.level].lower()} "
+        f"Joint {joints[best]} twice as stiff: {moves}; {WORDS[then.level].lower()} "
         f"({format_share(then.share)} of the tolerance used, now {format_share(ranked.before.share)})."
     )
 
@@ -93,7 +93,7 @@ def together(ranked: Stiffening, joints: tuple[int, ...]) -> str:
     then = ranked.with_together
     if then is None:
         return ""
-    both = f"Joints {named([joints[i] for i in ranked.together])} together twice as stiff"
+    both = f"{_all([joints[i] for i in ranked.together])} together twice as stiff"
     if then.level != "out":
         return f"{both}: {WORDS[then.level].lower()}, {format_share(then.share)} of the tolerance used."
     return (
@@ -170,21 +170,28 @@ def ranking(ranked: Stiffening, joints: tuple[int, ...], unit: str, dark: bool) 
 def remedies(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> None:
     """The joints that save something, from best to least, what each leaves and its button; those that have to be
     stiffer together; the rest in a line."""
-    idle = []
+    idle: list[int] = []
+    worse: list[int] = []
     for i in map(int, ranked.ranking):
         if not ranked.saved[i] > LEAST:
-            idle.append(joints[i])
+            (worse if ranked.saved[i] < -LEAST else idle).append(joints[i])
             continue
         then = ranked.after[i]
         words = f"{_verdict(then)}, {_worst(then, ranked.tip[i + 1], unit)}"
         _remedy(f"Joint {joints[i]}", words, f"Stiffen joint {joints[i]}", (i,))
     if ranked.with_together is not None:
-        which = named([joints[i] for i in ranked.together])
-        _remedy(f"Joints {which} together", _verdict(ranked.with_together), "Stiffen them all", ranked.together)
+        which = _all([joints[i] for i in ranked.together])
+        _remedy(f"{which} together", _verdict(ranked.with_together), "Stiffen them all", ranked.together)
     if idle:
-        pieces.note(
-            f"Joint{'s' * (len(idle) > 1)} {named(idle)}: twice as stiff, the error that decides stays as it is."
-        )
+        pieces.note(f"{_all(idle)}: twice as stiff, the error that decides stays as it is.")
+    if worse:
+        pieces.note(f"{_all(worse)}: twice as stiff, more of the tolerance is used than now.")
+
+
+def _all(numbers: list[int]) -> str:
+    """``Joint 2``, ``Joints 1, 2 and 4``: each of them."""
+    *first, last = map(str, sorted(numbers))
+    return f"Joints {', '.join(first)} and {last}" if first else f"Joint {last}"
 
 
 def _verdict(then: Verdict) -> str:
