@@ -71,7 +71,7 @@ def speak_plainly(*streams: Any) -> None:
 
 def shows_all(stream: Any) -> bool:
     """Whether the stream's code page holds every character."""
-    with suppress(LookupError, TypeError):
+    with suppress(LookupError, TypeError, AttributeError):  # no stream at all, either
         return codecs.lookup(stream.encoding).name.startswith("utf")
     return False
 

@@ -18,6 +18,7 @@ class FileKind:
 
     expected: str
     most_MB: int
+    any_code: bool = False  # text may be in the code page of western Windows, as Excel saves it
 
     @property
     def most(self) -> int:
@@ -29,9 +30,9 @@ PROGRAM = FileKind("a program in text (G-code or APT)", 200)
 SETUP = FileKind("a set-up (.toml)", 25)
 ROBOT = FileKind("a robot (.toml or .urdf)", 5)
 MATERIAL = FileKind("a material row (.toml)", 1)
-TOOLS = FileKind("a tool table (.tbl, .csv or .toml)", 2)
-TABLE = FileKind("a CSV table", 60)
-POINTS = FileKind("points of a path (.csv or .parquet)", 60)
+TOOLS = FileKind("a tool table (.tbl, .csv or .toml)", 2, any_code=True)
+TABLE = FileKind("a CSV table", 60, any_code=True)
+POINTS = FileKind("points of a path (.csv or .parquet)", 60, any_code=True)
 DRAWING = FileKind("a drawing (.dxf or .svg)", 10)
 STL = FileKind("a stock as STL", 80)
 

@@ -40,11 +40,12 @@ def _run(words: Sequence[str]) -> int:
     """The verb, with a line on the terminal of how far it has come."""
     arguments = make_parser().parse_args(_joined(words))
     from robomill import compiled
-    from robomill.cli.given import check_once
+    from robomill.cli.given import check_kept, check_once
     from robomill.cli.progress_line import ProgressLine
     from robomill.progress import Progress, watched
 
     check_once(arguments)
+    check_kept(arguments)
     line = ProgressLine(sys.stderr)
     compiled.announce(line.announce)
     try:

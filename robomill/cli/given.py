@@ -21,6 +21,34 @@ def check_once(arguments: Any) -> None:
         raise RobomillError(f"{STDIN!r} stands for standard input, which can be read once; name a file for the others.")
 
 
+def check_kept(arguments: Any) -> None:
+    """Refuse to write over what is read, and to write nowhere. Raises RobomillError."""
+    said = vars(arguments)
+    reads = [Path(said[name]) for name in ("robot", "tests", "file", "setup", "program", "tools") if said.get(name)]
+    written: list[Path] = []
+    for name in ("out", "sheet", "moves"):
+        if said.get(name) is None:
+            continue
+        if not said[name].strip():
+            raise RobomillError(f"--{name}: the name is empty; give one, or leave the option out.")
+        place = Path(said[name])
+        if any(_same(place, each) for each in reads):
+            raise RobomillError(
+                f"--{name} {place}: what this run reads stands there and would be replaced; give another."
+            )
+        if any(place.resolve() == each.resolve() for each in written):
+            raise RobomillError(f"--{name} {place}: another option writes there already; give another.")
+        written.append(place)
+
+
+def _same(place: Path, read: Path) -> bool:
+    """Whether a place to write to is a file that is read, whatever it is called there; a device may be both."""
+    try:
+        return read.is_file() and place.samefile(read)
+    except (OSError, ValueError):
+        return False
+
+
 def stdin(kind: FileKind, error: type[RobomillError]) -> bytes:
     """All that comes in, up to what its ``kind`` may hold."""
     stream = getattr(sys.stdin, "buffer", None)

@@ -40,7 +40,6 @@ def run_simulate(arguments: Any) -> int:
 def _asked(arguments: Any) -> Any:
     """The set-up with what the options say in its stead, and who said so."""
     from robomill.provenance import Provenance
-    from robomill.units import to_si
 
     setup = given.setup(arguments.setup, arguments.allow_outside)
     said = dict(setup.provenance)
@@ -57,7 +56,7 @@ def _asked(arguments: Any) -> Any:
         changes["robot"] = given.robot(arguments.robot)
         said = {block: each for block, each in said.items() if block.partition(".")[0] not in OF_ROBOT}
     if arguments.tol is not None:
-        changes |= {"tolerance": to_si(arguments.tol, "mm"), "floor_tolerance": None}
+        changes |= {"tolerance_mm": arguments.tol, "floor_tolerance": None}
         said["tolerance"] = Provenance("user", "--tol")
     robot = changes.get("robot", setup.robot)
     if arguments.compliance_set:
@@ -69,7 +68,8 @@ def _check_folder(folder: Path, arguments: Any) -> None:
     """Refuse, before anything is computed, a folder that is none, and one in which other work would be replaced."""
     if folder.exists() and not folder.is_dir():
         raise ProjectError(f"--out {folder}: this is a file; give a folder.")
-    read = {Path(name).resolve() for name in (arguments.setup, arguments.program, arguments.robot) if name}
+    given_as = (arguments.setup, arguments.program, arguments.robot, str(Path(arguments.setup) / SETUP))
+    read = {Path(name).resolve() for name in given_as if name}
     if {folder / name for name in NAMES} & read or {(folder / name).resolve() for name in NAMES} & read:
         raise ProjectError(f"--out {folder}: what this run reads stands there and would be replaced; give another.")
     if (folder / SETUP).exists() and not (folder / RECORD).exists():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import shutil
 import sys
 from pathlib import Path
 
@@ -127,3 +128,33 @@ def test_names_of_bytes_that_are_no_text(capsys, tmp_path: Path) -> None:
     found = record(capsys, "simulate", "paper_flute", "--program", file, "--out", out)
     assert found["files"][0]["path"].endswith("out\udcff/setup.toml")
     assert record(capsys, "simulate", out)["digest"] == found["digest"]
+
+
+@pytest.fixture
+def own(tmp_path: Path, monkeypatch) -> Path:
+    """A folder with somebody's load tests, robot and program, and a link to the tests."""
+    for name, called in (("load_tests/nine_points.csv", "mine.csv"), ("robots/slavkovic_5r.toml", "my.toml")):
+        shutil.copyfile(samples_dir() / name, tmp_path / called)
+    shutil.copyfile(samples_dir() / "heart" / "heart.nc", tmp_path / "h.nc")
+    (tmp_path / "link.csv").symlink_to("mine.csv")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("identify", "my.toml", "mine.csv", "--out", "./mine.csv"), "--out mine.csv: what this run reads"),
+        (("identify", "my.toml", "mine.csv", "--out", "my.toml"), "--out my.toml: what this run reads"),
+        (("identify", "my.toml", "mine.csv", "--sheet", "link.csv"), "--sheet link.csv: what this run reads"),
+        (("identify", "my.toml", "mine.csv", "--out", "o.toml", "--sheet", "o.toml"), "another option writes there"),
+        (("gcode", "h.nc", "--moves", "h.nc"), "--moves h.nc: what this run reads"),
+        (("gcode", "h.nc", "--moves", " "), "--moves: the name is empty"),
+        (("simulate", "paper_flute", "--out", ""), "--out: the name is empty"),
+    ],
+)
+def test_what_is_read_is_never_written_over(own: Path, words, sentence: str, capsys) -> None:
+    before = {file.name: file.read_bytes() for file in own.iterdir()}
+    assert main(words) == 2
+    assert sentence in capsys.readouterr().err
+    assert {file.name: file.read_bytes() for file in own.iterdir()} == before

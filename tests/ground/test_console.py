@@ -95,3 +95,8 @@ def test_which_streams_show_everything() -> None:
 def test_a_full_disk_is_said() -> None:
     with open("/dev/full", "w") as stream, pytest.raises(RobomillError, match="standard output: cannot be written"):
         put("text", stream)
+
+
+def test_no_stream_shows_nothing() -> None:
+    """As under pythonw, and where standard output is closed."""
+    assert not shows_all(None)

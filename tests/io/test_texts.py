@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from robomill.errors import ProjectError
@@ -32,7 +34,7 @@ def test_files_and_bytes(tmp_path, encoding: str) -> None:
     assert read_text(big, ProjectError, WORDS) == (TEXT, "")
 
 
-@pytest.mark.parametrize("raw", [b"\xff\xfe\x00", b"\x89PNG\r\n\x1a\n\0\0", b"a\0b", "naïve".encode("latin-1")])
+@pytest.mark.parametrize("raw", [b"\xff\xfe\x00", b"\x89PNG\r\n\x1a\n\0\0", b"a\0b", b"\xe4\x01b", b"caf\x81"])
 def test_what_is_no_text(tmp_path, raw: bytes) -> None:
     with pytest.raises(ProjectError, match=r"^This file: this is not a text file; expected words\.$"):
         read_text(raw, ProjectError, WORDS)
@@ -40,6 +42,15 @@ def test_what_is_no_text(tmp_path, raw: bytes) -> None:
     file.write_bytes(raw)
     with pytest.raises(ProjectError, match=r"^photo.txt: this is not a text file; expected words\.$"):
         read_text(file, ProjectError, WORDS)
+
+
+def test_a_table_may_be_in_the_code_page_that_excel_saves_it_in() -> None:
+    """Code page 1252: 0xDF is ß, 0xB5 the micro sign, 0x80 the euro."""
+    table = replace(WORDS, any_code=True)
+    assert read_text(b"# Gr\xf6\xdfe, \xb5m, \x80\n1,2\n", ProjectError, table)[0] == "# Größe, µm, €\n1,2\n"
+    assert read_text("# Größe\n".encode(), ProjectError, table)[0] == "# Größe\n"
+    with pytest.raises(ProjectError, match=r"^mine.toml: line 2 is not in UTF-8, which words is; save it with that"):
+        read_text(b"a = 1\n# Gr\xf6\xdfe\n", ProjectError, WORDS, "mine.toml")
 
 
 @pytest.mark.parametrize(

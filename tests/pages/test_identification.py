@@ -307,7 +307,7 @@ def test_using_the_compliances_puts_them_and_their_band_in_force(page: AppTest) 
     fit = identify(load_robot("slavkovic_5r"), read_load_tests(sample_text("nine_points"), load_robot("slavkovic_5r")))
     np.testing.assert_allclose(setup.robot.C_theta, fit.C_theta, rtol=1e-12)
     assert setup.robot.compliance_set == "identified"
-    assert setup.robot.provenance["compliance.identified"].kind == "computed"
+    assert setup.robot.provenance["compliance.identified"].kind == "synthetic"  # as the sample is
     assert "27 load tests (nine_points.csv)" in setup.robot.provenance["compliance.identified"].source
     known = page.session_state[PROJECT].project.known
     np.testing.assert_allclose(known.covariance, fit.covariance)
