@@ -131,7 +131,7 @@ def _gcode_options(gcode: argparse.ArgumentParser) -> None:
     gcode.add_argument("--tools", help="tool table: LinuxCNC's .tbl, CSV tool,diameter_mm,length_mm,..., TOML")
     gcode.add_argument("--tools-unit", default="mm", choices=("mm", "in"), help="unit of a .tbl, which does not say it")
     gcode.add_argument("--moves", metavar="OUT.jsonl", help="write the canonical moves, one a line")
-    gcode.add_argument("--dialect", default="auto", help="auto, linuxcnc, fanuc, grbl or sinumerik")
+    gcode.add_argument("--dialect", default="auto", help="auto, linuxcnc, fanuc, grbl, sinumerik or heidenhain")
 
 
 def _points_options(sub: argparse.ArgumentParser) -> None:

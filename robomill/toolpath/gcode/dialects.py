@@ -16,7 +16,7 @@ from robomill.toolpath.gcode.scaling import scales
 from robomill.toolpath.gcode.sinumerik import translated
 from robomill.toolpath.gcode.words import Block
 
-NAMES = ("linuxcnc", "fanuc", "grbl", "sinumerik")
+NAMES = ("linuxcnc", "fanuc", "grbl", "sinumerik", "heidenhain")
 
 SAMPLE = 200_000
 """Bytes at the start of a program from which its dialect is guessed."""
@@ -28,6 +28,7 @@ HARMLESS: dict[str, frozenset[int]] = {
     "linuxcnc": frozenset(),
     "fanuc": frozenset({90, 150, 220, 230, 401, 501, 500, 600, 620, 630, 670, 690, 1870}),
     "grbl": frozenset(),
+    "heidenhain": frozenset(),
     "sinumerik": frozenset({90, 600, 601, 602, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450, 4500, 4510}),
 }
 """G words that move nothing, by dialect; they are counted as ignored."""
@@ -54,6 +55,7 @@ def _words(*words: str) -> tuple[tuple[str, str], ...]:
 
 _LINUXCNC = (("#<", "#<"), ("o", r"\n[ \t]*o[ \t]*(?:<[^>\n]+>|\d+)[ \t]*(?:sub|if|while|do|repeat|call)"))
 _SINUMERIK_TEXT = (("msg", r"\bmsg[ \t]*\([ \t]*\""), ("$path", r"\n[ \t]*;[ \t]*\$path"))
+_HEIDENHAIN = (("begin pgm", r"\n[ \t]*\d*[ \t]*begin pgm\b"),)
 _GRBL = (("$", r"\n[ \t]*\$(?:[a-z#$]{0,2}[ \t]*(?=\n)|h|\d+=|n\d*=|j=|rst=)"),)
 _SINUMERIK = (
     *_words("g710", "g700", "g500", "g601", "g641", "g642", "g643", "g644", "g645", "m17"),
@@ -109,7 +111,7 @@ class Dialect:
     def line(self, raw: str, number: int, machine: Machine) -> str:
         """The line in LinuxCNC's words; what is left out on the way is noted."""
         findings = machine.findings
-        raw = _plain_numbers(raw, number, findings)
+        raw = plain_numbers(raw, number, findings)
         if self.name == "sinumerik" and len(raw) <= 10 * LONGEST:
             return translated(raw, number, machine)
         if self._is_fanuc_like:
@@ -239,6 +241,8 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
         return Dialect(wanted, guessed=False)
     lines = "\n".join(line[:LONGEST] for line in text.lower().split("\n"))
     text = f"\n{lines}\n"
+    if _shows(text[: 20 * LONGEST], _HEIDENHAIN):
+        return Dialect("heidenhain")
     if _shows(text, _LINUXCNC):
         return Dialect("linuxcnc")
     if _shows(text, _SINUMERIK_TEXT):
@@ -266,7 +270,7 @@ _EXPONENT = re.compile(r"(?<![A-Za-z_])([A-Za-z]\s*[-+]?(?:\d+\.?\d*|\.\d+))[eE]
 _USES_E = re.compile(r"\bG0*76\b|\bM0*6[678]\b", re.IGNORECASE)
 
 
-def _plain_numbers(raw: str, number: int, findings: Findings) -> str:
+def plain_numbers(raw: str, number: int, findings: Findings) -> str:
     """Numbers with an exponent (X-1.776e-15), as programs print them that know no better, written out."""
     if ("e" not in raw and "E" not in raw) or not _EXPONENT.search(raw) or _USES_E.search(raw):
         return raw

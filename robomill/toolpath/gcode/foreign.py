@@ -55,7 +55,7 @@ _TOLD = (
     ("ABB RAPID", r"%%%|MODULE[ \t]+\w+|(?:PERS|CONST)[ \t]+(?:robtarget|tooldata|wobjdata)\b|Move[LJC][ \t]"),
     ("Fanuc's robot language (TP)", r"/PROG\b|/ATTR\b|[ \t]*\d*:[ \t]*[JLC][ \t]+P\["),
     ("URScript", r"def[ \t]+\w+\([^\n]*\):|[ \t]*(?:movel|movej|movep|set_tcp)[ \t]*\("),
-    ("Heidenhain's dialogue", r"(?:\d+[ \t]+)?BEGIN[ \t]+PGM\b"),
+    ("Heidenhain's DIN/ISO", r"%\S+[ \t]+G7[01][ \t]*\*"),
     ("HPGL (a plotter's language)", r"(?:IN|PU|PD|SP\d?);"),
     ("a DXF drawing", r"[ \t]*0[ \t]*\n[ \t]*SECTION\b"),
     ("an STL surface", r"solid[ \t]*\w*[^\n]*\n[ \t]*facet\b"),

@@ -8,13 +8,13 @@ from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.fanuc_cycles import as_bored, repeats
+from robomill.toolpath.gcode.klartext import Klartext
 from robomill.toolpath.gcode.line_rules import MAX_LINE
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.macro import with_brackets
 from robomill.toolpath.gcode.motion_rules import keep_motion
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.scaling import scale_words
-from robomill.toolpath.gcode.sinumerik_words import SinumerikWords
 from robomill.toolpath.gcode.stretches import Stretches
 from robomill.toolpath.gcode.subprograms import CALLS
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
@@ -28,14 +28,14 @@ _CHECK_EVERY = 256
 _LOOK_BEYOND = 20
 
 
-class Interpreter(SinumerikWords):
+class Interpreter(Klartext):
     """Runs one program on one machine. ``file`` and ``pc`` are the line that comes next."""
 
     def __init__(self, machine: Machine, file: File, dialect: Dialect) -> None:
         super().__init__(machine, file, dialect)
         self.steps, self.read = 0, 0
         self.budget, self.reads = len(file.lines) + MAX_STEPS, len(file.lines) + MAX_READ
-        self.percent = False
+        self.percent, self.is_klartext = False, dialect.name == "heidenhain"
         self.stretches = Stretches(machine)
 
     def run(self) -> None:
@@ -43,7 +43,7 @@ class Interpreter(SinumerikWords):
         self._skip_percent()
         try:
             while not self.ended:
-                if self.machine.is_plain and self._run_stretch():
+                if self.machine.is_plain and not self.is_klartext and self._run_stretch():
                     continue
                 if self.pc >= len(self.file.lines):
                     self._end_of_file()
@@ -65,11 +65,16 @@ class Interpreter(SinumerikWords):
             raise GCodeError.at(line, f"{len(raw)} characters long; at most {MAX_LINE} can be read.")
         if self.dialect.name == "sinumerik":
             code, mark, comment = raw.partition(";")
-            left = self.sinumerik_call(code.upper(), line)
+            left = None if self.sinumerik_flow(code.upper(), line) else self.sinumerik_call(code.upper(), line)
             left = None if left is None else self.sinumerik_line(left, line)
             if left is None:
                 return
             raw = raw if left == code.upper() else left + mark + comment
+        if self.is_klartext:
+            left = self.klartext_line(index)
+            if left is None:
+                return
+            raw = left
         macro = self.dialect.has_macros
         if macro:
             raw = with_brackets(self.filled_in(raw, line))
@@ -120,6 +125,7 @@ class Interpreter(SinumerikWords):
         if machine.corner is not None:
             raise block.refuse("a corner is rounded or chamfered at the end of a straight cut (G1) alone.")
         self.drill_modal(block)
+        self.drill_if_due(block)
         self.calls.special[level] = level in self.foreign or bool(saved)
         self.call_modal(block)
         if ends:
@@ -174,7 +180,7 @@ class Interpreter(SinumerikWords):
         for index in range(self.pc, min(self.pc + _LOOK_BEYOND, len(self.main.lines))):
             text = self.main.lines[index].strip()
             if text and text[0] not in "%(;":
-                if self.o_words(self.main).words or self.names:
+                if self.is_klartext or self.o_words(self.main).words or self.names:
                     return
                 self.machine.findings.add(
                     "after-end", "warning", index + 1, "the program ended before; this is not read"

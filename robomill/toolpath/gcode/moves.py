@@ -119,7 +119,11 @@ def place(machine: Machine, block: Block) -> None:
     Where the program itself has said where its part zero lies there (G10 L2), it is.
     """
     if block.g.get(NON_MODAL) == 530 and machine.system not in machine.placed:
-        _leave(machine, "G53 goes to a place in the machine", [letter in block.words for letter in "xyz"])
+        _leave(
+            machine,
+            f"{machine.machine_word} goes to a place in the machine",
+            [letter in block.words for letter in "xyz"],
+        )
     else:
         machine.place(block.words)
 

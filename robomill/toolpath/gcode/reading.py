@@ -42,7 +42,7 @@ def read_gcode(
     chord_error : float
         m: arcs become chords no farther than this from them.
     dialect : str
-        "auto" guesses and says so; "linuxcnc", "fanuc", "grbl" or "sinumerik".
+        "auto" guesses and says so; "linuxcnc", "fanuc", "grbl", "sinumerik" or "heidenhain".
     tools : mapping, optional
         The table that T, H and D words mean, by tool number.
     table : str

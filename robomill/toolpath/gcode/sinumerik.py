@@ -10,7 +10,7 @@ _SILENT = re.compile(
     r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|COMPCURV|COMPSURF|STOPRE|CFTCP|CFIN|CFC|ORIWKS|"
     r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|KONT|DIAMOF)\b(?:[ \t]*\([^()]*\))?|"
     r"\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|"
-    r"\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)|\bCYCLE800[ \t]*\([ \t]*\)",
+    r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)|\bCYCLE800[ \t]*\([ \t]*\)",
     re.IGNORECASE,
 )
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
@@ -20,6 +20,7 @@ _EXPONENT = re.compile(rf"({_NUMBER})EX([-+]?\d{{1,3}})\b", re.IGNORECASE)
 _PLACE = re.compile(rf"\b([XYZABCIJK])[ \t]*=[ \t]*(AC|IC)[ \t]*\([ \t]*({_NUMBER})[ \t]*\)", re.IGNORECASE)
 _VECTOR = re.compile(rf"\b([ABC])3[ \t]*=[ \t]*({_NUMBER})", re.IGNORECASE)
 _ORIENTATION = re.compile(r"\b(?:([ABC])([24-7])[ \t]*=|(LEAD|TILT|THETA|AN[23])[ \t]*=)", re.IGNORECASE)
+_TURNS = re.compile(r"\b(G0?4)[ \t]+S[ \t]*=?[ \t]*([.\d]+)", re.IGNORECASE)
 _TOOL = re.compile(r"\bT[ \t]*=?[ \t]*\"([^\"]*)\"", re.IGNORECASE)
 _MODES = re.compile(r"\bG9[01]\b(?!\.)", re.IGNORECASE)
 
@@ -37,14 +38,22 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = _EXPONENT.sub(lambda found: f"{float(found[1] + 'e' + found[2]):.15f}", code)
     code = _tool_axis(code, number, machine)
     code = _places(code, machine)
+    code = _TURNS.sub(lambda found: _waited(found, number, machine), code)
     code = re.sub(r"\b(G0?4)\s+F", r"\1 P", code, flags=re.IGNORECASE)
     code = re.sub(r"\bCR\s*=", "R", code, flags=re.IGNORECASE)
     code = re.sub(r"\bTURN\s*=\s*(\d+)", lambda found: f"P{int(found[1][:9]) + 1}", code, flags=re.IGNORECASE)
     code = re.sub(r"\b([XYZABCIJKFS])1?\s*=\s*([-+.\d]+)", r"\1\2", code, flags=re.IGNORECASE)
     code = re.sub(r"\b(?:M17|RET)\b", "M2", code, flags=re.IGNORECASE)
-    code = _TOOL.sub(lambda found: _named_tool(found[1], number, machine), code)
+    code = _TOOL.sub(lambda found: named_tool(found[1], number, machine), code)
     code = re.sub(r"\bD\d+\b", "", code, flags=re.IGNORECASE)
     return code + (";" + comment if mark else "")
+
+
+def _waited(found: re.Match[str], number: int, machine: Machine) -> str:
+    """G4 S waits for turns of the spindle."""
+    if machine.speed == 0.0:
+        raise GCodeError.at(number, "G4 S waits for turns of the spindle, and no S has said how fast it turns.")
+    return f"{found[1]} P{60.0 * float(found[2]) / machine.speed:.9f}"
 
 
 def _name(found: str) -> str:
@@ -96,8 +105,8 @@ def _places(code: str, machine: Machine) -> str:
     return _PLACE.sub(counted, code)
 
 
-def _named_tool(name: str, number: int, machine: Machine) -> str:
-    """T="..." as the number that the tool table gives that name; none without a table."""
+def named_tool(name: str, number: int, machine: Machine) -> str:
+    """The word of T="...", by the number that the tool table gives that name; none without a table."""
     if machine.tools is None:
         machine.tool_name = name
         machine.findings.add(

@@ -8,6 +8,7 @@ depth, or DPR how far it is below RFP).
 import math
 import re
 from dataclasses import dataclass
+from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
@@ -25,15 +26,19 @@ MAX_PECKS = 10_000
 _N = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?")
 _R = re.compile(r"\bR(\d+)\b")
 _SET_R = re.compile(r"\bR(\d+)\s*=\s*")
-_WORD = re.compile(r"\b([XYZABCIJKFS]|RND|RNDM|CHF|CHR|CR|TURN)\s*=\s*(?!(?:AC|IC|DC|ACP|ACN)\s*\()")
+_WORD = re.compile(r"\b([XYZABCIJKFS]|[ABC]3|RND|RNDM|CHF|CHR|CR|TURN)\s*=\s*(?!(?:AC|IC|DC|ACP|ACN)\s*\()")
 _LABEL = re.compile(r"([A-Z_]{2}\w*)[ \t]*:(?!=)")
 _LABELS = re.compile(rb"^[/ \t]*(?:N\d+[ \t]*)?([A-Za-z_]{2}\w*)[ \t]*:(?!=)", re.MULTILINE)
 _JUMP = re.compile(r"(?:IF\b(.*?)[ \t]*)?\b(GOTO[FBC]?)[ \t]+(\w+)[ \t]*")
 _FRAME = re.compile(r"(A?TRANS|A?ROT)\b(.*)")
+_ALONE = re.compile(r"\bA?(?:TRANS|ROT)\b")
 _FRAME_WORD = re.compile(r"\b(X|Y|Z|RPL)[ \t]*=?[ \t]*([-+]?(?:\d+\.?\d*|\.\d+))")
 _CYCLE = re.compile(r"(MCALL\b[ \t]*)?(?:CYCLE(8[1-6])[ \t]*\(([^()]*)\))?[ \t]*")
 _CORNER = re.compile(r"\b(RND|CHF|CHR)[ \t]*=[ \t]*(\d+\.?\d*|\.\d+)")
 _KINDS = {"RND": ROUND, "CHF": BEVEL, "CHR": LEGS}
+_IDENTIFIER = re.compile(r"\b[A-Z_]{1,2}\w+\b")
+_TRUTH = re.compile(r"\b(?:TRUE|FALSE|TRUNC)\b")
+_IN_PLACE = re.compile(r"\b([XYZABCIJK])[ \t]*=[ \t]*(AC|IC|DC|ACP|ACN)[ \t]*\(((?:[^()]|\([^()]*\))*)\)")
 _COMPARES = (("==", " EQ "), ("<>", " NE "), (">=", " GE "), ("<=", " LE "), (">", " GT "), ("<", " LT "))
 
 
@@ -80,6 +85,9 @@ class SinumerikWords(MacroCalls):
             elif hole is not None:
                 self.drill_here(hole, line)
             return None
+        alone = _ALONE.search(code)
+        if alone is not None:
+            raise GCodeError.at(line, f"{alone[0]} stands on a line of its own, and not as it is here.")
         code = self._values(code, line)
         corner = _CORNER.search(code)
         if corner is not None:
@@ -93,7 +101,22 @@ class SinumerikWords(MacroCalls):
             self.drill_here(self.modal_hole, block.line)
 
     # --- values
-    def _value(self, text: str, line: int) -> float:
+    def __init__(self, *given: Any) -> None:
+        super().__init__(*given)
+        self.variables: dict[str, int] = {}
+        self.rounds: dict[tuple[int, int], int] = {}
+
+    def slot(self, name: str, line: int) -> int:
+        """The number of the parameter that keeps an R parameter or a variable, which is then set."""
+        if name in self.variables:
+            return self.variables[name]
+        if not re.fullmatch(r"R\d+", name) or int(name[1:10]) >= MOST_R:
+            raise GCodeError.at(line, f"{name} is no variable; define it (DEF REAL {name}) or take R1.")
+        self.machine.r_set.add(int(name[1:10]))
+        return FIRST_R + int(name[1:10])
+
+    def value(self, text: str, line: int) -> float:
+        """The value of an expression."""
         reader = Reader(normalise(f"[{self._expression(text, line)}]", line), line, self.machine.store)
         value = reader.value()
         if reader.at < len(reader.text):
@@ -110,9 +133,19 @@ class SinumerikWords(MacroCalls):
             return f"#{FIRST_R + number}"
 
         text = _R.sub(known, text)
+        text = _IDENTIFIER.sub(self._known_name, text)
+        text = _TRUTH.sub(lambda found: {"TRUE": "1", "FALSE": "0", "TRUNC": "FIX"}[found[0]], text)
         for sign, word in _COMPARES:
             text = text.replace(sign, word)
         return text.replace("(", "[").replace(")", "]")
+
+    def _known_name(self, found: re.Match[str]) -> str:
+        return f"#{self.variables[found[0]]}" if found[0] in self.variables else found[0]
+
+    def _computed(self, value: str) -> bool:
+        """Whether a value is more than a number."""
+        names = _IDENTIFIER.findall(value)
+        return "R" in value or any(n in self.variables for n in names) or any(s in value.strip()[1:] for s in "+-*/(")
 
     def _values(self, code: str, line: int) -> str:
         """Set the R parameters of a line, and write out what its other words are set to."""
@@ -126,26 +159,43 @@ class SinumerikWords(MacroCalls):
                 number = int(found[1][:9])
                 if number >= MOST_R:
                     raise GCodeError.at(line, f"R{number} does not exist; R parameters run from 0 to {MOST_R - 1}.")
-                self.machine.store.set(FIRST_R + number, self._value(value, line))
+                self.machine.store.set(FIRST_R + number, self.value(value, line))
                 self.machine.r_set.add(number)
                 rest = rest[after.start() :] if after else ""
             return rest
+        code = _IN_PLACE.sub(lambda found: self._in_place(found, line), code)
         out, at = [], 0
         for found in _WORD.finditer(code):
             if found.start() < at:
                 continue
             end = _value_end(code, found.end())
             value = code[found.end() : end]
-            if "R" in value or any(sign in value.strip()[1:] for sign in "+-*/("):
-                out += [code[at : found.end()], f"{self._value(value, line):.12f} "]
+            if (
+                "R" in value
+                or any(name in self.variables for name in _IDENTIFIER.findall(value))
+                or any(sign in value.strip()[1:] for sign in "+-*/(")
+            ):
+                out += [code[at : found.end()], f"{self.value(value, line):.12f} "]
                 at = end
         return "".join([*out, code[at:]])
 
+    def _in_place(self, found: re.Match[str], line: int) -> str:
+        """X=AC( ) and its kin with their value; DC, ACP and ACN turn an axis the short way, up or down."""
+        letter, way, value = found[1], found[2], self.value(found[3], line)
+        if way in ("DC", "ACP", "ACN"):
+            if letter not in "ABC":
+                raise GCodeError.at(line, f"{letter}={way}( ) is for axes that turn; write {letter}=AC( ).")
+            at = self.machine.p["XYZABC".index(letter)]
+            up = (value - at) % 360.0
+            value = at + {"DC": up if up <= 180.0 else up - 360.0, "ACP": up, "ACN": up - 360.0 if up else 0.0}[way]
+            way = "AC"
+        return f"{letter}={way}({value:.12f})"
+
     # --- jumps
     def _jump(self, found: re.Match[str], line: int) -> None:
-        if found[1] is not None and self._value(found[1], line) == 0.0:
+        if found[1] is not None and self.value(found[1], line) == 0.0:
             return
-        places = self._labels.get(found[3], [])
+        places = self.labels.get(found[3], [])
         if not places and re.fullmatch(r"N\d+", found[3]):
             places = self._line_numbers.get(int(found[3][1:10]), [])
         ahead, behind = [p for p in places if p >= self.pc], [p for p in places if p < self.pc]
@@ -155,7 +205,7 @@ class SinumerikWords(MacroCalls):
         self.pc = chosen[0]
 
     @cached_property
-    def _labels(self) -> dict[str, list[int]]:
+    def labels(self) -> dict[str, list[int]]:
         found: dict[str, list[int]] = {}
         for each in _LABELS.finditer(self.main.lines.data):
             at = self.main.lines.index_at(each.start())
@@ -192,7 +242,7 @@ class SinumerikWords(MacroCalls):
 
     # --- holes
     def _hole(self, kind: str, text: str, line: int) -> Hole:
-        given = [self._value(each, line) if each.strip() else math.nan for each in text.split(",")]
+        given = [self.value(each, line) if each.strip() else math.nan for each in text.split(",")]
         given += [math.nan] * (12 - len(given))
         retract, reference, safety, bottom, below = given[:5]
         if math.isnan(retract + reference) or (math.isnan(bottom) and math.isnan(below)):

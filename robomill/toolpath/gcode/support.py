@@ -29,6 +29,8 @@ def _row(
     return Support(words, meaning, "read", example, end, moves, **more)  # type: ignore[arg-type]
 
 
+_TNC = "heidenhain"
+
 SUPPORT: tuple[Support, ...] = (
     _row("G0 G1", "rapid and straight cut", "G0 X1 Y2\nG1 Z-3 F100", (1, 2, -3), 2),
     _row("G2 G3 I J K", "arcs and helices by centre", "F100\nG2 X10 Y10 I10 J0 Z-1", (10, 10, -1), 1),
@@ -190,6 +192,35 @@ SUPPORT: tuple[Support, ...] = (
         2,
         dialect="sinumerik",
     ),
+    _row(
+        "L, C, CC, CR, CP, LP, CT",
+        "moves",
+        "L X+10 Y+0 FMAX\nCC X+0 Y+0\nC X+0 Y+10 DR+ F99",
+        (0, 10, 0),
+        2,
+        dialect=_TNC,
+    ),
+    _row("RND, CHF", "corners", "L X+9 F99\nRND R2\nL Y+9", (9, 9, 0), 3, dialect=_TNC),
+    _row("LBL, CALL LBL, REP", "labels", "LBL 1\nL IX+5 F99\nCALL LBL 1 REP 2", (15, 0, 0), 3, dialect=_TNC),
+    _row("FN 0 to 7, 9 to 12, Q", "Q parameters and jumps", "FN 0: Q1 = +5\nL X+Q1 F99", (5, 0, 0), 1, dialect=_TNC),
+    _row("CYCL DEF 7, 10", "shifts and turns", "CYCL DEF 7.1 X+5\nL X+1 F99", (6, 0, 0), 1, dialect=_TNC),
+    _row(
+        "CYCL DEF 200 to 209, 240, CYCL CALL, M99",
+        "drilling",
+        "L Z+9 FMAX M3\nCYCL DEF 200 ~\nQ200=2 ~\nQ201=-5 ~\nQ206=99\nL X+1 FMAX M99",
+        (1, 0, 2),
+        5,
+        dialect=_TNC,
+    ),
+    _row(
+        "TOOL CALL, M91, M140",
+        "tools, places in the machine",
+        "TOOL CALL 1 Z S9\nL X+1 FMAX",
+        (1, 0, 0),
+        1,
+        dialect=_TNC,
+    ),
+    Support("APPR, DEP, FL, PLANE, other cycles", "of Heidenhain", "refused", "APPR LT X+1 LEN5", dialect=_TNC),
     _row("$ lines", "settings of grbl are left out", "$10=1\nG0 X1", (1, 0, 0), 1, dialect="grbl"),
     Support("$H $J", "grbl's own motion", "refused", "$H\nG0 X1", dialect="grbl"),
 )

@@ -15,7 +15,14 @@ from robomill.ui.toolpath.program_view import LEVELS, select_line, selected_line
 from robomill.ui.toolpath.summary import duration, move_words, path_summary, worst_first, written_in
 from robomill.units import format_count, format_many, format_si, in_lengths, unit_label
 
-DIALECTS = {"auto": "Guess", "linuxcnc": "LinuxCNC", "fanuc": "Fanuc-like", "grbl": "grbl", "sinumerik": "Sinumerik"}
+DIALECTS = {
+    "auto": "Guess",
+    "linuxcnc": "LinuxCNC",
+    "fanuc": "Fanuc-like",
+    "grbl": "grbl",
+    "sinumerik": "Sinumerik",
+    "heidenhain": "Heidenhain",
+}
 
 
 def findings_list(findings: Sequence[Finding]) -> None:

@@ -50,8 +50,8 @@ def test_a_program_is_told_by_its_words(text: str, name: str) -> None:
 
 
 def test_a_dialect_that_is_none_is_refused() -> None:
-    with pytest.raises(GCodeError, match="'heidenhain' is not known; expected auto, linuxcnc"):
-        choose_dialect("", "heidenhain")
+    with pytest.raises(GCodeError, match="'fidia' is not known; expected auto, linuxcnc"):
+        choose_dialect("", "fidia")
 
 
 MEANS = [
@@ -150,7 +150,11 @@ def test_lines_are_those_of_the_bytes(data: bytes) -> None:
 )
 def test_exponents_are_read_in_every_dialect(dialect: str, word: str, x: float) -> None:
     """As a language prints a float; most controls stop there, none takes -1.776 for it."""
-    found = interpret(f"G21 G90 G0 X1\n{word}\nM2\n", dialect=dialect)
+    text = f"G21 G90 G0 X1\n{word}\nM2\n"
+    if dialect == "heidenhain":
+        plain = word.removeprefix("(X9e9) ").removeprefix("G0")
+        text = f"L X1 FMAX\nL {plain} FMAX {';X9e9' if '(' in word else ''}\nM2\n"
+    found = interpret(text, dialect=dialect)
     assert found.end[-1, 0] * 1e3 == pytest.approx(x, abs=1e-12)
     assert [f.line for f in found.findings if f.code == "exponent"] == ([2] if "(" not in word else [])
 

@@ -51,7 +51,7 @@ def test_a_word_of_another_language_is_named(line: str, word: str, language: str
         ("MODULE Mill\n", 1, "ABB RAPID"),
         ("/PROG  MILL\n/ATTR\n/MN\n1:J P[1] 100% FINE ;\n", 1, "Fanuc's robot language (TP)"),
         ("def mill():\n  movel(p[0,0,0,0,0,0])\nend\n", 1, "URScript"),
-        ("0 BEGIN PGM PART MM\n1 L X+5 Y+5 FMAX\n", 1, "Heidenhain's dialogue"),
+        ("%PART G71 *\nN10 G30 G17 X+0 Y+0 Z-20*\n", 1, "Heidenhain's DIN/ISO"),
         ("IN;SP1;PU0,0;PD10,10;\n", 1, "HPGL"),
         ("  0\nSECTION\n  2\nHEADER\n", 1, "a DXF drawing"),
         ("solid part\nfacet normal 0 0 1\n", 1, "an STL surface"),

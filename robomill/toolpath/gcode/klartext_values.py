@@ -1,0 +1,240 @@
+"""Q parameters, jumps, datum shifts and drilling cycles of Heidenhain's dialogue."""
+
+import math
+import re
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
+from robomill.toolpath.gcode.sinumerik_flow import SinumerikFlow
+from robomill.toolpath.gcode.sinumerik_words import Hole
+from robomill.toolpath.gcode.words import Block, normalise
+
+NUMBER = r"[-+]? ?(?:\d+\.?\d*|\.\d+|Q[LR]?\d+)"
+FIRST_Q = {"Q": 1000, "QL": 3000, "QR": 4000}
+MOST_Q = {"Q": 1999, "QL": 499, "QR": 499}
+MAX_PECKS = 10_000
+_Q = re.compile(r"(Q[LR]?)(\d+)")
+_SET = re.compile(r"(?:FN ?(\d+) ?: ?)?(Q[LR]?\d+) ?= ?(.+)")
+_JUMP = re.compile(r"FN ?(9|10|11|12) ?: ?IF (.+?) (EQU|NEQU|NEQ|GT|LT) (.+?) GOTO LBL ?(\"[^\"]+\"|\d+)")
+_SIGNS = {0: "", 1: "+", 2: "-", 3: "*", 4: "/"}
+_TWO = {0: r"(.+)", 1: r"(.+?) ?\+ (.+)", 2: r"(.+?) ?- (.+)", 3: r"(.+?) ?\* ?(.+)", 4: r"(.+?) (?:DIV|/) ?(.+)"}
+_ONE = {5: "SQRT", 6: "SIN", 7: "COS"}
+_FUNCTION = re.compile(r"\b(SQRT|SIN|COS|TAN|ASIN|ACOS|ABS|INT) ?([-+]?(?:#\d+|[\d.]+)|(?=\[))")
+_CYCLE = re.compile(r"CYCL DEF ?(\d+)(?: ?\.(\d+))?(.*)")
+_AXIS = re.compile(rf"(I?)([XYZ]) ?({NUMBER})")
+_DRILLS = {
+    200: "drilling",
+    201: "reaming",
+    203: "drilling",
+    205: "drilling",
+    206: "tapping",
+    207: "tapping",
+    209: "tapping",
+    240: "centring",
+}
+
+
+class KlartextValues(SinumerikFlow):
+    """Reads what computes, shifts and drills; moves are those of ``klartext``."""
+
+    drill: int = 0
+    due = False
+    preset: float | None = None
+
+    # --- values
+    def number(self, text: str, line: int) -> float:
+        """The value of a number, a Q parameter or an expression."""
+
+        def known(found: re.Match[str]) -> str:
+            at = self._place(found[1], int(found[2][:6]), line)
+            if at not in self.machine.r_set:
+                raise GCodeError.at(line, f"{found[0]} is read before the program sets it; set it at the start.")
+            return f"#{at}"
+
+        plain = _Q.sub(known, text.replace("PI", f"{math.pi:.15f}"))
+        plain = plain.replace("(", "[").replace(")", "]").replace("^", "**")
+        plain = _FUNCTION.sub(
+            lambda found: ("FIX" if found[1] == "INT" else found[1]) + (f"[{found[2]}]" if found[2] else ""), plain
+        )
+        plain = re.sub(r"(?<=[-+*/]) ?\+ ?", " ", re.sub(r"^ ?\+ ?", "", plain))
+        reader = Reader(normalise(f"[{plain}]", line), line, self.machine.store)
+        value = reader.value()
+        if reader.at < len(reader.text):
+            raise reader.refuse(f"found {reader.rest()!r} behind a value; expected an expression such as Q1 + 5.")
+        return value
+
+    def _place(self, kind: str, number: int, line: int) -> int:
+        if number > MOST_Q[kind]:
+            raise GCodeError.at(line, f"{kind}{number} does not exist; {kind} parameters run up to {MOST_Q[kind]}.")
+        return FIRST_Q[kind] + number
+
+    def set_q(self, name: str, value: float, line: int) -> None:
+        """Set a Q parameter."""
+        found = _Q.fullmatch(name)
+        assert found is not None
+        at = self._place(found[1], int(found[2][:6]), line)
+        self.machine.store.set(at, value)
+        self.machine.r_set.add(at)
+
+    def q(self, number: int, default: float = 0.0) -> float:
+        """The value of a Q parameter; ``default`` where nobody has set it."""
+        at = FIRST_Q["Q"] + number
+        return self.machine.store.get(at) if at in self.machine.r_set else default
+
+    def label(self, name: str, line: int) -> int:
+        """The index of the line behind a label."""
+        raise NotImplementedError
+
+    def values_line(self, code: str, line: int) -> bool:
+        """Set Q parameters, or jump; False for other lines."""
+        jump = _JUMP.fullmatch(code)
+        if jump is not None:
+            a, b = self.number(jump[2], line), self.number(jump[4], line)
+            same = abs(a - b) <= 1e-9
+            if {"9": same, "10": not same, "11": a > b and not same, "12": a < b and not same}[jump[1]]:
+                self.pc = self.label(jump[5], line)
+            return True
+        found = _SET.fullmatch(code)
+        if found is None:
+            return False
+        if found[1] is None:
+            self.set_q(found[2], self.number(found[3], line), line)
+            return True
+        kind = int(found[1])
+        if kind in _ONE:
+            self.set_q(found[2], self.number(f"{_ONE[kind]}({found[3]})", line), line)
+            return True
+        terms = re.fullmatch(_TWO[kind], found[3]) if kind in _TWO else None
+        if terms is None:
+            raise GCodeError.at(line, f"FN {kind} is not read; expected FN 0 to 7 or FN 9 to 12.")
+        text = _SIGNS[kind].join(f"({each})" for each in terms.groups())
+        self.set_q(found[2], self.number(text, line), line)
+        return True
+
+    # --- cycles
+    def cycle_words(self, code: str, line: int) -> str | None:
+        """CYCL DEF, CYCL CALL and TRANS DATUM."""
+        if code.startswith("CYCL CALL"):
+            return self._cycle_call(code, line)
+        if code.startswith("TRANS DATUM"):
+            reset = "RESET" in code
+            self._shift({} if reset else self._axes_of(code, line), line, every=reset)
+            return None
+        found = _CYCLE.match(code)
+        if found is None:
+            raise GCodeError.at(line, f"{code[:30]} is not read; expected CYCL DEF and its number.")
+        number, part, rest = int(found[1][:4]), found[2], found[3]
+        if number in _DRILLS:
+            self.drill = number
+            for name, value in re.findall(r"(Q\d+) ?= ?(\S+)", rest):
+                if not re.fullmatch(NUMBER, value):
+                    raise GCodeError.at(line, f"CYCL DEF {number} has {name}={value}, which is not read.")
+                self.set_q(name, self.number(value, line), line)
+            return None
+        return self._other_cycle(number, part, rest.strip(), line)
+
+    def _other_cycle(self, number: int, part: str | None, rest: str, line: int) -> str | None:
+        if number == 7 and part != "0":
+            if "#" in rest:
+                raise GCodeError.at(line, "CYCL DEF 7 takes its shift from a table, which is not read; write X, Y, Z.")
+            self._shift(self._axes_of(rest, line), line)
+        elif number == 10 and part != "0":
+            found = re.fullmatch(rf"(I?)ROT ?({NUMBER})", rest)
+            if found is None:
+                raise GCodeError.at(line, f"CYCL DEF 10.{part} {rest[:20]} is not read; expected ROT and an angle.")
+            self._turn(self.number(found[2], line), bool(found[1]), line)
+        elif number == 9 and part != "0":
+            found = re.search(rf"({NUMBER}) ?$", rest)
+            return f"G4 P{max(self.number(found[1], line), 0.0):.6f}" if found else None
+        elif number == 247:
+            preset = float(next(iter(re.findall(r"Q339 ?= ?\+?(\d+)", rest)), "0"))
+            if self.preset is not None and self.preset != preset:
+                raise GCodeError.at(line, "CYCL DEF 247 chooses a second preset; split the program there.")
+            self.preset = preset
+        elif number in (19, 8, 11) and part != "0":
+            values = [float(v) for v in re.findall(r"[-+]?[\d.]+", rest)]
+            if any(v != (1.0 if number == 11 else 0.0) for v in values) or (number == 8 and rest):
+                raise GCodeError.at(line, f"CYCL DEF {number}.{part} {rest[:20]} tilts, mirrors or scales: not read.")
+        elif number not in (7, 8, 9, 10, 11, 13, 19, 32, 247):
+            raise GCodeError.at(line, f"CYCL DEF {number} {rest[:20]} is a cycle that is not read; {_LET}.")
+        return None
+
+    def _axes_of(self, text: str, line: int) -> dict[str, tuple[bool, float]]:
+        return {letter.lower(): (bool(step), self.number(value, line)) for step, letter, value in _AXIS.findall(text)}
+
+    def _shift(self, said: dict[str, tuple[bool, float]], line: int, every: bool = False) -> None:
+        """A datum shift: an axis that is not given stays as it is, ``every`` ends them all."""
+        shift, angle = frame_of(self.machine)
+        for axis, letter in enumerate("xyz"):
+            step, value = said.get(letter, (True, 0.0))
+            shift[axis] = 0.0 if every else value + (shift[axis] if step else 0.0)
+        if any(shift) and angle != 0.0:
+            raise GCodeError.at(line, "a datum shift inside of a rotation is not read; shift first, then turn.")
+        self._see(shift, angle, line)
+
+    def _turn(self, angle: float, step: bool, line: int) -> None:
+        shift, before = frame_of(self.machine)
+        self._see(shift, angle + (before if step else 0.0), line)
+
+    def _see(self, shift: list[float], angle: float, line: int) -> None:
+        self.machine.need_compensation_off(Block(line), "A datum shift or rotation")
+        if not any(shift) and angle == 0.0:
+            turn_back(self.machine)
+        else:
+            see_frame(self.machine, shift, angle)
+
+    # --- drilling
+    def _cycle_call(self, code: str, line: int) -> str | None:
+        rest = code.removeprefix("CYCL CALL").strip()
+        if rest.startswith("PAT"):
+            raise GCodeError.at(line, "CYCL CALL PAT calls at a pattern, which is not read; write CYCL CALL POS.")
+        if rest.startswith("POS"):
+            text = self.straight(f"L {rest.removeprefix('POS').strip()}", line)
+            self.due = True
+            return text
+        self.due = True
+        return " ".join(f"M{m}" for m in re.findall(r"\bM(\d+)", rest) if m in ("3", "4", "5", "8", "9")) or "G90"
+
+    def straight(self, code: str, line: int) -> str | None:
+        """A straight move in LinuxCNC's words."""
+        raise NotImplementedError
+
+    def drill_if_due(self, block: Block) -> None:
+        """Drill where a line with M99, CYCL CALL or under M89 has led to."""
+        if self.due:
+            self.due = False
+            if self.drill == 0:
+                raise block.refuse("a cycle is called, but none is defined; write CYCL DEF 200 before.")
+            self.drill_here(self._hole_of(block.line), block.line)
+
+    def _hole_of(self, line: int) -> Hole:
+        number, machine = self.drill, self.machine
+        surface, safety, depth = self.q(203), abs(self.q(200)), self.q(201)
+        if number == 240 and self.q(343) != 0.0:
+            raise GCodeError.at(line, "CYCL DEF 240 counts by its diameter (Q343=1), which is not read; give Q201.")
+        if depth >= 0.0 or safety == 0.0:
+            raise GCodeError.at(line, f"CYCL DEF {number} needs Q200 above 0 and Q201, its depth, below 0; mend them.")
+        if self.q(379) != 0.0:
+            raise GCodeError.at(line, f"CYCL DEF {number} starts below the surface (Q379), which is not read; give 0.")
+        slower = 10.0 if machine.unit == "in" else 1.0
+        down, pitch = self.q(206) / slower, abs(self.q(239)) if number in (207, 209) else 0.0
+        if number in (207, 209) and pitch == 0.0:
+            raise GCodeError.at(line, f"CYCL DEF {number} needs Q239, its pitch.")
+        out = self.q(208) / slower if number in (201, 203) else 0.0
+        out = (out or down) if number in (201, 206) else min(out, 99999.0) if 0.0 < out < 99999.0 else 0.0
+        bottom, step = surface + depth, abs(self.q(202)) if number in (200, 203, 205) else 0.0
+        pecks: list[float] = []
+        less = abs(self.q(212)) if number in (203, 205) else 0.0
+        at = surface - step
+        while step > 0.0 and at > bottom + 1e-9:
+            pecks.append(at)
+            step = max(step - less, abs(self.q(205)) or less) if less else step
+            at -= step
+            if len(pecks) > MAX_PECKS:
+                raise GCodeError.at(line, f"CYCL DEF {number} needs more than {MAX_PECKS} pecks; give a larger Q202.")
+        top = surface + max(safety, self.q(204))
+        return Hole(top, surface + safety, bottom, max(self.q(211), 0.0), down, out, tuple(pecks), True, pitch)
+
+
+_LET = "let the CAM system write its moves out"

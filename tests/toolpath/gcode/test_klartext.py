@@ -1,0 +1,155 @@
+"""Heidenhain's dialogue: each program with the places and forms that its lines say, by hand."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import Program, Tool, interpret
+
+HEAD = "0 BEGIN PGM PART MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-20\n2 TOOL CALL 1 Z S1000 ;mill\n3 L X+0 Y+0 Z+0 R0 FMAX M3\n"
+
+
+def read(body: str, **more: object) -> Program:
+    return interpret(f"{HEAD}{body}END PGM PART MM\n", **more)  # type: ignore[arg-type]
+
+
+def ends(body: str) -> list[list[float]]:
+    return (np.round(read(body).end[1:] * 1e3, 6) + 0.0).tolist()
+
+
+def test_it_is_told_by_its_first_line_and_its_lines_are_counted_as_they_stand() -> None:
+    program = read("4 L X+10 F100\n\n5 * - second\n6 L Y-5,5\n")
+    assert program.dialect == "heidenhain"
+    assert program.line.tolist() == [4, 5, 8]
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, [[10, 0], [10, -5.5]])
+    np.testing.assert_allclose(program.v_f[1:] * 6e4, 100.0)
+    assert program.n_s[1] * 60 == pytest.approx(1000.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "places"),
+    [
+        ("4 L IX+5 Y+2 F100\n5 L IX+5 IZ-1\n", [[5, 2, 0], [10, 2, -1]]),
+        ("L Z+50 F MAX\nL X-3.5\n", None),
+        ("L X 4 Y - 2 F300\nL X.5\n", [[4, -2, 0], [0.5, -2, 0]]),
+    ],
+)
+def test_straight_lines(body: str, places: list[list[float]] | None) -> None:
+    if places is None:
+        with pytest.raises(GCodeError, match="Line 6: G1 needs a feed rate"):
+            read(body)
+    else:
+        assert ends(body) == places
+
+
+def test_fmax_holds_for_its_line_alone() -> None:
+    assert read("L X+1 F100\nL X+2 FMAX\nL X+3\n").kind.tolist() == [0, 1, 0, 1]
+
+
+def test_inches_and_their_feed_in_tenths() -> None:
+    program = interpret("0 BEGIN PGM A INCH\nL X+0 FMAX\nL X+1 F100\nEND PGM A INCH\n")
+    assert program.units == "in"
+    assert program.end[1, 0] == pytest.approx(25.4e-3)
+    assert program.v_f[1] * 60 / 25.4e-3 == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "centre", "sweep_deg", "end"),
+    [
+        ("CC X+10 Y+0\nC X+20 Y+0 DR+ F99\n", (10, 0), 180, (20, 0, 0)),
+        ("CC IX+10 IY+0\nC X+0 Y+0 DR- F99\n", (10, 0), -360, (0, 0, 0)),
+        ("CC X+0 Y+5\nC IX+5 IY+5 DR- F99\n", (0, 5), -270, (5, 5, 0)),
+        ("CC X+0 Y+5\nCP IPA-900 IZ-3 DR- F99\n", (0, 5), -900, (0, 10, -3)),
+        ("CC X+0 Y+5\nCP PA+0 DR+ F99\n", (0, 5), 90, (5, 5, 0)),
+        ("CR X+10 Y+0 R+5 DR- F99\n", (5, 0), -180, (10, 0, 0)),
+        ("CR X+5 Y+5 R-5 DR+ R0 F99\n", (0, 5), 90, None),
+        ("L X+10 F99\nCT X+20 Y+10\n", (10, 10), 90, (20, 10, 0)),
+        ("L X+10 F99\nCT X+20 Y-10\n", (10, -10), -90, (20, -10, 0)),
+        ("L X+10 F99\nCT X+20 Y+10\nCT X+10 Y+20\n", (10, 10), 90, (10, 20, 0)),
+    ],
+)
+def test_circles(body: str, centre: tuple[float, ...], sweep_deg: float, end: tuple[float, ...] | None) -> None:
+    program = read(body)
+    if end is None:  # the larger arc, on the other side of its chord
+        centre, sweep_deg, end = (5, 0), -270 + 540, (5, 5, 0)
+    np.testing.assert_allclose(program.centre[-1, :2] * 1e3, centre, atol=1e-9)
+    np.testing.assert_allclose(program.end[-1] * 1e3, end, atol=1e-9)
+    assert math.degrees(program.sweep[-1]) == pytest.approx(sweep_deg)
+
+
+def test_polar_lines() -> None:
+    found = ends("CC X+10 Y+10\nLP PR+20 PA+90 F99\nLP IPA+90\nLP IPR-5\n")
+    assert found == [[10, 30, 0], [-10, 10, 0], [-5, 10, 0]]
+
+
+def test_corners_stand_between_their_lines() -> None:
+    program = read("L X+20 F99\n; comment\nRND R5 F50\nL Y+20\nCHF 2\nL X+0\n")
+    expected = [[15, 0], [20, 5], [20, 18], [18, 20], [0, 20]]
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, expected, atol=1e-9)
+    np.testing.assert_allclose(program.centre[2, :2] * 1e3, [15, 5], atol=1e-9)
+
+
+def test_labels_are_subprograms_and_repeats() -> None:
+    body = 'CALL LBL 7\nLBL 1\nL IX+1 F99\nCALL LBL 1 REP 2/2\nCALL LBL "UP"\nL X+0 FMAX M30\n'
+    body += 'LBL 7\nL Y+4 F99\nLBL 0\nLBL "UP"\nL IZ+1\nCALL LBL 7\nLBL 0\n'
+    assert ends(body) == [[0, 4, 0], [1, 4, 0], [2, 4, 0], [3, 4, 0], [3, 4, 1], [3, 4, 1], [0, 4, 1]]
+
+
+def test_repeats_within_repeats_begin_anew() -> None:
+    body = "LBL 1\nLBL 2\nL IX+1 F99\nCALL LBL 2 REP1\nL IY+1\nCALL LBL 1 REP 1\n"
+    assert ends(body)[-1] == [4, 2, 0]
+
+
+def test_compensation_needs_a_tool_and_follows_its_side() -> None:
+    body = "L X-10 Y+0 FMAX\nL X+0 Y+0 RL F99\nL Y+20\nL X+20\nL X+40 R0\n"
+    with pytest.raises(GCodeError, match="Line 6: G41 needs the diameter of tool 1; give a tool table"):
+        read(body)
+    program = read(body, tools={1: Tool(1, 6e-3)})
+    np.testing.assert_allclose(program.end[-2, :2] * 1e3, [20, 23], atol=1e-9)
+
+
+def test_places_in_the_machine_are_clear_of_the_part() -> None:
+    program = read("L X+5 Z-1 F99\nL M140 MB MAX\nL X+9 Z+5 FMAX\nL Z+0 FMAX M91\n")
+    assert program.away[:, 2].tolist() == [False, False, True, False, True]
+    said = [f.message[:13] for f in program.findings if f.code == "machine-place"]
+    assert sorted(said) == ["M140 goes to ", "M91 goes to a"]
+    with pytest.raises(GCodeError, match="Line 6: IZ counts from a place that only the machine knows"):
+        read("L M140 MB MAX\nL IZ-3 F99\n")
+    assert ends("L Z-5 F99\nL M140 MB 30\n")[-1] == [0, 0, 25]
+
+
+def test_tool_axes_and_m_words() -> None:
+    program = read("M128\nLN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 TX+0 TY-0.5 TZ+0.8660254 F99 M13\n")
+    np.testing.assert_allclose(np.degrees(program.rotary[-1]), [30, 0, 0], atol=1e-5)
+    assert [f.message for f in program.findings if f.code == "unknown-m"] == ["M128 is left out: it moves nothing"]
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("APPR LCT X+1 R5 RL\n", "APPR LCT X.1 is of Heidenhain's and is not read"),
+        ("FL AN+45\n", r"FL AN\+45 is of"),
+        ("PLANE SPATIAL SPA+0 SPB+45 SPC+0 TURN\n", "PLANE SPATIAL"),
+        ("CALL PGM TNC:\\SUB.H\n", "CALL PGM TNC"),
+        ("L X+1 FU0.1\n", "found 'FU0.1' in a line that begins with L"),
+        ("C X+1 Y+1 DR+ F9\n", "need their centre"),
+        ("CC X+1 Y+1\nC X+2 Y+2 F9\n", r"C needs DR\+ or DR-"),
+        ("CR X+1 Y+1 DR+ F9\n", "CR needs R"),
+        ("CC X+0 Y+5\nCP IPA+90 DR- F9\n", "IPA against its DR"),
+        ("CT X+5 Y+5 F9\n", "CT goes on tangentially"),
+        ("L X+1 F9\nM8\nRND R5\n", "RND is read behind a straight cut"),
+        ("CALL LBL 9\n", "LBL 9 is called, but there is no such label"),
+        ("TOOL CALL 2 X S100\n", "TOOL CALL 2 X S100 is not read"),
+        ("TOOL CALL 2 Z S100 DL+0.5\n", r"DL\+0.5, which is not read"),
+        ("M136\n", "M136 counts feeds per turn"),
+        ("L X+5 FMAX M140 MB MAX\n", "M140 beside a move"),
+        ("LN X+1 TX+0 TY+0 TZ+0 F9\n", "TX TY TZ is 0"),
+    ],
+)
+def test_what_is_not_read_is_named(body: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=rf"Line [5-7]: .*{says}"):
+        read(body)

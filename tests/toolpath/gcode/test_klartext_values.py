@@ -1,0 +1,112 @@
+"""Q parameters, shifts and drilling cycles of Heidenhain's dialogue, reckoned by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import Program, interpret
+
+HEAD = "BEGIN PGM Q MM\nTOOL CALL 1 Z S1000 F99\nL X+0 Y+0 Z+10 FMAX M3\n"
+
+
+def read(body: str) -> Program:
+    return interpret(f"{HEAD}{body}END PGM Q MM\n")
+
+
+def ends(body: str) -> list[list[float]]:
+    return (np.round(read(body).end[1:] * 1e3, 6) + 0.0).tolist()
+
+
+@pytest.mark.parametrize(
+    ("body", "x"),
+    [
+        ("FN 0: Q1 = +5\nL X+Q1\n", 5),
+        ("FN0:Q1=-5\nL X-Q1\n", 5),
+        ("FN 1: Q1 = +2 + +3\nFN 2: Q2 = +Q1 - -1\nL X+Q2\n", 6),
+        ("FN 3: Q1 = +2 * +3\nFN 4: Q2 = +Q1 DIV +4\nL XQ2\n", 1.5),
+        ("FN 5: Q1 = +16\nL X+Q1\n", 4),
+        ("FN 6: Q1 = +30\nFN 7: Q2 = +60\nQ3 = Q1 + Q2\nL X+Q3\n", 1),
+        ("Q1 = 2 * ( 3 + 1 ) - SQRT 4 + 2 ^ 3\nL X+Q1\n", 14),
+        ("QL1 = SIN 30 + COS ( 60 ) + INT 2.7 + ABS -2\nL X+QL1\n", 5),
+        ("Q1 = 0\nLBL 1\nQ1 = Q1 + 1\nFN 12: IF +Q1 LT +4 GOTO LBL 1\nL X+Q1\n", 4),
+        ("Q1 = 1\nFN 9: IF +Q1 EQU +1 GOTO LBL 5\nL X+99\nLBL 5\nL X+7\n", 7),
+        ("Q1 = 1\nFN 10: IF +Q1 NEQU +1 GOTO LBL 5\nL X+99\nLBL 5\nFN 11: IF Q1 GT 0 GOTO LBL 6\nL X+1\nLBL 6\n", 99),
+    ],
+)
+def test_q_parameters(body: str, x: float) -> None:
+    assert ends(body)[-1][0] == pytest.approx(x)
+
+
+def test_shifts_and_turns() -> None:
+    """X1 Y0 behind a shift of (10, 20) and a turn of 90 degrees is (10, 21)."""
+    body = "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10\nCYCL DEF 7.2 Y+20\nL X+1 Y+0\n"
+    body += "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+90\nL X+1 Y+0\n"
+    body += "CYCL DEF 10.1 ROT+0\nCYCL DEF 7.1 IX+5\nL X+1 Y+0\n"
+    body += "CYCL DEF 7.1 X+0\nCYCL DEF 7.2 Y+0\nL X+1 Y+0\n"
+    assert [row[:2] for row in ends(body)] == [[11, 20], [10, 21], [16, 20], [1, 0]]
+
+
+DRILL = "CYCL DEF 200 HOLE ~\n  Q200=2 ;CLEARANCE ~\n  Q201=-6 ~\n  Q206=+120 ~\n  Q202=4 ~\n  Q203=+1 ~\n  Q204=8\n"
+
+
+def test_drilling_where_m99_leads() -> None:
+    """Surface 1: clear at 3, pecks to -3, bottom at -5, back to 9."""
+    program = read(f"{DRILL}L X+5 Y+5 FMAX M99\nL X+15 FMAX M99\n")
+    heights = (np.round(program.end[1:7, 2] * 1e3, 6)).tolist()
+    assert heights == [10, 3, -3, 3, -3, -5]
+    assert program.end[7, 2] * 1e3 == pytest.approx(9)
+    drilled = program.end[(program.kind == 1) & (program.end[:, 2] < -4.9e-3), :2] * 1e3
+    np.testing.assert_allclose(drilled, [[5, 5], [15, 5]])
+    np.testing.assert_allclose(program.v_f[program.kind == 1] * 6e4, 120.0)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        f"{DRILL}L X+5 Y+5 FMAX\nCYCL CALL M3\nL X+15 FMAX\nCYCL CALL\n",
+        f"{DRILL}CYCL CALL POS X+5 Y+5 Z+10 FMAX\nCYCL CALL POS X+15 Y+5 Z+10 FMAX\n",
+        f"{DRILL}L X+5 Y+5 FMAX M89\nL X+15 FMAX M99\nL X+50 FMAX\n",
+        DRILL.replace("~", "") + "L X+5 Y+5 FMAX M99\nL X+15 FMAX M99\n",
+    ],
+)
+def test_a_cycle_is_called_in_many_ways(body: str) -> None:
+    program = read(body)
+    drilled = program.end[(program.kind == 1) & (program.end[:, 2] < -4.9e-3), :2] * 1e3
+    np.testing.assert_allclose(drilled, [[5, 5], [15, 5]])
+
+
+def test_tapping_goes_by_its_pitch() -> None:
+    program = read("CYCL DEF 207 TAPPING ~\nQ200=2 ~\nQ201=-8 ~\nQ239=+1.5 ~\nQ203=+0 ~\nQ204=5\nL X+1 FMAX M99\n")
+    assert program.thread[program.kind == 1].all()
+    np.testing.assert_allclose(program.v_f[program.kind == 1] * 6e4, 1500.0)
+
+
+def test_dwells_are_waited() -> None:
+    assert read("CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 1.5\n").dwell_time == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("L X+Q5\n", "Q5 is read before the program sets it"),
+        ("L X+5 FMAX M99\n", "a cycle is called, but none is defined"),
+        ("CYCL DEF 251 POCKET ~\nQ218=60\n", "CYCL DEF 251 POCKET .* is a cycle that is not read"),
+        ("CYCL DEF 7.1 #5\n", "CYCL DEF 7 takes its shift from a table"),
+        ("CYCL DEF 8.1 X\n", "tilts, mirrors or scales"),
+        ("CYCL DEF 11.1 SCL 0.9\n", "tilts, mirrors or scales"),
+        ("CYCL DEF 19.1 A+0 B+30\n", "tilts, mirrors or scales"),
+        ("CYCL DEF 10.1 ROT+30\nCYCL DEF 7.1 X+3\n", "a datum shift inside of a rotation"),
+        ("CYCL DEF 247 PRESET Q339=1\nCYCL DEF 247 PRESET Q339=2\n", "CYCL DEF 247 chooses a second preset"),
+        ("CYCL DEF 200 ~\nQ200=2 ~\nQ201=5\nL X+1 FMAX M99\n", "Q201, its depth, below 0"),
+        ("CYCL DEF 200 ~\nQ206=FAUTO\n", "Q206=FAUTO, which is not read"),
+        ("CYCL CALL PAT FMAX\n", "CYCL CALL PAT"),
+        ("FN 18: SYSREAD Q1 = ID270 NR1\n", "FN 18: SYSREAD is of Heidenhain's"),
+        ("FN 8: Q1 = +3 LEN +4\n", "FN 8 is not read"),
+        ("QL500 = 1\n", "QL500 does not exist"),
+    ],
+)
+def test_what_is_not_read_is_named(body: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=rf"Line [4-8]: .*{says}"):
+        read(body)

@@ -1,0 +1,90 @@
+"""Branches, loops and variables of Sinumerik programs, with the places along X that Python finds for them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import interpret
+
+
+def xs(body: str) -> list[float]:
+    program = interpret(f"G90 G71 G1 F100 S60 M3\n{body}M30\n", dialect="sinumerik")
+    return (np.round(program.end[1:, 0] * 1e3, 9) + 0.0).tolist()
+
+
+@pytest.mark.parametrize(
+    ("body", "places"),
+    [
+        ("R1=2\nIF R1==2\nX10\nELSE\nX20\nENDIF\nX30\n", [10, 30]),
+        ("R1=3\nN5 IF R1==2\nX10\nELSE\nX20\nENDIF\nX30\n", [20, 30]),
+        ("R1=3\nIF R1<>3\nX10\nENDIF ;done\nX30\n", [30]),
+        ("R1=0\nIF R1>1\nIF R1>2\nX1\nELSE\nX2\nENDIF\nELSE\nIF R1==0\nX3\nENDIF\nENDIF\n", [3]),
+        ("R1=1\nWHILE R1<4\nX=R1\nR1=R1+1\nENDWHILE\nX9\n", [1, 2, 3, 9]),
+        ("FOR R2=1 TO 3\nX=R2\nENDFOR\nX=R2\n", [1, 2, 3, 4]),
+        ("FOR R2=3 TO 1\nX=R2\nENDFOR\nX9\n", [9]),
+        ("R1=0\nREPEAT\nR1=R1+1\nX=R1\nUNTIL R1>=3\n", [1, 2, 3]),
+        ("R1=0\nLOOP\nR1=R1+1\nX=R1\nIF R1>2 GOTOF RAUS\nENDLOOP\nRAUS: X9\n", [1, 2, 3, 9]),
+        ("X0\nANF: X=IC(5)\nREPEAT ANF P=2\nX9\n", [0, 5, 10, 15, 9]),
+        ("DEF REAL LANG=5.5\nDEF INT ANZ, N2=3\nANZ=2\nX=LANG\nX=ANZ*N2+1\nX=-LANG\n", [5.5, 7, -5.5]),
+        ("DEF INT I1\nFOR I1=1 TO 2\nX=I1*10\nENDFOR\n", [10, 20]),
+        ("DEF BOOL AN=TRUE\nIF AN\nX1\nENDIF\nX=TRUNC(2.7)\n", [1, 2]),
+    ],
+)
+def test_programs_are_followed(body: str, places: list[float]) -> None:
+    assert xs(body) == places
+
+
+def test_a_modal_subprogram_follows_every_line_that_moves() -> None:
+    body = "MCALL L100\nX10\nM8\nX20\nMCALL\nX30\nM30\n%_N_L100_SPF\nX=IC(1)\nM17\n"
+    assert xs(body) == [10, 11, 20, 21, 30]
+    assert xs(body.replace("L100", "BOHR")) == [10, 11, 20, 21, 30]
+
+
+@pytest.mark.parametrize(
+    ("body", "place"),
+    [
+        ("R1=3\nX=AC(R1*2)\n", 6),
+        ("X5\nR1=3\nX=IC(R1-1)\n", 7),
+        ("G0 X10 Y0\nR2=0\nG3 X10 Y0 I=AC(R2) J=AC(0)\n", 10),
+    ],
+)
+def test_places_may_be_computed(body: str, place: float) -> None:
+    assert xs(body)[-1] == place
+
+
+@pytest.mark.parametrize(("word", "turned"), [("DC(350)", -10), ("ACP(350)", 350), ("ACN(20)", -340), ("DC(20)", 20)])
+def test_axes_turn_the_short_way_up_or_down(word: str, turned: float) -> None:
+    program = interpret(f"G90 G1 F100\nX5 A={word}\nM30\n", dialect="sinumerik")
+    assert np.degrees(program.rotary[-1, 0]) == pytest.approx(turned)
+
+
+def test_tool_axes_may_be_computed() -> None:
+    program = interpret("R1=1\nTRAORI\nG1 X5 A3=R1 C3=R1*1 F100\nM30\n", dialect="sinumerik")
+    np.testing.assert_allclose(np.degrees(program.rotary[-1]), [0, 45, 0], atol=1e-9)
+
+
+def test_dwells_in_turns_of_the_spindle() -> None:
+    assert interpret("S60 M3\nG4 S30\nG1 X1 F9\nM30\n", dialect="sinumerik").dwell_time == pytest.approx(30.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("ENDIF\n", "Line 2: ENDIF has no partner"),
+        ("IF 1<2\nX1\n", "Line 2: IF has no partner"),
+        ("WHILE 1<2\nENDFOR\n", "Line 2: WHILE has no partner"),
+        ("FOR X TO\nENDFOR\n", "Line 2: FOR is not read as it stands"),
+        ("FOR Q1=1 TO 2\nENDFOR\n", "Line 2: Q1 is no variable"),
+        ("DEF STRING[5] NAME\n", "Line 2: DEF STRING.* is not read"),
+        ("DEF REAL FELD[5]\n", "Line 2: found 'FELD.5.' where DEF has a name"),
+        ("REPEAT WEG P=2\n", "Line 2: REPEAT WEG leads nowhere"),
+        ("G90 TRANS X5\n", "Line 2: TRANS stands on a line of its own"),
+        ("LOOP\nR1=1\nENDLOOP\n", "the program may not end"),
+        ("X=DC(5)\n", r"Line 2: X=DC\( \) is for axes that turn"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=says):
+        xs(body)
