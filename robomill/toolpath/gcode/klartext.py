@@ -170,7 +170,7 @@ class Klartext(KlartextValues):
         self.modal_cycle = self.modal_cycle or 89 in codes
         self.due = 99 in codes or (self.modal_cycle and bool(where))
         self.modal_cycle = self.modal_cycle and 99 not in codes
-        return " ".join(word for word in out if word) or None
+        return " ".join(word for word in out if word) or ("G90" if self.due else None)
 
     def _check_left_over(self, kind: str, code: str, line: int) -> None:
         """Refuse what no rule of a line that moves has a use for."""

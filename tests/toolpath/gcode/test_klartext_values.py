@@ -66,6 +66,7 @@ def test_drilling_where_m99_leads() -> None:
     "body",
     [
         f"{DRILL}L X+5 Y+5 FMAX\nCYCL CALL M3\nL X+15 FMAX\nCYCL CALL\n",
+        f"L X+5 Y+5 FMAX\n{DRILL}L FMAX M99\nL X+15 FMAX M99\n",
         f"{DRILL}CYCL CALL POS X+5 Y+5 Z+10 FMAX\nCYCL CALL POS X+15 Y+5 Z+10 FMAX\n",
         f"{DRILL}L X+5 Y+5 FMAX M89\nL X+15 FMAX M99\nL X+50 FMAX\n",
         DRILL.replace("~", "") + "L X+5 Y+5 FMAX M99\nL X+15 FMAX M99\n",
