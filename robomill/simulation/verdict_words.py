@@ -186,7 +186,8 @@ def _unjudged(result: Run) -> str:
     if lost.any():
         why = result.unjudged[0].why if result.unjudged else "no number of the force is known there."
         more = f" (and {format_count(len(result.unjudged) - 1, 'more reason')})" if len(result.unjudged) > 1 else ""
-        points = f"{int(lost.sum())} of {int(result.path.cutting.sum())} points of the cut are not judged"
+        lost_points, every = format_count(int(lost.sum())), format_count(int(result.path.cutting.sum()))
+        points = f"{lost_points} of {every} points of the cut are not judged"
         told.append(f"{points} (line {named(result.path.block[lost].tolist())}): {why.rstrip('.')}{more}")
     if result.rapids:
         told.append(f"{RAPID[0].upper()}{RAPID[1:]} (line {named(result.rapids)}): not judged")
@@ -203,4 +204,5 @@ def _missed(result: Run) -> str:
     """How many points have no answer though a model holds there, and why."""
     missed = result.missed
     why = "cannot be reached" if not result.reached.all() else "lie outside the measured map"
-    return f"{int(missed.sum())} of {len(result.path)} points {why} (line {named(result.path.block[missed].tolist())})"
+    of = f"{format_count(int(missed.sum()))} of {format_count(len(result.path))}"
+    return f"{of} points {why} (line {named(result.path.block[missed].tolist())})"

@@ -71,8 +71,8 @@ def begin(title: str) -> Project:
     p = palette(dark())
     st.html(f"<style>:root {{ --rm-ground: {p.background}; --rm-accent: {p.accent}; --rm-text: {p.text}; }}</style>")
     rendered.queue().worker.start()
-    preparing.wait()
     st.logo(LOGO.format(accent=p.accent, text=p.text), size="large")
+    preparing.wait()
     try:
         autosave.take_up()
         session.enter(title)

@@ -50,7 +50,7 @@ def plain_tiles(result: SimulationResult, unit: str = "mm") -> dict[str, Tile]:
     share = share_words(verdict)
     if verdict.level == "unjudged" and not verdict.premise:
         lost, total = int(result.not_judged.sum()), int(result.path.cutting.sum())
-        share = f"{lost} of {format_count(total, 'point')} of the cut are not judged"
+        share = f"{format_count(lost)} of {format_count(total, 'point')} of the cut are not judged"
         share += " and a rapid through material" if result.rapids else ""
     made = {
         "wall": reading_tile("Wall error", "wall", verdict, before, unit),

@@ -19,7 +19,8 @@ class ProfileCurves:
     """Along the groove, all in ``unit``: station, centre offset (+ left of the feed), floor error (+ material left).
 
     band (2, q): lowest and highest offset over the alloy's rows; fit (q,): the best straight line, whose ends lie in
-    the same stations; measured (station (k,), offset (k,)) from a measuring machine. None where there is none.
+    the same stations; measured (station (k,), offset (k,)) from a measuring machine; None where none is. ``joined``:
+    what lies between two stations lies between their values; else they are dots.
     """
 
     station: FloatArray
@@ -31,6 +32,7 @@ class ProfileCurves:
     band: FloatArray | None = None
     fit: FloatArray | None = None
     measured: tuple[FloatArray, FloatArray] | None = None
+    joined: bool = True
 
 
 def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, dark: bool) -> Chart:
@@ -45,7 +47,11 @@ def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, da
         plot.shade((curves.band[0], curves.band[1]), "published coefficients", rgba(p.accent, 0.16))
     hover = "%{y:+.4f} " + unit + ", line %{customdata}"
     for value, name, colour in ((curves.offset, "centre offset", p.accent), (curves.floor, "floor", p.text)):
-        if np.isfinite(value).any():
+        if np.isfinite(value).any() and not curves.joined:
+            plot.fig.dots(
+                curves.station, value, {"size": 7, "color": colour}, name=name, hovertemplate=hover, customdata=block
+            )
+        elif np.isfinite(value).any():
             plot.curve(value, name, {"color": colour, "width": 2.2}, hover, customdata=block)
     if curves.fit is not None:
         plot.curve(curves.fit, "best line", {"color": p.muted, "width": 1.2, "dash": "dot"})

@@ -56,3 +56,10 @@ def test_the_histogram_counts_in_the_unit_of_the_view():
     assert "Error, in " in fig.layout["xaxis"]["title"]["text"]
     assert " in<br>" in fig.traces[0]["hovertemplate"]
     assert "mm" not in str(fig.layout) + fig.traces[0]["hovertemplate"]
+
+
+def test_between_the_places_of_a_path_that_turns_nothing_is_drawn() -> None:
+    """Straight lines between 21 of them over 5 m of path read as a floor that climbs."""
+    made = chart(curves([0.1] * 5, [-0.1] * 5, joined=False))
+    drawn = [trace for trace in made.traces if trace.get("name") in ("centre offset", "floor")]
+    assert [trace["mode"] for trace in drawn] == ["markers", "markers"]

@@ -132,6 +132,7 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
         band=None if spread is None or len(spread.titles) < 2 else from_si(offset_band(result, spread, found), unit),
         fit=None if fit is None else from_si(found.centre_offset - fit.side.residual, unit),
         measured=None if measured is None else (from_si(measured.station, unit), from_si(measured.offset, unit)),
+        joined=result.path.goes_one_way,
     )
     missing = ""
     if found.missing:
