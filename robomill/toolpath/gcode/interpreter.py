@@ -24,6 +24,9 @@ MAX_STEPS = 1_000_000
 MAX_READ = 25_000
 """and of those that are read anew each time they come: a second or two."""
 
+MAX_CODE = 3000
+"""Characters of a Sinumerik line that can be read, without its comment."""
+
 _CHECK_EVERY = 256
 _LOOK_BEYOND = 20
 
@@ -65,6 +68,8 @@ class Interpreter(Klartext):
             raise GCodeError.at(line, f"{len(raw)} characters long; at most {MAX_LINE} can be read.")
         if self.dialect.name == "sinumerik":
             code, mark, comment = raw.partition(";")
+            if len(code) > MAX_CODE:
+                raise GCodeError.at(line, f"{len(code)} characters long; at most {MAX_CODE} can be read.")
             left = None if self.sinumerik_flow(code.upper(), line) else self.sinumerik_call(code.upper(), line)
             left = None if left is None else self.sinumerik_line(left, line)
             if left is None:

@@ -35,6 +35,8 @@ _CORNER = re.compile(rf"(RND ?R?|CHF ?L?) ?({NUMBER})(?: ?F.*)?")
 _SILENT = re.compile(
     r"BLK FORM|TOOL DEF|FUNCTION (?:RESET )?TCPM|FUNCTION MODE MILL|PLANE RESET|M1(?:07|08|16|17|20|24|26|27|38)\b"
 )
+MAX_CODE, MAX_LINES = 1000, 100
+"""Characters of a line and lines of a block that can be read."""
 _KEPT_M = (0, 1, 2, 3, 4, 5, 7, 8, 9, 30)
 _PAIRS = {13: "M3 M8", 14: "M4 M8"}
 
@@ -106,6 +108,8 @@ class Klartext(KlartextValues):
                 text = text[found.end() :] if found is not None else text
             parts.append(text.strip())
             index += 1
+            if len(text) > MAX_CODE or len(parts) > MAX_LINES:
+                raise GCodeError.at(index, f"a block is over {MAX_CODE} characters or {MAX_LINES} lines; split it.")
             if not raw.rstrip().endswith("~"):
                 break
         code = re.sub(r"(?<=\d),(?=\d)", ".", " ".join(parts).upper())
@@ -279,7 +283,7 @@ class Klartext(KlartextValues):
     def _look_ahead(self, kind: str) -> None:
         """A corner that the next line rounds or chamfers."""
         code, after, _ = self._joined(self.pc)
-        while not code and after < len(self.file.lines):
+        while not code and after < min(len(self.file.lines), self.pc + MAX_LINES):
             code, after, _ = self._joined(after)
         found = _CORNER.fullmatch(code)
         if found is not None:

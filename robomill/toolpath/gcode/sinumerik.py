@@ -9,7 +9,7 @@ from robomill.toolpath.gcode.tool_axis import angles_of
 _SILENT = re.compile(
     r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|COMPCURV|COMPSURF|STOPRE|CFTCP|CFIN|CFC|ORIWKS|"
     r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|KONT|DIAMOF)\b(?:[ \t]*\([^()]*\))?|"
-    r"\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|"
+    r"\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|\bGROUP_(?:BEGIN|END)[ \t]*\([^()]*\)|"
     r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)|\bCYCLE800[ \t]*\([ \t]*\)",
     re.IGNORECASE,
 )
@@ -20,6 +20,7 @@ _EXPONENT = re.compile(rf"({_NUMBER})EX([-+]?\d{{1,3}})\b", re.IGNORECASE)
 _PLACE = re.compile(rf"\b([XYZABCIJK])[ \t]*=[ \t]*(AC|IC)[ \t]*\([ \t]*({_NUMBER})[ \t]*\)", re.IGNORECASE)
 _VECTOR = re.compile(rf"\b([ABC])3[ \t]*=[ \t]*({_NUMBER})", re.IGNORECASE)
 _ORIENTATION = re.compile(r"\b(?:([ABC])([24-7])[ \t]*=|(LEAD|TILT|THETA|AN[23])[ \t]*=)", re.IGNORECASE)
+_SWIVEL = re.compile(r"\bCYCLE800[ \t]*\(([^()]*)\)", re.IGNORECASE)
 _TURNS = re.compile(r"\b(G0?4)[ \t]+S[ \t]*=?[ \t]*([.\d]+)", re.IGNORECASE)
 _TOOL = re.compile(r"\bT[ \t]*=?[ \t]*\"([^\"]*)\"", re.IGNORECASE)
 _MODES = re.compile(r"\bG9[01]\b(?!\.)", re.IGNORECASE)
@@ -30,7 +31,7 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code, mark, comment = raw.partition(";")
     for found in _SILENT.findall(code):
         machine.findings.add("harmless-word", "ignored", number, f"{_name(found)} is left out: it moves nothing")
-    code = _SILENT.sub("", code)
+    code = _SWIVEL.sub(lambda found: _unswivelled(found, number, machine), _SILENT.sub("", code))
     message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
     if message is not None:
         code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
@@ -47,6 +48,14 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = _TOOL.sub(lambda found: named_tool(found[1], number, machine), code)
     code = re.sub(r"\bD\d+\b", "", code, flags=re.IGNORECASE)
     return code + (";" + comment if mark else "")
+
+
+def _unswivelled(found: re.Match[str], number: int, machine: Machine) -> str:
+    """CYCLE800 whose places and angles are all 0 swivels nothing."""
+    if any(each.strip().strip("0.+-") for each in found[1].split(",")[4:13]):
+        return found[0]
+    machine.findings.add("harmless-word", "ignored", number, "CYCLE800 by 0 is left out: it swivels nothing")
+    return ""
 
 
 def _waited(found: re.Match[str], number: int, machine: Machine) -> str:

@@ -153,3 +153,9 @@ def test_tool_axes_and_m_words() -> None:
 def test_what_is_not_read_is_named(body: str, says: str) -> None:
     with pytest.raises(GCodeError, match=rf"Line [5-7]: .*{says}"):
         read(body)
+
+
+def test_blocks_too_long_to_be_looked_through_are_refused() -> None:
+    for text in ("L " + "X+1 " * 400, "CYCL DEF 200 ~\n" + "Q200=1 ~\n" * 200):
+        with pytest.raises(GCodeError, match="a block is over 1000 characters or 100 lines; split it"):
+            read(f"{text}\n")

@@ -150,3 +150,21 @@ def test_words_that_would_be_read_wrongly_are_refused(code: str, says: str) -> N
 def test_subprograms_behind_the_end_are_not_said_to_be_left_out() -> None:
     program = interpret("G91 G1 F100\nL100\nM30\n%_N_L100_SPF\nX10\nM17\n", dialect="sinumerik")
     assert "after-end" not in {f.code for f in program.findings}
+
+
+def test_what_moves_nothing_is_left_out() -> None:
+    body = 'GROUP_BEGIN(0,"TOP",0,0)\nCYCLE800(1,"TC1",200000,27,0,0,0,0,0,0,0,0,0,1,,0)\nX5\nGROUP_END(0,0)\n'
+    program = interpret(f"G90 G1 F100 X0\n{body}M30\n", dialect="sinumerik")
+    assert program.end[-1, 0] == pytest.approx(5e-3)
+    assert {f.message.split()[0] for f in program.findings if f.code == "harmless-word"} == {
+        "GROUP_BEGIN",
+        "GROUP_END",
+        "CYCLE800",
+    }
+    with pytest.raises(GCodeError, match="Line 1: CYCLE800"):
+        interpret('CYCLE800(1,"TC1",0,57,0,0,0,0,45,0,0,0,0,1)\nG1 X5 F9\n', dialect="sinumerik")
+
+
+def test_lines_too_long_to_be_looked_through_are_refused() -> None:
+    with pytest.raises(GCodeError, match="Line 1: 9000 characters long; at most 3000"):
+        interpret("X=AC(" * 1800 + "\nM30\n", dialect="sinumerik")
