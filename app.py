@@ -9,7 +9,7 @@ from robomill import ui
 from robomill.ui import front
 from robomill.ui.arm import arm_at
 from robomill.ui.start import carved, story
-from robomill.ui.toolpath.program import take_program
+from robomill.ui.toolpath.doors import take_file
 from robomill.ui.verdict import NOT_COUNTED, decides_at
 from robomill.units import format_limit
 
@@ -28,7 +28,7 @@ def start() -> None:
         ui.note(
             "Where numbers above were refused, undo the last change, or mend it on the Robot, Toolpath or Milling page."
         )
-        story.doors(take_program)
+        story.doors(take_file)
         st.stop()
 
     ui.headline(f"Start · {setup.name}", ui.verdict_sentence(result, unit), story.cause(result, unit))
@@ -43,7 +43,7 @@ def start() -> None:
     with middle, st.container(border=True, height="stretch"):
         story.groove_picture(result, project.view, HEIGHT, dark)
     with right:
-        story.doors(take_program)
+        story.doors(take_file)
 
     carved.strip(unit)
 

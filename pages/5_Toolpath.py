@@ -1,11 +1,12 @@
-"""The toolpath: a program, a table of lines or a sketch; the part zero; what was found; whether the arm can follow."""
+"""The toolpath: a program, lines, points, a drawing or a sketch; the part zero; whether the arm can follow."""
 
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import pieces
+from robomill.ui import pieces, tools
 from robomill.ui.running import path_of
 from robomill.ui.toolpath import details, question, view
+from robomill.ui.toolpath.doors import file_inputs
 from robomill.ui.toolpath.lines import lines_inputs
 from robomill.ui.toolpath.part_zero import part_zero
 from robomill.ui.toolpath.picture import path_figure, stock_note
@@ -31,12 +32,16 @@ question.panel(path, "" if result is None else result.verdict.premise)
 left, right = ui.split([1, 2] if source.kind == "program" else [1.2, 1.75], "steps", gap="large")
 with left:
     kind_switch()
+    file_inputs(dark)
     if source.kind == "program":
         program_inputs(source, path, dark)
     elif source.kind == "sketch":
         sketch_inputs()
     elif source.kind == "lines":
         lines_inputs(source, project.view)
+    if source.kind in ("program", "points"):
+        with st.expander("**Tools**", expanded=bool(setup.tools), key="toolpath.open.tools"):
+            tools.panel()
     with st.container(border=True):
         part_zero()
 

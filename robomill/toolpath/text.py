@@ -11,6 +11,7 @@ Source = str | bytes | bytearray | Path
 SUFFIXES = (
     *(".nc", ".ngc", ".tap", ".gcode", ".cnc", ".txt", ".g", ".mpf", ".spf", ".eia", ".min"),
     *(".apt", ".aptsource", ".cls", ".cl", ".ncl", ".ncf", ".ptp", ".iso", ".h"),
+    *(".din", ".dnc", ".fnc", ".hnc", ".ncc", ".pgm", ".prg", ".sub"),
 )
 
 

@@ -11,7 +11,7 @@ from test_start_odd_numbers import PAGES
 
 from robomill.ui.box import NumberBox
 from robomill.ui.grid import Sheet
-from robomill.ui.milling.tools import TABLE
+from robomill.ui.tools import TABLE
 
 REFUSED = {
     "1,220": "1.220 to some and 1220 to others",

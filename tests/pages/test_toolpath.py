@@ -137,7 +137,7 @@ def test_a_big_program_is_read_and_run_beside_the_page(app: AppTest, monkeypatch
     body = "".join(f"G1 X{i % 100} Y{i // 100 % 7}\n" for i in range(180_000))
     text = f"G21 G90\nG0 X0 Y0 Z1\nG1 Z-1 F6000\n{body}M2\n"
     assert len(text) > BACKGROUND_CHARACTERS
-    next(b for b in app.file_uploader if b.label == "Program file").upload("big.nc", text.encode(), "text/plain")
+    next(b for b in app.file_uploader if b.label.startswith("Program, ")).upload("big.nc", text.encode(), "text/plain")
     app.run()
     for _ in range(60):
         if any(button.key == "run.ask" for button in app.button):  # read, and its reach looked at

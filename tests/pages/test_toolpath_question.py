@@ -18,7 +18,7 @@ ASKED = "What is it cutting?"
 def bring(app: AppTest, text: str, name: str = "own.nc") -> None:
     """Drop a program on the toolpath page."""
     go(app, "5_Toolpath")
-    next(b for b in app.file_uploader if b.label == "Program file").upload(name, text.encode(), "text/plain")
+    next(b for b in app.file_uploader if b.label.startswith("Program, ")).upload(name, text.encode(), "text/plain")
     app.run()
     assert not app.exception
 

@@ -11,6 +11,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
 from robomill.ui import cached, inputs, pieces, running, session
 from robomill.ui import evidence as evidence_panel
+from robomill.ui import tools as tools_panel
 from robomill.ui.arm import arm_at
 from robomill.ui.milling import cut as cut_panel
 from robomill.ui.milling import film, force_view, live_cut
@@ -20,7 +21,6 @@ from robomill.ui.milling import pictures as picture_panel
 from robomill.ui.milling import scrubber as linked
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling import station as station_views
-from robomill.ui.milling import tools as tools_panel
 from robomill.ui.pieces import Tile
 from robomill.ui.verdict import NOT_COUNTED, decides_at, verdict_tiles
 from robomill.units import format_count, format_limit, format_many, format_si

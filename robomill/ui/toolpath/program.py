@@ -6,8 +6,8 @@ from pathlib import Path
 
 import streamlit as st
 
+from robomill.arrays import digest
 from robomill.errors import GCodeError, RobomillError, ToolpathError
-from robomill.files import PROGRAM
 from robomill.io.programs import program_from_bytes
 from robomill.provenance import Finding
 from robomill.toolpath.gcode.dialects import NAMES, choose_dialect
@@ -32,32 +32,38 @@ ROTARY = {"": "Not said", LEANS: "Leans the tool"} | {
 
 @dataclass(frozen=True)
 class Refused:
-    """A program that was not taken, and why."""
+    """A program that was not taken, and why; ``tools`` is the digest of the table that it was read with."""
 
     source: GCodeSource
     reason: str
     line: int
+    tools: str
 
 
 def program_inputs(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
-    """File, dialect and text."""
-    inputs.upload(
-        "Program file",
-        "toolpath.file",
-        take_program,
-        most_MB=PROGRAM.most_MB,
-        look=inputs.Look(hint=f"Endings {', '.join(SUFFIXES)}, upper or lower case."),
-        fresh=session.store().revision,
-    )
-    reading.reading_inputs(_accept, _refuse)
-    refused: Refused | None = session.kept(REFUSED)
-    if refused is not None:
-        _show_refused(refused, dark)
+    """Dialect and text."""
+    if session.kept(REFUSED) is not None:
         return
     _dialect(source)
     if source.table or (path is not None and any(each.code == ROTARY_ASKED for each in path.findings)):
         inputs.choice("Rotary axis", "toolpath.rotary", ROTARY, source.table, _take_rotary, inputs.LISTED)
     _text(source, path, dark)
+
+
+def brought(dark: bool) -> None:
+    """A program that is being read, and one that was not taken: it is read again when the tool table is another."""
+    reading.reading_inputs(_accept, _refuse)
+    refused: Refused | None = session.kept(REFUSED)
+    if refused is None:
+        return
+    if refused.tools != _tools():
+        _try(refused.source)
+        st.rerun()
+    _show_refused(refused, dark)
+
+
+def _tools() -> str:
+    return digest(session.project().setup.tools)
 
 
 def _dialect(source: GCodeSource) -> None:
@@ -111,9 +117,18 @@ def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
 def take_program(data: bytes, name: str) -> None:
     """A dropped file: read at once, or beside the page where it is big. Raises the refusal of what is no program."""
     _leave()
-    if Path(name).suffix.lower() not in SUFFIXES:
-        raise ToolpathError(f"{name}: expected a program ending in {', '.join(SUFFIXES)} (any case).")
+    suffix = Path(name).suffix.lower()
+    if suffix and suffix not in SUFFIXES and not suffix[1:].isdigit():
+        raise ToolpathError(
+            f"{name}: expected a program ({', '.join(SUFFIXES)}, a number or no ending), points (.csv, .parquet) or a "
+            "drawing (.dxf, .svg)."
+        )
     source = program_from_bytes(data, name)
+    _try(source)
+
+
+def _try(source: GCodeSource) -> None:
+    _leave()
     session.keep(DROPPED, source)
     try:
         if reading.read(source):
@@ -132,14 +147,14 @@ def _accept(source: GCodeSource) -> None:
 
 
 def _refuse(source: GCodeSource, exc: RobomillError) -> None:
-    session.keep(REFUSED, Refused(source, str(exc), int(getattr(exc, "line", 0))))
+    session.keep(REFUSED, Refused(source, str(exc), int(getattr(exc, "line", 0)), _tools()))
 
 
 def _show_refused(refused: Refused, dark: bool) -> None:
     """A program that cannot be read is shown at the line that is at fault; the one before it stays in force."""
     pieces.error(f"{refused.source.name} was not taken. {refused.reason}")
     with st.container(horizontal=True, gap="small"):
-        long = len(refused.source.text) > EDITABLE_CHARACTERS
+        long = len(refused.source.text) > EDITABLE_CHARACTERS or session.project().setup.source.kind != "program"
         inputs.button("Mend it here", "toolpath.mend", "edit", _mend, refused, disabled=long)
         inputs.button("Leave it", "toolpath.leave", "close", _leave, type="tertiary")
     level = (Finding("error", refused.reason, refused.line),) if refused.line else ()

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from functools import partial
 
 import streamlit as st
 
@@ -9,6 +10,7 @@ from robomill.errors import RobomillError
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import beside, job, session
 from robomill.ui.job import Job
+from robomill.ui.toolpath.sources import read_with
 from robomill.units import format_percent
 
 KEY = "toolpath.reading"
@@ -19,10 +21,11 @@ ROUND = re.compile(r"\b(?:o\s*[\d<]|m\s*9[89]\b)", re.IGNORECASE)  # O words and
 def read(source: GCodeSource) -> bool:
     """Whether ``source`` was read: a big program, and one that may go round in loops, is begun beside the page. Raises
     its refusal."""
+    work = partial(read_with, source, session.project().setup.tools)
     if len(source.text) > BACKGROUND_CHARACTERS or ROUND.search(source.text) is not None:
-        job.begin(KEY, Job(source.read, source))
+        job.begin(KEY, Job(work, source))
         return False
-    source.read()
+    work()
     return True
 
 

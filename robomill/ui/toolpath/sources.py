@@ -1,5 +1,6 @@
 """Where the path comes from: switching between program, table of lines and sketch without losing the path."""
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
@@ -7,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import digest
-from robomill.errors import RobomillError, ToolpathError
+from robomill.cutting.tool_table import ToolTable
+from robomill.errors import GCodeError, RobomillError, ToolpathError
 from robomill.provenance import Provenance
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.stock import Stock
@@ -20,6 +22,7 @@ from robomill.ui.toolpath import program_view, question
 from robomill.units import format_count
 
 KINDS = {"program": "Program", "lines": "Table of lines", "sketch": "Sketch"}
+WHAT = {"program": "program", "points": "points", "sketch": "drawing", "lines": "table"}  # that somebody brought
 POINTS = {"points": "Points"}  # what a file brings and nobody can choose: it can be made one of the others
 MAX_ROWS = 200
 LEFT = "toolpath.left"  # set-ups whose path was turned into another kind, each with what it became, last ones last
@@ -44,25 +47,39 @@ def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) 
     if force is not None and force.kind in ("paper", "measured"):
         # What was measured on one cut is an assumption on another.
         provenance["force"] = replace(force.carried(setup.name), carried_from="")
-    more.setdefault("name", PurePath(source.name).stem if source.kind == "program" else "Drawn here")
+    named = source.kind in ("program", "points") or source.name != "sketch"
+    more.setdefault("name", PurePath(source.name).stem if named and source.kind != "lines" else "Drawn here")
     session.change(source=source, provenance=provenance, from_editor=from_editor, **more)
     program_view.select_line(0)
 
 
-def put_dropped(source: GCodeSource) -> None:
-    """Make a program that somebody brought the project's path. What was not stated by a person stands open until
-    somebody says that it holds for this program, too; a stock that does not hold it goes. Raises its refusal."""
+def put_dropped(source: PathSource) -> None:
+    """Make a program, points or a drawing that somebody brought the project's path. What was not stated by a person
+    stands open until somebody says that it holds for this path, too; a stock that does not hold it goes. Raises its
+    refusal."""
     setup = session.project().setup
     others = {name: said for name, said in setup.provenance.items() if name in STATED and said.kind != "user"}
     carried = {name: said.carried(setup.name) for name, said in others.items()}
     more: dict[str, Any] = {"engagement": True} if "force" in carried else {}
     stated = setup.provenance.get("stock")
     given = stated is None or stated.kind == "user"
-    if setup.stock is not None and not given and not _holds(setup.stock, source.read()):
+    if setup.stock is not None and not given and not _holds(setup.stock, read_with(source, setup.tools)):
         more["stock"] = None
         carried["stock"] = Provenance("computed", f"a block around the feed moves of {source.name}")
     question.forget()
-    put(source, f"program {source.name}", provenance=carried, **more)
+    put(source, f"{WHAT[source.kind]} {source.name}", provenance=carried, **more)
+
+
+def read_with(source: PathSource, tools: ToolTable) -> Toolpath:
+    """With the tool table; a tool that it lacks is asked for once the program is there."""
+    try:
+        return source.read(tools)
+    except GCodeError as exc:
+        if not tools:
+            raise
+        with suppress(GCodeError):
+            return source.read()
+        raise exc
 
 
 def _holds(stock: Stock, path: Toolpath) -> bool:

@@ -1,0 +1,189 @@
+"""A drawing on the toolpath page: its layers in a table, what is cut of each, and the sketch that this makes."""
+
+from pathlib import PurePath
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import streamlit as st
+
+from robomill.errors import ToolpathError, UnitAskedError
+from robomill.io.drawings import ASKED, drawing_from_bytes
+from robomill.quantities import quantities
+from robomill.toolpath.drawing import ORIGINS, SIDES, Drawing, LayerCut
+from robomill.toolpath.sketch import Sketch
+from robomill.toolpath.source import SketchSource
+from robomill.ui import declared, grid, inputs, pieces, session
+from robomill.ui.box import box_of
+from robomill.ui.toolpath.sources import put_dropped
+from robomill.units import format_count, format_many
+
+FILE, DRAWING, UNIT, ORIGIN, CUTS, OPEN = (
+    f"toolpath.drawing.{name}" for name in ("file", "read", "unit", "origin", "cuts", "open")
+)
+TABLE = "toolpath.drawing.layers"
+NUMBERS = ("depth", "step_down", "v_f")
+MOST_DRAWN = 20_000  # points of the small picture
+ROWS_HIGH = 260
+
+
+def take(data: bytes, name: str) -> None:
+    """A drawing that somebody brought: it is shown, and cut along when that is asked for. Raises its refusal."""
+    _forget()
+    session.keep(FILE, (data, name))
+    try:
+        _keep(drawing_from_bytes(data, name))
+    except UnitAskedError as exc:
+        session.keep(OPEN, str(exc))
+    except ToolpathError:
+        _forget()
+        raise
+
+
+def panel() -> None:
+    """The drawing, its layers and what is cut of them; what it does not say is asked for."""
+    drawing: Drawing | None = session.kept(DRAWING)
+    question: str | None = session.kept(OPEN)
+    if drawing is None and question is None:
+        return
+    with st.container(border=True, key="toolpath-drawing"):
+        pieces.strong(f"Drawing {session.kept(FILE)[1]}")
+        if question is not None:
+            pieces.said("warning", question, "straighten")
+        _unit(drawing)
+        if drawing is not None:
+            _layers(drawing)
+        with st.container(horizontal=True, gap="small"):
+            if drawing is not None:
+                inputs.button("Cut along it", "toolpath.drawing.cut", "content_cut", _cut, type="primary")
+            inputs.button("Put it away", "toolpath.drawing.leave", "close", _forget, type="tertiary")
+
+
+def _unit(drawing: Drawing | None) -> None:
+    """Asked for where the file is silent; a DXF may say it wrongly."""
+    name = session.kept(FILE)[1]
+    if drawing is not None and PurePath(name).suffix.lower() == ".svg" and not session.kept(UNIT):
+        return
+    current = session.kept(UNIT, "" if drawing is None else drawing.unit)
+    units = {unit: unit for unit in ASKED}
+    inputs.choice("Unit of the drawing", f"{UNIT}.choice", units, current, _take_unit, inputs.LISTED)
+
+
+def _layers(drawing: Drawing) -> None:
+    unit = session.project().view.length
+    low, high = drawing.extents
+    st.html(picture(drawing))
+    size = format_many(high - low, unit, 1, between=" × ")
+    pieces.note(f"{format_count(len(drawing.contours), 'line')} within {size}, drawn in {drawing.unit}.")
+    inputs.pick("Part zero", ORIGIN, ORIGINS, "drawing", inputs.LISTED)
+    boxes = {name: box_of(said, unit=declared.in_view(said.unit)) for name, said in _said().items()}
+    column = st.column_config
+    grid.table(
+        f"{TABLE}:{unit}",
+        lambda: cuts_frame(drawing, session.kept(CUTS)),
+        lambda frame: session.keep(CUTS, cuts_of(frame)),
+        grid.Sheet(
+            numbers=boxes,
+            heads={name: box.title for name, box in boxes.items()},
+            width=84,
+            columns={
+                "cut": column.CheckboxColumn("cut", width=38),
+                "layer": column.TextColumn("layer", width=84),
+                "lines": column.NumberColumn("lines", width=44),
+                "side": column.SelectboxColumn("side", options=list(SIDES), width=74),
+            },
+            locked=("layer", "lines"),
+            height=pieces.rows_high(len(drawing.layers), ROWS_HIGH),
+        ),
+    )
+    pieces.note(
+        "Beside a line by the radius of the cutter in force; inside and outside are climb milling. Passes are alike, "
+        "none deeper than the step down. The tool plunges straight down where a line begins."
+    )
+    for finding in drawing.findings:
+        pieces.note(finding.sentence)
+
+
+def _said() -> dict[str, Any]:
+    said = quantities(LayerCut)
+    return {name: said[name] for name in NUMBERS}
+
+
+def _take_unit(unit: str) -> None:
+    data, name = session.kept(FILE)
+    session.keep(UNIT, unit)
+    _keep(drawing_from_bytes(data, name, unit))
+
+
+def _keep(drawing: Drawing) -> None:
+    """What is cut at first: every layer that is on, on its lines, as deep and as fast as new shapes of the sketch."""
+    sketch = _base()
+    first = {
+        layer: (layer not in drawing.hidden, LayerCut(layer, sketch.depth, sketch.v_f)) for layer in drawing.layers
+    }
+    session.drop(OPEN)
+    session.keep(DRAWING, drawing)
+    session.keep(CUTS, first)
+
+
+def _base() -> Sketch:
+    """Whose plunge, clearance and spindle hold: the sketch in force, or a new one."""
+    source = session.project().setup.source
+    return source.sketch if source.kind == "sketch" else Sketch()
+
+
+def _cut() -> None:
+    drawing: Drawing = session.kept(DRAWING)
+    cuts = [cut for wanted, cut in session.kept(CUTS).values() if wanted]
+    if not cuts:
+        raise ToolpathError(f"{drawing.name}: no layer is to be cut; tick one.")
+    moved = drawing.moved(session.kept(ORIGIN, "drawing"))
+    sketch = moved.sketch(cuts, session.project().setup.cutter.diameter, sketch=_base())
+    put_dropped(SketchSource(sketch, PurePath(drawing.name).name))
+
+
+def _forget() -> None:
+    for name in (FILE, DRAWING, UNIT, ORIGIN, CUTS, OPEN):
+        session.drop(name)
+
+
+# ---- between the table on the page and the cuts --------------------------------------------------------------------
+
+
+def cuts_frame(drawing: Drawing, cuts: dict[str, tuple[bool, LayerCut]]) -> pd.DataFrame:
+    """One row a layer, numbers in SI."""
+    rows = [
+        (wanted, layer, len(drawing.of_layer(layer)), cut.side, cut.depth, cut.step_down, cut.v_f)
+        for layer, (wanted, cut) in cuts.items()
+    ]
+    return pd.DataFrame(rows, columns=["cut", "layer", "lines", "side", *NUMBERS])
+
+
+def cuts_of(frame: pd.DataFrame) -> dict[str, tuple[bool, LayerCut]]:
+    """The cuts by layer, each with whether it is wanted. Raises ToolpathError naming the layer."""
+    found = {}
+    for _, row in frame.iterrows():
+        given = {name: None if grid.empty(row[name]) else float(row[name]) for name in NUMBERS}
+        cut = LayerCut(str(row["layer"]), side=str(row["side"]), **given)  # type: ignore[arg-type]
+        found[cut.layer] = bool(row["cut"]), cut
+    return found
+
+
+def picture(drawing: Drawing) -> str:
+    """The lines, small, in the colour of the text."""
+    low, high = drawing.extents
+    size = np.maximum(high - low, 1e-9)
+    scale = 1000.0 / float(size.max())
+    chains = [contour.outline() for contour in drawing.contours]
+    every = 1 + sum(map(len, chains)) // MOST_DRAWN
+    paths = []
+    for chain in chains:
+        some = chain if every == 1 else np.vstack([chain[:-1:every], chain[-1:]])
+        x, y = ((some - [low[0], high[1]]) * [scale, -scale]).T
+        paths.append("M" + "L".join(f"{u:.1f} {v:.1f}" for u, v in zip(x, y, strict=True)))
+    wide, high_px = (float(value) * scale for value in size)
+    return (
+        f'<svg viewBox="-10 -10 {wide + 20:.1f} {high_px + 20:.1f}" width="100%" style="max-height:220px" role="img" '
+        f'aria-label="The lines of the drawing"><path d="{"".join(paths)}" fill="none" stroke="currentColor" '
+        'stroke-width="1.5" vector-effect="non-scaling-stroke"/></svg>'
+    )
