@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
-from robomill.errors import ToolpathError, UnitAskedError
+from robomill.errors import RobomillError, ToolpathError, UnitAskedError
 from robomill.io.drawings import ASKED, drawing_from_bytes
 from robomill.quantities import quantities
 from robomill.toolpath.drawing import ORIGINS, SIDES, Drawing, LayerCut
@@ -16,7 +16,7 @@ from robomill.toolpath.source import SketchSource
 from robomill.ui import declared, grid, inputs, pieces, session
 from robomill.ui.box import box_of
 from robomill.ui.toolpath.sources import put_dropped
-from robomill.units import format_count, format_many
+from robomill.units import format_count, format_many, unit_label
 
 FILE, DRAWING, UNIT, ORIGIN, CUTS, OPEN = (
     f"toolpath.drawing.{name}" for name in ("file", "read", "unit", "origin", "cuts", "open")
@@ -25,6 +25,8 @@ TABLE = "toolpath.drawing.layers"
 NUMBERS = ("depth", "step_down", "v_f")
 MOST_DRAWN = 20_000  # points of the small picture
 ROWS_HIGH = 260
+HEADS = {"depth": "depth", "step_down": "step", "v_f": "feed"}
+LINE = "#3b93bd"  # seen on light and dark
 
 
 def take(data: bytes, name: str) -> None:
@@ -72,7 +74,7 @@ def _unit(drawing: Drawing | None) -> None:
 def _layers(drawing: Drawing) -> None:
     unit = session.project().view.length
     low, high = drawing.extents
-    st.html(picture(drawing))
+    st.image(picture(drawing), width="stretch")
     size = format_many(high - low, unit, 1, between=" × ")
     pieces.note(f"{format_count(len(drawing.contours), 'line')} within {size}, drawn in {drawing.unit}.")
     inputs.pick("Part zero", ORIGIN, ORIGINS, "drawing", inputs.LISTED)
@@ -80,25 +82,25 @@ def _layers(drawing: Drawing) -> None:
     column = st.column_config
     grid.table(
         f"{TABLE}:{unit}",
-        lambda: cuts_frame(drawing, session.kept(CUTS)),
+        lambda: cuts_frame(session.kept(CUTS)),
         lambda frame: session.keep(CUTS, cuts_of(frame)),
         grid.Sheet(
             numbers=boxes,
-            heads={name: box.title for name, box in boxes.items()},
-            width=84,
+            heads=HEADS,
+            width={"depth": 52, "step_down": 48, "v_f": 52},
             columns={
                 "cut": column.CheckboxColumn("cut", width=38),
-                "layer": column.TextColumn("layer", width=84),
-                "lines": column.NumberColumn("lines", width=44),
-                "side": column.SelectboxColumn("side", options=list(SIDES), width=74),
+                "layer": column.TextColumn("layer", width=60),
+                "side": column.SelectboxColumn("side", options=list(SIDES), width=56),
             },
-            locked=("layer", "lines"),
+            locked=("layer",),
             height=pieces.rows_high(len(drawing.layers), ROWS_HIGH),
         ),
     )
     pieces.note(
-        "Beside a line by the radius of the cutter in force; inside and outside are climb milling. Passes are alike, "
-        "none deeper than the step down. The tool plunges straight down where a line begins."
+        f"Depth and step down in {unit_label(unit)}, feed in {boxes['v_f'].title.rpartition(', ')[2]}. Without a step "
+        "each line is cut in one pass; passes are alike, none deeper than the step. Beside a line by the radius of the "
+        "cutter in force; inside and outside are climb milling. The tool plunges straight down where a line begins."
     )
     for finding in drawing.findings:
         pieces.note(finding.sentence)
@@ -127,9 +129,15 @@ def _keep(drawing: Drawing) -> None:
 
 
 def _base() -> Sketch:
-    """Whose plunge, clearance and spindle hold: the sketch in force, or a new one."""
-    source = session.project().setup.source
-    return source.sketch if source.kind == "sketch" else Sketch()
+    """Whose plunge, clearance and spindle hold: the sketch in force, or a new one at the speed of the path so far."""
+    setup = session.project().setup
+    if setup.source.kind == "sketch":
+        return setup.source.sketch
+    try:
+        speeds = setup.toolpath.n_s
+    except RobomillError:
+        return Sketch()
+    return Sketch(n_s=float(np.nanmax(speeds, initial=0.0)))
 
 
 def _cut() -> None:
@@ -150,13 +158,10 @@ def _forget() -> None:
 # ---- between the table on the page and the cuts --------------------------------------------------------------------
 
 
-def cuts_frame(drawing: Drawing, cuts: dict[str, tuple[bool, LayerCut]]) -> pd.DataFrame:
+def cuts_frame(cuts: dict[str, tuple[bool, LayerCut]]) -> pd.DataFrame:
     """One row a layer, numbers in SI."""
-    rows = [
-        (wanted, layer, len(drawing.of_layer(layer)), cut.side, cut.depth, cut.step_down, cut.v_f)
-        for layer, (wanted, cut) in cuts.items()
-    ]
-    return pd.DataFrame(rows, columns=["cut", "layer", "lines", "side", *NUMBERS])
+    rows = [(wanted, layer, cut.side, cut.depth, cut.step_down, cut.v_f) for layer, (wanted, cut) in cuts.items()]
+    return pd.DataFrame(rows, columns=["cut", "layer", "side", *NUMBERS])
 
 
 def cuts_of(frame: pd.DataFrame) -> dict[str, tuple[bool, LayerCut]]:
@@ -170,7 +175,7 @@ def cuts_of(frame: pd.DataFrame) -> dict[str, tuple[bool, LayerCut]]:
 
 
 def picture(drawing: Drawing) -> str:
-    """The lines, small, in the colour of the text."""
+    """The lines, small, as an SVG of our own."""
     low, high = drawing.extents
     size = np.maximum(high - low, 1e-9)
     scale = 1000.0 / float(size.max())
@@ -183,7 +188,7 @@ def picture(drawing: Drawing) -> str:
         paths.append("M" + "L".join(f"{u:.1f} {v:.1f}" for u, v in zip(x, y, strict=True)))
     wide, high_px = (float(value) * scale for value in size)
     return (
-        f'<svg viewBox="-10 -10 {wide + 20:.1f} {high_px + 20:.1f}" width="100%" style="max-height:220px" role="img" '
-        f'aria-label="The lines of the drawing"><path d="{"".join(paths)}" fill="none" stroke="currentColor" '
-        'stroke-width="1.5" vector-effect="non-scaling-stroke"/></svg>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-10 -10 {wide + 20:.1f} {max(high_px, 1.0) + 20:.1f}">'
+        f'<path d="{"".join(paths)}" fill="none" stroke="{LINE}" stroke-width="1.5" '
+        'vector-effect="non-scaling-stroke"/></svg>'
     )
