@@ -1,32 +1,25 @@
-"""The robot: table, limits, tool and compliances, each editable; the arm, det(J) and C at a pose."""
-
-import dataclasses
+"""The robot: table, limits, tool and compliances, each editable; the arm, what pushes it and which joint gives."""
 
 import streamlit as st
 
 from robomill import ui
+from robomill.ui import push
 from robomill.ui.arm import arm
-from robomill.ui.point import FORCE
 from robomill.ui.robot import editors, pose
-from robomill.units import format_many, format_si
-from robomill.viz.arm import ArmScene
+from robomill.units import format_many, format_si, format_times
+from robomill.viz.arm import displacement_scale
 
 project = ui.begin("Robot")
 robot, view, dark = project.setup.robot, project.view, ui.dark()
-result = ui.attempt(ui.result, project.setup)
-theta = pose.configuration(project, result)
+cut = push.decided(ui.attempt(ui.result, project.setup))
+theta = pose.configuration(project, cut)
 now, old = pose.compared(project, theta)
-push = now.delta([0.0, FORCE, 0.0])
+moved, before = pose.moved(project, now, old, cut)
 
-ui.headline(
-    f"Robot · {robot.title or robot.name}",
-    f"At this pose {format_si(FORCE, 'N', 0)} along Y moves the tip {format_si(abs(push[1]), view.length, 3)} in Y "
-    f"and {format_si(abs(push[2]), view.length, 3)} in Z.",
-)
-tip = ui.Tile("Tip off its path", "not computed") if result is None else ui.tip_tile(result, view.length)
+ui.headline(f"Robot · {robot.title or robot.name}", moved.sentence(view.length), pose.lead(project, moved, cut))
 ui.tiles(
     [
-        dataclasses.replace(tip, label="Deviation of the tip in the cut"),
+        pose.tip_tile(moved, before, view.length),
         ui.Tile(
             "C_yy at this pose",
             format_si(now.component("yy"), view.of("um/N"), 3),
@@ -51,19 +44,20 @@ ui.tiles(
 left, right = ui.split([5, 9], "page", gap="medium")
 with left:
     editors.editors(project)
-    pose.controls(project, theta, result)
+    pose.controls(project, theta, cut)
 with right:
-    picture, numbers = ui.split([2.3, 1], "pose")
-    with picture, st.container(border=True):
+    with st.container(border=True):
         tip = format_many(now.T_MT[:3, 3], view.length, 1, with_unit=False)
-        caption = f"Tip at ({tip}) {view.length} in the robot frame {{M}}. Foot and tube sizes are for the eye only."
-        scene = ArmScene(
-            frames=now.frames,
-            joints=now.robot.joint_numbers,
-            ghost=pose.ghost(now, old),
-            aspect=0.9,
+        caption = (
+            f"Blue: {moved.push.words}. Orange: displacement, shown "
+            f"{format_times(displacement_scale(moved.delta, now.frames))}. Tip at ({tip}) {view.length} in the robot "
+            "frame {M}; foot and tube sizes are for the eye only."
         )
-        arm(scene, "robot-arm", (caption, f"The arm at the chosen joint angles, its tip at {tip} {view.length}."), 500)
+        said = f"The arm at the chosen joint angles, its tip at {tip} {view.length}. {moved.sentence(view.length)}"
+        arm(pose.scene(now, old, moved, view.length), "robot-arm", (caption, said), 400)
+    shares, numbers = ui.split([1.25, 1], "pose")
+    with shares:
+        push.choice()
+        pose.share_bars(moved, dark)
     with numbers:
         pose.compliance_matrix(now, old)
-        pose.share_bars(now, dark)

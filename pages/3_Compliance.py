@@ -4,10 +4,8 @@ import streamlit as st
 
 from robomill import ui
 from robomill.improve.sensitivity import stiffened
-from robomill.ui import fields, session
-from robomill.ui.cut import middle_of_cut
+from robomill.ui import fields, push, running, session
 from robomill.ui.maps import compliance, plane, point, sheets
-from robomill.ui.point import default_point, in_hand
 
 project = ui.begin("Compliance")
 robot, unit = project.setup.robot, project.view.length
@@ -28,12 +26,17 @@ if box is None or known is None:
 
 factors = view.stiffening(robot)
 now = fields.stiffer(known, factors)
-here = default_point(view, box, known, middle_of_cut(project.setup))
-old = in_hand(robot, here, view.A, view.B).pose
-found = in_hand(stiffened(robot, factors), here, view.A, view.B)
+cut = push.decided(running.quiet(project.setup))
+here, at_cut = push.selected(view, box, known, cut)
+found, old = here.with_robot(stiffened(robot, factors)), here.pose
+pushed = push.in_force(project.view, cut)
+of_cut = cut is not None and not pushed.axis
+moved = push.Moved.at(found.pose, pushed)
+if cut is not None and of_cut and at_cut:
+    moved = cut.moved.stiffer(factors)
 
-ui.headline(title, point.headline(found, unit))
-saved = compliance.saved_by(found, compliance.quiet_result(project), view)
+ui.headline(title, point.headline(found, moved, unit), point.lead(found, moved, cut, at_cut, unit))
+saved = compliance.saved_by(cut.moved.stiffer(factors), cut.line) if cut and of_cut else compliance.saved_by(moved, 0)
 ui.tiles(compliance.tiles(found, old, now, known, saved, view))
 
 left, right = ui.split([1, 2.7], "page")
@@ -41,7 +44,11 @@ with left:
     compliance.controls(robot, view, found)
     compliance.what_if(robot, view)
 with right, st.container(border=True):
-    sheets.picture(found, old)
-    compliance.best_joint(found, saved, view)
+    sheets.picture(found)
+    shares, gains = ui.split([1, 1.2], "joints", gap="medium")
+    with shares:
+        point.bars(found, old, unit)
+    with gains:
+        compliance.best_joint(robot.joint_numbers, saved)
 
-point.show(found, old, view.component, unit)
+point.show(found, old, moved, view.component, unit)

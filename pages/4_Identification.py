@@ -21,9 +21,12 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
         result = None if tests is None else pieces.underway(fit_of, kept, robot)
     except RobomillError as exc:
         refusal = exc
-    kicker = f"Identification · {kept.title}"
+    made = "measured" if tests is None else tests.provenance.kind
+    kicker = f"Identification · {kept.title}" + " · synthetic example" * (made == "synthetic")
     with top:
-        ui.headline(kicker, words.title(result) if result else "Nothing can be identified from these load tests yet.")
+        ui.headline(
+            kicker, words.title(result, made) if result else "Nothing can be identified from these load tests yet."
+        )
     if result is not None:
         ui.tiles(words.tiles(result, view.joint_unit, cut.cut_tile(kept, robot, result, view.length), view.length))
     left, right = ui.split([1, 2.3], "steps", gap="large")
@@ -40,7 +43,8 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
             st.info("Mend what is named beside; your rows are kept as they are.", icon=":material/arrow_back:")
         if result is None:
             return
-        view_name = inputs.choose("view", inputs.VIEWS)
+        with_points = points.says_something(kept, robot, result)
+        view_name = inputs.choose("view", {k: v for k, v in inputs.VIEWS.items() if with_points or k != "points"})
         if view_name == "compliances":
             results.compliances(result, robot, view.joint_unit, dark)
         elif view_name == "residuals":

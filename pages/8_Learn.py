@@ -8,10 +8,10 @@ from robomill.ui.learn import edge, lesson, mathematics
 project = ui.begin("Learn")
 robot = project.setup.robot
 
-ui.note(
-    f"Why does a robot bend sideways? A lesson with {robot.title or robot.name}; one question, one picture, one reason."
-)
-found = ui.attempt(lesson.stand, robot)
+stood = ui.attempt(lesson.stand, project)
+where = f" The arm stands {stood[1]}." if stood is not None and stood[0].pose.reached else ""
+ui.note(f"Why does a robot not go where it is pushed? A lesson with {robot.title or robot.name}.{where}")
+found = None if stood is None else stood[0]
 if found is None or not found.pose.reached:
     ui.note(
         "This robot reaches nothing with its tool vertical, so there is no pose to ask about. Choose another robot."

@@ -116,10 +116,6 @@ class PoseReport:
         """(n,) m/N: the joints' shares of C_ab, which add up to it."""
         return self.C_joint[(slice(None), *_indices(name))]
 
-    def gives_most(self, name: str) -> int:
-        """Number (as in the robot's table) of the joint with the largest share of C_ab."""
-        return self.robot.joint_numbers[int(np.argmax(np.abs(self.shares(name))))]
-
     def delta(self, F: ArrayLike) -> FloatArray:
         """(3,) m in {M}: the tip displacement under F (3,) N on the tool, C F. Eq. (16)."""
         return displacement(self.C, F)

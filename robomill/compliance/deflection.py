@@ -45,6 +45,15 @@ def displacement(C: FloatArray, F: ArrayLike) -> FloatArray:
     return np.einsum("...ij,...j->...i", C, np.asarray(F, dtype=np.float64))
 
 
+def shares_along(delta_joint: FloatArray, delta: FloatArray) -> FloatArray:
+    """(n,) share of each part delta_joint (n, 3) in the displacement delta (3,): its component along it, over its size.
+
+    They sum to 1 where the parts are all that gives; zero where nothing is displaced.
+    """
+    size = float(np.linalg.norm(delta)) or 1.0
+    return np.asarray(delta_joint @ delta / size**2)
+
+
 def soft_direction(C: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """(values (..., 3) m/N ascending, axes (..., 3, 3) as columns): the principal compliances of C (..., 3, 3).
 

@@ -116,7 +116,7 @@ def sentence(fit: Fit, parameters: tuple[Parameter, ...], share: FloatArray, k: 
             f"{name} cannot be told from {other}: at these poses both move the tool alike {said}, "
             "so only a mix of the two is known; measure where they move it differently."
         )
-    known = f"is known to ±{format_percent(half)}" if half < 1.0 else "cannot be told from a rigid one"
+    known = f"is known to ± {format_percent(half)}" if half < 1.0 else "cannot be told from a rigid one"
     text = f"{name} {known}: it makes {part} of the measured displacement"
     if alike >= 0.3:
         text += f", and here it moves the tool much as {other} does {said}"

@@ -1,4 +1,4 @@
-"""What stiffer joints would buy: at a point, along a path, over a box.
+"""What stiffer joints would buy: at a point, or along a path.
 
 Compliance is linear in the joint compliances, so a stiffer joint scales its own share and leaves the rest: nothing has
 to be computed again, and the answers are exact, not estimates.
@@ -57,20 +57,6 @@ def scaled_shares(shares: ArrayLike, factors: ArrayLike, axis: int) -> FloatArra
     shape = [1] * shares.ndim
     shape[axis] = -1
     return shares / _above_zero(factors, (shares.shape[axis],)).reshape(shape)
-
-
-def compliance_sensitivity(
-    C_joint: ArrayLike, component: str = "yy", joint_numbers: tuple[int, ...] = ()
-) -> Sensitivity:
-    """What a stiffer joint takes off |C_ab|, for C_joint (..., n, 3, 3) m/N at a point or over a grid.
-
-    ``component`` is two of x, y, z. NaN cells (not reached) stay NaN and are left out of the ranking.
-    """
-    C_joint = as_floats(C_joint, "C_joint", (None, 3, 3), error=KinematicsError, finite=False)
-    if len(component) != 2 or any(c not in "xyz" for c in component):
-        raise KinematicsError(f"component {component!r}: expected two of x, y, z, such as 'yy'.")
-    parts = C_joint[..., "xyz".index(component[0]), "xyz".index(component[1])]
-    return _sensitivity(parts[..., None], joint_numbers)
 
 
 def deflection_sensitivity(delta_joint: ArrayLike, joint_numbers: tuple[int, ...] = ()) -> Sensitivity:

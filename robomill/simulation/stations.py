@@ -1,9 +1,10 @@
-"""What holds at a station of a run (m of length cut) and of the whole cut: samples, places, straightness, shares."""
+"""What holds at a station of a run (m of length cut) and of the whole cut: samples, places, straightness."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, IntArray
+from robomill.compliance.deflection import shares_along
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread, alloy_spread
 from robomill.surface.metrology import GrooveProfile
@@ -34,12 +35,8 @@ def place_at(path: Toolpath, station: float) -> tuple[FloatArray, FloatArray]:
 
 
 def joint_shares(result: SimulationResult, i: int) -> FloatArray:
-    """(n,) share of each joint in the deviation at sample i: its deflection's part along the deviation, over its size.
-
-    They sum to 1 where nothing beside the joints gives; zero where nothing is deflected.
-    """
-    size = float(np.linalg.norm(result.delta[i])) or 1.0
-    return np.asarray(result.delta_joint[i] @ result.delta[i] / size**2)
+    """(n,) share of each joint in the deviation at sample i; they sum to 1 where nothing beside the joints gives."""
+    return shares_along(result.delta_joint[i], result.delta[i])
 
 
 def force_components(result: SimulationResult, spread: AlloySpread) -> FloatArray:

@@ -12,11 +12,10 @@ from robomill.paper import SLOT, Point
 from robomill.robot.model import Robot
 from robomill.ui import pieces, session
 from robomill.ui.project import MapView
-from robomill.units import format_si, unit_label
+from robomill.units import format_many, format_si, unit_label
 from robomill.workspace.fields import ComplianceMap
 from robomill.workspace.reach import ReachBox
 
-FORCE = SLOT.force  # N
 SLACK = 1e-6  # m
 
 
@@ -28,11 +27,20 @@ class InHand:
     pose: PoseReport
     reason: str
 
+    def with_robot(self, robot: Robot) -> "InHand":
+        """The same with an arm whose joints give otherwise: it stands as it stood."""
+        return InHand(self.point, at_pose(robot, self.pose.theta), self.reason)
+
 
 def in_hand(robot: Robot, point: Point, A: float, B: float) -> InHand:
     """The tool brought to ``point`` at the tilt A, B (rad)."""
     found = inverse_kinematics(robot, pose_from_world([*point, A, B]))
     return InHand(point, at_pose(robot, found.theta), found.reason())
+
+
+def place(point: Point, unit: str) -> str:
+    """``(0, -1300, 0) mm``."""
+    return f"({format_many(point, unit, 0, with_unit=False)}) {unit_label(unit)}"
 
 
 def compliance_matrix(pose: PoseReport) -> None:
@@ -48,14 +56,18 @@ def middle(box: ReachBox) -> Point:
     return x, y, z
 
 
+def holds(box: ReachBox, point: Point) -> bool:
+    """Whether a region has ``point``."""
+    return bool(((box.lower - SLACK <= point) & (point <= box.upper + SLACK)).all())
+
+
 def default_point(view: MapView, box: ReachBox, known: ComplianceMap, cut: Point | None = None) -> Point:
     """The selected point: as clicked, else the middle of the project's ``cut`` where the region holds it and the arm
     gets there, else the paper's milling test, else the reached cell nearest the middle."""
     if view.point is not None:
         x, y, z = view.point.tolist()
         return x, y, z
-    inside = cut is not None and ((box.lower - SLACK <= cut) & (cut <= box.upper + SLACK)).all()
-    if cut is not None and inside and in_hand(known.robot, cut, view.A, view.B).pose.reached:
+    if cut is not None and holds(box, cut) and in_hand(known.robot, cut, view.A, view.B).pose.reached:
         return cut
     if view.region == "paper" and view.A == view.B == 0:
         return SLOT.point

@@ -56,6 +56,11 @@ class View:
     station: float = number("Station", least=0.0, most=1.0, default=0.5)
     camera: str = choice("Camera", CAMERAS, default="iso")
     share_axis: str = choice("Shares of", {axis: f"in {axis.upper()}" for axis in "xyz"}, default="y")
+    push: str = choice(
+        "Force on the tool",
+        {"cut": "As in this cut", **{axis: f"100 N along {axis.upper()}" for axis in "xyz"}},
+        default="cut",
+    )
     theta: FloatArray | None = number("Joint angles", shape=(None,), optional=True)
 
     def __post_init__(self) -> None:
@@ -119,7 +124,7 @@ class MapView:
         },
         default="nine",
     )
-    component: str = choice("Component to compare", {c: f"C_{c}" for c in COMPONENTS}, default="yy")
+    component: str = choice("Component", {c: f"C_{c}" for c in COMPONENTS}, default="yy")
     one: str = "C_soft"
     shares: str = choice("Components", {"direct": "Direct terms", "cross": "Cross terms"}, default="direct")
     common: bool = switch("One scale for all nine maps", default=False)

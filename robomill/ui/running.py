@@ -101,6 +101,15 @@ def there(setup: SimulationSetup) -> bool:
     return cached.held(setup) is not None or run_seconds(setup) <= SHORT_S
 
 
+def quiet(setup: SimulationSetup) -> SimulationResult | None:
+    """The run of ``setup``, or None where it is refused or not there yet: for what works without one."""
+    try:
+        path_of(setup)
+        return cached.result(setup) if there(setup) else None
+    except (RobomillError, Underway):
+        return None
+
+
 def shown(setup: SimulationSetup) -> SimulationResult | None:
     """What ``result`` has answered, for a part of the page that is run by itself."""
     return cached.held(setup) or before(setup)

@@ -171,6 +171,7 @@ def sheet_data(sheet: PlaneSheet, *, dark: bool) -> dict[str, Any]:
         "columns": max(len(row) for row in sheet.rows),
         "outlines": [{"kind": kind, "points": np.round(points, 4).tolist()} for kind, points in sheet.outlines],
         "colours": {name: getattr(palette(dark), name) for name in ("text", "muted", "line", "background", "accent")},
+        "most": sheet.most,
         "height": _height(sheet, ranges),
     }
     data["rev"] = digest((repr(data), [codes.digest for codes in kept.values()]))[:24]

@@ -1,12 +1,13 @@
 """Joint shares as bars, what stiffer joints buy, and the deviation along the six lines of the paper's Fig. 8."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.units import format_number, format_significant
+from robomill.units import format_number
 from robomill.viz.chart import Chart, Trace
 from robomill.viz.theme import ABOVE, axis, figure, joint_colours, palette, say
 
@@ -77,8 +78,9 @@ def _marks(name: str, names: Sequence[str], values: FloatArray, colour: str, uni
 
 
 def _amount(value: float, top: float, unit: str) -> str:
-    """Three digits, of a share whole per cent; what is a thousandth of the largest or less is none."""
-    text = format_number(value, 0) if unit == "%" else format_significant(value, 3)
+    """With as many decimals as give the largest three digits, of a share whole per cent; what is a thousandth of the
+    largest or less is none."""
+    text = format_number(value, 0 if unit == "%" else max(0, 2 - math.floor(math.log10(top))))
     return "0" if abs(value) <= 1e-3 * top or text == "0" else f"{text} {unit}"
 
 
@@ -105,7 +107,8 @@ def gain_bars(title: str, gain: FloatArray, unit: str, joints: Sequence[int], *,
     fig.layout["xaxis"] = axis(unit, dark=dark, nticks=6, range=span, automargin=False)
     fig.layout["xaxis"]["title"]["standoff"] = 6
     fig.layout["yaxis"] = axis("", dark=dark, autorange="reversed", ticks="", automargin=False) | {"title": None}
-    say(fig, f"<b>{title}</b>", 0.0, 1.0, p.text, size=13, yshift=2, align="left", **ABOVE)
+    if title:
+        say(fig, f"<b>{title}</b>", 0.0, 1.0, p.text, size=13, yshift=2, align="left", **ABOVE)
     return fig
 
 

@@ -154,7 +154,7 @@ def test_the_sentence_says_how_well_how_much_and_why():
     for k in range(3):
         assert diagnostics.half_share(fit, k) == pytest.approx(half[k])
         said = explained(system, fit, k)
-        assert f"Joint {k + 1} is known to ±{100 * half[k]:.0f} %" in said
+        assert f"Joint {k + 1} is known to ± {100 * half[k]:.0f} %" in said
         share = 100 * diagnostics.shares(system, fit.x)[k]
         assert f"it makes {share:.0f} % of the measured displacement" in said
         assert "correlation" not in said

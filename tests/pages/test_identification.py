@@ -83,12 +83,15 @@ def click(page: AppTest, key: str) -> AppTest:
 def test_it_opens_with_a_finished_result(page: AppTest) -> None:
     assert not page.exception
     shown = html(page)
-    assert "These tests predict poses they have not seen to 1.0 %; joint 4 is the least certain, to ± 53 %." in shown
+    assert (
+        "These synthetic tests predict poses they have not seen to 1.0 %; joint 4 is the least certain, to ± 53 %."
+        in shown
+    )
     assert "cross-validated; 0.9 % on the data it was fitted to" in shown
     assert "15.72 to 50.99 ×10⁻⁷ rad/(N m)" in shown
     assert "0.292 ± 0.003" in shown  # 2 x 4 um of each reading at 250 N, by 100 N
     assert "synthetic" in shown
-    assert any("Joint 4 is known to ±53 %" in i.value for i in page.info)
+    assert any("Joint 4 is known to ± 53 %" in i.value for i in page.info)
     assert len(page.get("plotly_chart")) == 2
 
 

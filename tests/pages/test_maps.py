@@ -13,13 +13,16 @@ from random_arms import seven
 from streamlit.testing.v1 import AppTest
 
 import robomill as rm
+from robomill.cutting.forces import model_of
+from robomill.io.materials import sample_materials
 from robomill.io.robots import load_robot
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.ui.project import MapView
+from robomill.toolpath.source import GCodeSource
+from robomill.ui.project import MapView, preset_setup
 from robomill.workspace.quantities import map_quantities, map_quantity
 
-WORKSPACE, COMPLIANCE, LEARN = "2_Workspace", "3_Compliance", "8_Learn"
+ROBOT, WORKSPACE, COMPLIANCE, LEARN = "1_Robot", "2_Workspace", "3_Compliance", "8_Learn"
 
 
 def put(app: AppTest, robot: Robot) -> None:
@@ -88,7 +91,10 @@ def test_two_planes_are_those_of_fig_4_on_one_scale(app: AppTest) -> None:
 def test_the_box_stands_beside_the_papers(app: AppTest) -> None:
     go(app, WORKSPACE)
     assert "1200 × 600 × 500 mm" in words(app)
-    assert "has room for a box of the reference" in words(app)
+    said = words(app)
+    assert "has room for a box of the reference&#x27;s size, not where that stands" in said, "it ends at Y = -1537"
+    assert "100 × 0 × 0 mm" in said
+    assert "from (−50, −1300, 0), all reached" in said
 
 
 @pytest.mark.parametrize("sheet", quantities(MapView)["sheet"].options)
@@ -104,7 +110,8 @@ def test_compliance_sheets(app: AppTest, sheet: str) -> None:
 def test_the_milling_point_in_words(app: AppTest) -> None:
     go(app, COMPLIANCE)
     said = words(app)
-    assert "100 N along Y moves the tip 0.230 mm in Y and 0.102 mm down, most of it by joint 3." in said
+    assert "100 N on the tool moves the tip by +0.230 mm in Y, −0.102 mm in Z." in said
+    assert "It comes from joint 3 (70 %) and joint 5 (30 %). At line 7 of the cut, which decides its verdict" in said
     assert "2.295" in said
     assert "1.134" in said
 
@@ -259,10 +266,14 @@ def test_a_region_of_ones_own_is_typed_in_the_unit_of_lengths(app: AppTest) -> N
 def test_another_robot_is_looked_at_where_the_project_cuts(app: AppTest, name: str) -> None:
     """The paper's cut lies at (0, -1300, 0) mm; the largest box of these arms is elsewhere, behind a KUKA's back."""
     put(app, load_robot(name))
+    result = rm.simulate(store(app).project.setup)
+    deciding = result.verdict.deciding
+    assert deciding is not None
+    x, y, z = result.setup.in_base(result.path.p[deciding[1].worst]) * 1e3
     go(app, COMPLIANCE)
-    assert "At the selected point (0, −1300, 0) mm" in [s.value for s in app.subheader]
+    assert f"At the selected point ({x:.0f}, {y:.0f}, {z:.0f}) mm".replace("-", "−") in [s.value for s in app.subheader]
     shown = board(app)
-    assert shown["point"] == [0.0, -1300.0, 0.0]
+    assert shown["point"] == pytest.approx([x, y, z], abs=0.01)
     assert shown["u"]["span"][0] < 0.0 < shown["u"]["span"][1]
     assert shown["v"]["span"][0] < -1300.0 < shown["v"]["span"][1]
     cuts = [line["points"] for line in shown["outlines"] if line["kind"] == "cut"]
@@ -277,6 +288,55 @@ def test_what_a_stiffer_joint_saves_is_what_the_cut_simulated_anew_saves(app: Ap
     stiffer[2] /= 1.1
     after = rm.simulate(setup.replace(robot=setup.robot.replace(C_theta=stiffer))).max_deviation
     saved = (rm.simulate(setup).max_deviation - after) * 1e6
-    chart = next(c for c in charts(app) if "saves" in str(c["layout"]))
-    assert chart["data"][0]["y"][0] == "joint 3"  # type: ignore[index]
-    assert f"10 % stiffer saves {saved:.3g} µm of this cut" in words(app)
+    chart = next(c for c in charts(app) if c["data"][0].get("y", [""])[0] == "joint 3")  # type: ignore[index]
+    assert chart["data"][0]["text"][0] == f"{saved:.1f} µm"  # type: ignore[index]
+    assert "of the 0.251 mm of this cut at line 7" in words(app)
+    assert f"10 % stiffer saves {saved:.1f} µm of this cut at line 7" in words(app)
+
+
+@pytest.fixture(scope="module")
+def pocket() -> rm.SimulationSetup:
+    """A rectangular pocket cut with a force from the material: its verdict is decided far from the paper's place."""
+    base = preset_setup("paper_flute")
+    text = "G21 G90 S12000 M3\nG0 X-20 Y-10 Z5\nG1 Z-3 F600\nG1 X20 F1800\nG1 Y10\nG1 X-20\nG1 Y-10\nG0 Z5\nM2\n"
+    row = next(row for row in sample_materials() if "7075" in row.title)
+    force = model_of(row)(cutter=base.cutter, material=row)
+    return base.replace(source=GCodeSource(text, "pocket.ngc"), force=force, engagement=True, stock=None)
+
+
+def test_every_page_names_the_joint_and_the_force_of_the_place_that_decides(
+    app: AppTest, pocket: rm.SimulationSetup
+) -> None:
+    """Force, displacement and joint by the run itself; Start, Robot and Compliance say them in the same words."""
+    kept = store(app)
+    kept.project = kept.project.replace(setup=pocket)
+    result = rm.simulate(pocket)
+    deciding = result.verdict.deciding
+    assert deciding is not None
+    i = deciding[1].worst
+    F, delta = result.F[i], result.delta[i]
+    share = result.delta_joint[i] @ delta / (delta @ delta)
+    best = int(np.argmax(share)) + 1
+    said = f"{np.linalg.norm(F):.0f} N on the tool moves the tip by "
+    where = f"line {result.path.block[i]} of the cut, which decides its verdict"
+    assert abs(F[1]) < 0.95 * np.linalg.norm(F), "not the paper's push along Y"
+    for page in ("app", ROBOT, COMPLIANCE):
+        shown = words(go(app, page))
+        assert not app.exception
+        assert said in shown
+        assert f"comes from joint {best} ({100 * share[best - 1]:.0f} %)" in shown
+        assert page == "app" or where in shown
+        assert "along Y moves" not in shown
+    assert f'<div class="rm-value">joint {best}</div>' in shown
+    theta = number(go(app, ROBOT), "pose.box.1:deg").value
+    assert theta == pytest.approx(np.degrees(result.theta[i, 1]), abs=5e-4)
+
+
+def test_a_push_along_an_axis_is_chosen(app: AppTest, pocket: rm.SimulationSetup) -> None:
+    kept = store(app)
+    kept.project = kept.project.replace(setup=pocket)
+    go(app, ROBOT)
+    app.selectbox(key="view.push").set_value("x").run()
+    assert "100 N along X moves the tip by " in words(app)
+    assert "100 N along X moves the tip by " in words(go(app, COMPLIANCE))
+    assert not store(app).past, "looking is no step to undo"

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
+from robomill.errors import RobomillError
 from robomill.identification.found_points import TITLES, FoundPoint
 from robomill.identification.lines_of_pull import LinesOfPull
 from robomill.identification.pull_words import pull_report
@@ -13,10 +14,27 @@ from robomill.robot.model import Robot
 from robomill.ui import inputs, pieces
 from robomill.ui.bench import Bench
 from robomill.ui.identification.bench import decided, lines_of, used_tests
+from robomill.ui.job import Underway
 from robomill.units import format_many, format_si, from_si, unit_label
 from robomill.viz.identification import gaps_figure
 
 ICONS = {"suspicious": "visibility", "info": "info"}
+
+
+def says_something(bench: Bench, robot: Robot, result: IdentificationResult) -> bool:
+    """Whether there is more to see of the points than that the tests tell nothing of them."""
+    if result.points:
+        return True
+    tests = used_tests(bench, robot)
+    if tests is None:
+        return False
+    try:
+        lines = lines_of(bench, robot)
+    except (RobomillError, Underway):
+        return True  # the page says which
+    if lines is None:
+        return True
+    return bool(len(lines.pulley)) or pull_report(lines, robot, tests, result)[0] is not None
 
 
 def points(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:

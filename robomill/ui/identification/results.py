@@ -56,10 +56,12 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
         st.markdown("**Compliances found**")
         _table(result, robot, joint_unit)
         before, after = result.condition
-        pieces.note(
-            f"Condition number {format_number(before, 0)} as measured, {format_number(after, 1)} after scaling the "
-            f"columns. One reading is good to {_noise(result)} by the residuals; {result.dof:,} equations to spare."
-        )
+        pieces.note(f"One reading is good to {_noise(result)} by the residuals; {result.dof:,} equations to spare.")
+        with st.expander("For those who fit"):
+            pieces.note(
+                f"Condition number {format_number(before, 0)} as measured, {format_number(after, 1)} after scaling "
+                "the columns."
+            )
 
 
 def _scale(logarithmic: bool) -> str:
@@ -113,10 +115,10 @@ def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
 
 def residuals(bench: Bench, result: IdentificationResult, dark: bool) -> None:
     """Residual of each test, what does not fit, and the click that leaves it out."""
-    length = "mrad" if result.single else "mm"
-    options = {length: f"in {length}", "%": "in % of the test"}
+    length = "mrad" if result.single else session.project().view.of("um")
+    options = {length: f"in {unit_label(length)}", "%": "in % of the test"}
     with st.container(border=True):
-        picked = inputs.pick("Residuals", "identification.residual", options, look=inputs.HIDDEN)
+        picked = inputs.pick("Residuals", f"identification.residual.{length}", options, look=inputs.HIDDEN)
         if picked == "%":
             with np.errstate(invalid="ignore", divide="ignore"):
                 size = words.sizes(result)[:, None]
@@ -126,10 +128,10 @@ def residuals(bench: Bench, result: IdentificationResult, dark: bool) -> None:
         odd = np.isin(result.row, [o.row for o in result.outliers])
         note = f"Drawn: at most 3,000 of {len(result.row):,} tests. " if len(result.row) > 3000 else ""
         pieces.figure(
-            residuals_figure(result.row, drawn, odd, picked, result.components, dark=dark),
+            residuals_figure(result.row, drawn, odd, unit_label(picked), result.components, dark=dark),
             f"ident-residuals-{picked}",
             name="residuals",
-            table=lambda: words.residual_columns(result),
+            table=lambda: words.residual_columns(result, length),
             caption=note + "One symbol a component. Ringed: further off than chance allows once in 100 data sets.",
             alt="Measured minus predicted displacement of each test.",
         )

@@ -121,9 +121,9 @@ def parameter_columns(result: IdentificationResult, robot: Robot, joint_unit: st
     return columns
 
 
-def residual_columns(result: IdentificationResult) -> dict[str, Any]:
-    """One row a test: residual by component (mm; mrad for single joints), its size, its share, times off."""
-    unit = "mrad" if result.single else "mm"
+def residual_columns(result: IdentificationResult, unit: str = "mm") -> dict[str, Any]:
+    """One row a test: residual by component (in ``unit``; mrad for single joints), its size, its share, times off."""
+    unit = "mrad" if result.single else unit
     flagged = {o.row: o.times for o in result.outliers}
     columns: dict[str, Any] = {"row": result.row}
     for name, values in zip(result.components, result.residual.T, strict=True):
@@ -161,12 +161,13 @@ def within(half: float) -> str:
     return f"± {format_percent(half)}" if np.isfinite(half) else "not seen"
 
 
-def title(result: IdentificationResult) -> str:
-    """The page's one sentence."""
+def title(result: IdentificationResult, made: str = "measured") -> str:
+    """The page's one sentence; ``made`` says whether anybody has measured these tests."""
     cv = result.cv_relative_error
     what = "readings" if result.single else "poses"
+    these = "These synthetic tests" if made == "synthetic" else "These tests"
     said = (
-        f"These tests predict {what} they have not seen to {format_si(cv, '%', 1)}"
+        f"{these} predict {what} they have not seen to {format_si(cv, '%', 1)}"
         if np.isfinite(cv)
         else f"There are too few {what} to leave any out"
     )

@@ -11,7 +11,8 @@ from robomill.ui import fields, inputs, pieces, session, shell
 from robomill.ui.arm import arm
 from robomill.ui.cached import shared
 from robomill.ui.learn import lesson
-from robomill.ui.point import FORCE, InHand, in_hand
+from robomill.ui.point import InHand, in_hand
+from robomill.ui.push import FORCE
 from robomill.units import format_si, format_times, format_value, from_si, split_unit, unit_label
 from robomill.viz import solids
 from robomill.viz.arm import ArmScene
@@ -67,9 +68,11 @@ def _stretch(found: InHand, here: InHand, way: Ray) -> None:
 
     def finish(fig: Chart, dark: bool) -> None:
         fig.add_traces(ellipsoid_traces(pose.C, pose.T_MT[:3, 3], times, dark=dark, width=0.005 * yardstick))
-        low, high = way.p.min(axis=0) - 0.12 * yardstick, way.p.max(axis=0) + 0.12 * yardstick
-        widen(fig, low, high, room=2.6)
-        fig.lay_out(scene={"camera": lesson.SIDE})
+        # The box holds the body where it is longest, so that nothing of it is cut off.
+        longest = 1.2 * times * float(soft_direction(cartesian_compliance(pose.robot, way.theta))[0].max())
+        widen(fig, way.p.min(axis=0) - longest, way.p.max(axis=0) + longest, room=2.6)
+        bare = {f"{axis}axis": {"visible": False} for axis in "xyz"}
+        fig.lay_out(scene={"camera": lesson.SIDE, **bare})
 
     grown = format_times(times / FORCE)
     push = format_si(FORCE, "N", 0)

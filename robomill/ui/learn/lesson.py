@@ -17,10 +17,11 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.deflection import displacement
-from robomill.robot.model import Robot
-from robomill.ui import fields, inputs, pieces, session
+from robomill.ui import fields, inputs, pieces, push, running, session
 from robomill.ui.arm import arm
-from robomill.ui.point import FORCE, InHand, default_point, in_hand
+from robomill.ui.point import InHand, default_point, in_hand, place
+from robomill.ui.project import Project
+from robomill.ui.push import FORCE
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, displacement_scale
 
@@ -28,7 +29,7 @@ KEPT = "learn.lesson"
 PUSH = format_si(FORCE, "N", 0)
 ALIGHT = 5e-9  # m/N: what is less reads 0.00 um/N
 ASIDE = 0.02  # share of the displacement that counts as going somewhere
-HEIGHT, ASPECT = 380, 0.85  # of the picture: whole, too, in the column of a window of 900 px
+HEIGHT, ASPECT = 380, 1.4  # of the picture
 SIDE = {
     "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
     "center": {"x": 0, "y": -0.13, "z": -0.04},
@@ -154,15 +155,28 @@ def go(**steps: Any) -> None:
     session.keep(KEPT, dataclasses.replace(progress(), **steps))
 
 
-def stand(robot: Robot) -> InHand:
-    """Where the lesson stands, tool vertical: at the project's cut, else at the point in hand of the maps."""
-    view = dataclasses.replace(session.maps(), A=0.0, B=0.0, point=None)
-    cut = fields.cut_in_reach(robot, view)
-    if cut is not None:
-        return in_hand(robot, cut, 0.0, 0.0)
+def stand(project: Project) -> tuple[InHand, str]:
+    """Where the lesson stands, tool vertical, and that in words: at the point that a person chose on the maps, else at
+    the project's cut, else in the middle of the region."""
+    robot, unit = project.setup.robot, project.view.length
+    view = dataclasses.replace(session.maps(), A=0.0, B=0.0)
+    if view.point is not None:
+        x, y, z = view.point.tolist()
+        found = in_hand(robot, (x, y, z), 0.0, 0.0)
+        if found.pose.reached:
+            return found, f"at the selected point {place(found.point, unit)}"
+    view = dataclasses.replace(view, point=None)
+    cut = push.decided(running.quiet(project.setup))
+    if cut is not None and cut.upright:
+        found = cut.in_hand()
+        return found, f"at line {cut.line} of the cut, {place(found.point, unit)}"
+    centre = fields.cut_in_reach(robot, view)
+    if centre is not None:
+        return in_hand(robot, centre, 0.0, 0.0), f"in the middle of the cut, {place(centre, unit)}"
     box = fields.region(robot, view)
     known = fields.overview(robot, view, box)
-    return in_hand(robot, default_point(view, box, known), 0.0, 0.0)
+    found = in_hand(robot, default_point(view, box, known), 0.0, 0.0)
+    return found, f"at {place(found.point, unit)}"
 
 
 @st.fragment

@@ -40,7 +40,7 @@ def equations(pose: PoseReport, push: Push) -> None:
             )
         )
         st.latex(r"\large " + component(pose, push.along, push.along))
-        pieces.note(f"and from {push.name} into {'XYZ'[push.aside]}, the reason for the sideways answer:")
+        pieces.note(f"and from {push.name} into {'XYZ'[push.aside]}, the reason why it goes aside:")
         st.latex(r"\large " + component(pose, push.aside, push.along))
     with right:
         st.latex(r"\large \delta\mathbf{x} = C_{X\delta}\,\mathbf{F} \qquad (15)")
@@ -120,7 +120,8 @@ def reproduced() -> None:
         )
         for r in found
     ]
-    pieces.table(shown, "wwwww", ("Of the paper", "What it gives", "What robomill finds", "", "Reason"))
+    with st.container(key="learn-reproduced"):
+        pieces.table(shown, "wwwww", ("Of the paper", "What it gives", "What robomill finds", "How far", "Reason"))
     pieces.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "csv:reproduction")
 
 

@@ -1,6 +1,7 @@
 // Maps over the planes of a region. All planes are here: the slider draws another one without asking the server, which
 // gets the plane that was settled on, and the cell that was clicked. Every number was computed there.
 const LEFT = 52, RIGHT = 74, FOOT = 40, CAPTION = 22, GAP = 10, SETTLED_MS = 400, SHADES = 1024;
+const NARROW = 480, FLAT = 46, LEAST_HIGH = 60;  // px: where colour bars lie beneath the maps, how high one is then
 
 const make = (name, className = "", text = "") => {
   const made = document.createElement(name);
@@ -203,28 +204,57 @@ class Board {
     return context;
   }
 
-  // X and Y have the same scale, the largest at which all panels fit.
+  // Where each panel stands: as Python says; in a narrow window each map once, two beside each other at most.
+  arrange() {
+    const { data } = this, columns = data.columns > 2 ? 2 : 1, seen = new Set();
+    this.narrow = this.part("board").clientWidth < NARROW;
+    this.root.classList.toggle("narrow", this.narrow);
+    const alike = ({ panel }) => `${panel.codes} ${panel.slider} ${panel.scale}`;
+    this.shown = this.panels.filter((made) => !this.narrow || (!seen.has(alike(made)) && seen.add(alike(made))));
+    const by = data.scales.map((_, k) => this.shown.filter(({ panel }) => panel.scale === k));
+    const paired = columns === 2 && by.length === 2 && by[0].length === by[1].length;
+    this.shown.forEach((made, n) => {
+      const { panel } = made;
+      [made.row, made.column] = !this.narrow ? [panel.row, panel.column]
+        : paired ? [by[panel.scale].indexOf(made), panel.scale] : [Math.floor(n / columns), n % columns];
+    });
+    for (const made of this.panels) made.figure.style.display = this.shown.includes(made) ? "" : "none";
+    this.rows = 1 + Math.max(...this.shown.map((made) => made.row));
+    this.columns = 1 + Math.max(...this.shown.map((made) => made.column));
+  }
+
+  // X and Y have the same scale, the largest at which all panels fit; the board is as high as they are.
   layOut() {
-    const { data } = this, board = this.part("board"), [u0, u1] = data.u.span, [v0, v1] = data.v.span;
-    const over = data.rows > 1 && this.bars.length > 1;  // bars over each other leave the maps more room
-    const wide = board.clientWidth - LEFT - RIGHT * (over ? 1 : this.bars.length) - GAP * (data.columns - 1) - 2;
-    const high = board.clientHeight - FOOT - GAP * (data.rows - 1) - CAPTION * data.rows - 2;
-    const scale = Math.max(Math.min(wide / data.columns / (u1 - u0), high / data.rows / (v1 - v0)), 1e-9);
+    this.arrange();
+    const { data, rows, columns } = this, board = this.part("board"), [u0, u1] = data.u.span, [v0, v1] = data.v.span;
+    const over = rows > 1 && this.bars.length > 1;  // bars over each other leave the maps more room
+    const beside = this.narrow ? 0 : over ? 1 : this.bars.length;
+    const wide = board.clientWidth - LEFT - RIGHT * beside - GAP * (columns - 1) - 2;
+    const most = Math.min(Math.max(wide / columns * (v1 - v0) / (u1 - u0), LEAST_HIGH), data.most);
+    const scale = Math.max(Math.min(wide / columns / (u1 - u0), most / (v1 - v0)), 1e-9);
     this.w = Math.max((u1 - u0) * scale, 24);
     this.h = Math.max((v1 - v0) * scale, 16);
-    const lowest = (panel) => !data.panels.some((p) => p.column === panel.column && p.row > panel.row);
-    const first = (panel) => !data.panels.some((p) => p.row === panel.row && p.column < panel.column);
-    for (const made of this.panels) {
-      const { panel, figure } = made;
-      made.left = first(panel) ? LEFT : 0;
-      made.foot = lowest(panel) ? FOOT : 0;
-      const x = LEFT + panel.column * (this.w + GAP) - made.left, y = panel.row * (this.h + CAPTION + GAP);
+    const whole = rows * (this.h + CAPTION + GAP) - GAP - CAPTION, foot = CAPTION + whole + FOOT + 2;
+    board.style.height = `${foot + (this.narrow ? FLAT * this.bars.length : 0)}px`;
+    const lowest = (one) => !this.shown.some((p) => p.column === one.column && p.row > one.row);
+    const first = (one) => !this.shown.some((p) => p.row === one.row && p.column < one.column);
+    for (const made of this.shown) {
+      const { figure } = made;
+      made.left = first(made) ? LEFT : 0;
+      made.foot = lowest(made) ? FOOT : 0;
+      const x = LEFT + made.column * (this.w + GAP) - made.left, y = made.row * (this.h + CAPTION + GAP);
       Object.assign(figure.style, { left: `${x}px`, top: `${y}px`, width: `${this.w + made.left + 2}px` });
       figure.querySelector("figcaption").style.paddingLeft = `${made.left}px`;
       made.context = this.sized(made.canvas, this.w + made.left + 2, this.h + made.foot + 2);
     }
-    const right = LEFT + data.columns * this.w + (data.columns - 1) * GAP + 10;
-    const whole = data.rows * (this.h + CAPTION + GAP) - GAP - CAPTION;
+    if (this.narrow) {
+      this.bars.forEach((bar, n) => {
+        Object.assign(bar.canvas.style, { left: `${LEFT}px`, top: `${foot + n * FLAT}px` });
+        this.drawFlatBar(bar, this.sized(bar.canvas, wide, FLAT), wide);
+      });
+      return;
+    }
+    const right = LEFT + columns * this.w + (columns - 1) * GAP + 10;
     const long = over ? (whole - 24 * (this.bars.length - 1)) / this.bars.length : whole;
     this.bars.forEach((bar, n) => {
       const top = CAPTION - 6 + (over ? n * (long + 24) : 0);
@@ -256,6 +286,24 @@ class Board {
     c.textBaseline = "bottom";
     if (scale.kind !== "joints") c.fillText(scale.title.replace(/_(\w+)/g, "$1"), 0, 0, whole);
     c.restore();
+  }
+
+  drawFlatBar({ scale, k }, c, whole) {
+    const { colours } = this.data, count = this.shades[k].length, inner = whole - 24;
+    for (let x = 0; x < inner; x++) {
+      const shade = this.shades[k][Math.min(count - 1, Math.floor((x + 0.5) / inner * count))];
+      c.fillStyle = `rgb(${shade & 255},${(shade >> 8) & 255},${(shade >> 16) & 255})`;
+      c.fillRect(12 + x, 14, 1.2, 9);
+    }
+    this.font(c, 11, colours.muted);
+    c.textBaseline = "top";
+    if (scale.kind !== "joints") c.fillText(scale.title.replace(/_(\w+)/g, "$1"), 12, 0, inner);
+    c.textAlign = "center";
+    const every = Math.max(1, Math.ceil(44 * scale.ticks.length / inner));
+    for (const [value, words] of scale.ticks.filter((_, n) => n % every === 0)) {
+      c.fillText(words, 12 + (value - scale.low) / (scale.high - scale.low) * inner, 27);
+    }
+    c.textAlign = "start";
   }
 
   font(c, size, colour) {
@@ -302,9 +350,9 @@ class Board {
   }
 
   draw() {
-    for (const made of this.panels) this.drawPanel(made);
+    for (const made of this.shown) this.drawPanel(made);
     const { data } = this;
-    for (const { panel, figure, note } of this.panels) {
+    for (const { panel, figure, note } of this.shown) {
       const k = this.at[panel.slider], words = panel.notes[k] ?? "";
       if (note.textContent !== words) note.textContent = words;
       figure.setAttribute("aria-label", `${panel.title} over the plane ${data.w.letter} = ${data.w.said[k]} ${data.unit}: ${words}`);
@@ -508,7 +556,7 @@ class Board {
     c.fillStyle = this.data.colours.background;
     c.fillRect(0, 0, board.clientWidth, board.clientHeight);
     const put = (canvas, x, y) => c.drawImage(canvas, x, y, canvas.width / (window.devicePixelRatio || 1), canvas.height / (window.devicePixelRatio || 1));
-    for (const { figure, canvas, panel, note, left } of this.panels) {
+    for (const { figure, canvas, panel, note, left } of this.shown) {
       this.font(c, 12.5, this.data.colours.text);
       c.fillText(`${panel.title}  ${note.textContent}`, figure.offsetLeft + left, figure.offsetTop + 14, this.w);
       put(canvas, figure.offsetLeft, figure.offsetTop + CAPTION);
@@ -529,7 +577,6 @@ class Board {
 
 export default function ({ data, parentElement, setStateValue }) {
   const root = parentElement.querySelector(".maps");
-  root.style.height = `${data.height}px`;
   root.board ??= new Board(root);
   root.board.show(data, setStateValue);
   // Called before the page shows it anew, too: what is drawn stays, and the board ends with its element.

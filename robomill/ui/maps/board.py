@@ -102,12 +102,12 @@ def board(
         place = [float(from_si(seen[letter], planes.region.unit)) for letter in sheet.axes]
     data |= {"at": [planes.nearest(each) for each in at], "point": place, "file": key}
     name = f"board-{key}"
+    st.html(f"<style>@media (min-width: 1081px) {{ .st-key-{name} {{ min-height: {data['height']}px; }} }}</style>")
     # By themselves: they stay as they are while the plane and the point move, so that the browser keeps them.
     _codes(key=f"codes-{key}", data={"rev": data["rev"], "codes": data.pop("codes")})
     _component(
         key=name,
         data=data,
-        height=data["height"],
         on_plane_change=partial(_settled, name, data["rev"], planes, settle),
         on_cell_change=partial(_picked, name, data["rev"], planes, settle),
     )

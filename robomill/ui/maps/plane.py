@@ -7,6 +7,7 @@ from typing import Any
 
 from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
+from robomill.paper import Point
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.ui import declared, fields, inputs, pieces, session
@@ -18,12 +19,14 @@ from robomill.workspace.fields import ComplianceMap
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """What a picture of the maps covers: the robot's region ``box`` as ``view`` says, with lengths in ``unit``."""
+    """What a picture of the maps covers: the robot's region ``box`` as ``view`` says, with lengths in ``unit``; the
+    point that is ``selected`` is marked."""
 
     robot: Robot
     view: MapView
     box: reach.ReachBox
     unit: str
+    selected: Point | None = None
 
     @property
     def factors(self) -> FloatArray:

@@ -6,10 +6,10 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.components import COMPONENTS
-from robomill.paper import Point
 from robomill.ui import fields, pieces, session, shell
 from robomill.ui.arm import arm
-from robomill.ui.point import FORCE, InHand, compliance_matrix
+from robomill.ui.point import InHand, compliance_matrix, place
+from robomill.ui.push import Decided, Moved
 from robomill.units import (
     format_many,
     format_number,
@@ -29,29 +29,25 @@ from robomill.viz.theme import joint_colours
 AXES = "XYZ"
 
 
-def place(point: Point, unit: str) -> str:
-    """``(0, -1300, 0) mm``."""
-    return f"({format_many(point, unit, 0, with_unit=False)}) {unit_label(unit)}"
+def headline(found: InHand, moved: Moved, unit: str) -> str:
+    """What the push does there, in one sentence."""
+    if not found.pose.reached:
+        return f"The tool does not get to {place(found.point, unit)}: {found.reason}."
+    return moved.sentence(unit)
 
 
-def headline(found: InHand, unit: str) -> str:
-    """What a push along Y does there, in one sentence."""
-    where = place(found.point, unit)
-    pose = found.pose
-    if not pose.reached:
-        return f"The tool does not get to {where}: {found.reason}."
-    delta = pose.delta([0.0, FORCE, 0.0])
-    ways = [
-        f"{format_si(abs(float(v)), unit)} {w}"
-        for v, w in zip(delta, ("in X", "in Y", "down" if delta[2] < 0 else "up"), strict=True)
-        if abs(v) > 0.02 * np.linalg.norm(delta)
-    ]
-    moved = ", ".join(ways[:-1]) + (" and " if len(ways) > 1 else "") + ways[-1] if ways else "not at all"
-    push = format_si(FORCE, "N", 0)
-    return f"{push} along Y moves the tip {moved}, most of it by joint {pose.gives_most('yy')}."
+def lead(found: InHand, moved: Moved, cut: Decided | None, at_cut: bool, unit: str) -> str:
+    """Which joints give, and where and by whose force that is."""
+    where = f"the selected point {place(found.point, unit)}"
+    if at_cut and cut is not None:
+        where = f"line {cut.line} of the cut, which decides its verdict: {place(found.point, unit)}"
+    elif cut is not None and not moved.push.axis:
+        where += f", with the force of the cut at line {cut.line}"
+    blame = moved.blame() if found.pose.reached else ""
+    return f"{blame} At {where}.".lstrip()
 
 
-def show(found: InHand, old: PoseReport, component: str, unit: str) -> None:
+def show(found: InHand, old: PoseReport, moved: Moved, component: str, unit: str) -> None:
     """The arm as it stands there with its ellipsoid, and folded the numbers: joints, C, six by six, Jacobian."""
     st.subheader(f"At the selected point {place(found.point, unit)}")
     if not found.pose.reached:
@@ -60,7 +56,7 @@ def show(found: InHand, old: PoseReport, component: str, unit: str) -> None:
     _posture_note(found.pose, component)
     left, right = pieces.split([1.3, 1], "point")
     with left, st.container(border=True, height="stretch"):
-        _arm(found.pose, component, unit)
+        _arm(found.pose, moved, unit)
     with right:
         _joints(found.pose)
         _matrix(found.pose, old)
@@ -79,17 +75,15 @@ def _posture_note(pose: PoseReport, component: str) -> None:
         pieces.note("What stands here holds for one posture.", pieces.subscripts(words))
 
 
-def _arm(pose: PoseReport, component: str, unit: str) -> None:
-    F = np.zeros(3)
-    F["xyz".index(component[1])] = FORCE
-    delta = pose.delta(F)
+def _arm(pose: PoseReport, moved: Moved, unit: str) -> None:
+    delta = moved.delta
     scene = ArmScene(
         frames=pose.frames,
         joints=pose.robot.joint_numbers,
-        force=F,
+        force=moved.push.F,
         displacement=delta,
-        force_label=format_si(FORCE, "N", 0),
-        displacement_label=format_si(float(np.linalg.norm(delta)), unit),
+        force_label=moved.push.size,
+        displacement_label=format_si(moved.size, unit),
     )
     size = solids.yardstick(pose.frames)
 
@@ -98,7 +92,7 @@ def _arm(pose: PoseReport, component: str, unit: str) -> None:
         fig.add_traces(ellipsoid_traces(pose.C, pose.T_MT[:3, 3], times, dark=dark, width=0.0065 * size, away=delta))
 
     caption = (
-        f"Yellow: where the tip goes under one force in every direction. Arrows: {component[1].upper()} push and "
+        f"Brown body: where the tip goes under one force in every direction. Blue: {moved.push.words}. Orange: the "
         f"displacement, shown {format_times(displacement_scale(delta, pose.frames))}."
     )
     alt = "The arm at this pose with the compliance ellipsoid at the tip."

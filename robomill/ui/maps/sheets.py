@@ -2,22 +2,22 @@
 
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.components import COMPONENTS, CROSS, DIRECT, symmetric
 from robomill.improve.sensitivity import stiffened
+from robomill.paper import Point
 from robomill.robot.model import Robot
 from robomill.ui import declared, inputs, pieces, session
-from robomill.ui.cut import middle_of_cut
-from robomill.ui.maps import board, compare, lines, plane, point
+from robomill.ui.maps import board, compare, lines, plane
 from robomill.ui.maps.board import Planes
 from robomill.ui.maps.plane import Region
-from robomill.ui.point import InHand, default_point
+from robomill.ui.point import InHand
 from robomill.units import format_number, from_si, unit_label
 from robomill.viz.maps import Scale
 from robomill.viz.planes import PlaneMap, ends, extremes, means
@@ -27,29 +27,19 @@ MATRIX = symmetric(np.array(COMPONENTS)).tolist()
 NAMES = tuple(f"C_{c}" for c in COMPONENTS)
 ROWS = {"direct": DIRECT, "cross": CROSS}
 UM = "um/N"
-BESIDE = ("nine", "one")  # pictures that leave room for the bars
-WIDTH = {"nine": 500, "one": 500}  # px of a picture where the window is wide
-WIDE = 730
+WIDE = 730  # px of a picture where the window is wide
 
 
 @st.fragment
-def picture(found: InHand, old: PoseReport) -> None:
-    """The picture with its own controls, beside the nine maps the bars of the selected pose: a click selects another,
-    the planes are looked through in the browser."""
-    beside = session.maps().sheet in BESIDE
-    if not beside:
-        plane.picture("sheet", _show)
-        point.bars(found, old, session.project().view.length)
-        return
-    choice = st.container()
-    left, right = pieces.split([2.2, 1], "maps", gap="small")
-    with left, st.container(key="maps-room"):
-        plane.picture("sheet", _show, choice)
-    with right:
-        point.bars(found, old, session.project().view.length)
+def picture(found: InHand) -> None:
+    """The picture with its own controls: a click selects another point, the planes are looked through in the
+    browser."""
+    with st.container(key="maps-room"):
+        plane.picture("sheet", partial(_show, found.point))
 
 
-def _show(region: Region) -> None:
+def _show(selected: Point, region: Region) -> None:
+    region = dataclasses.replace(region, selected=selected)
     sheet = region.view.sheet
     if sheet == "lines":
         lines.show(region)
@@ -83,15 +73,14 @@ def draw(
     region = planes.region
     normal = planes.normal
     most = {1: 420, 2: 250}.get(len(rows), 150)
-    sheet = planes.sheet(rows, scales, WIDTH.get(key, WIDE), most)
-    selected = default_point(region.view, region.box, region.overview(), middle_of_cut(session.project().setup))
+    sheet = planes.sheet(rows, scales, WIDE, most)
     board.board(
         planes,
         sheet,
         f"compliance-{key}",
         [region.at()[1]],
         lambda at: session.see(at=at[0], normal=normal),
-        selected,
+        region.selected,
     )
     board.beneath(caption, table, f"compliance-{key}")
 

@@ -12,11 +12,12 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.at_pose import at_pose
 from robomill.kinematics.dexterity import near_singular
 from robomill.robot.model import Robot
-from robomill.ui import declared, fields, inputs, pieces, session, shell
+from robomill.ui import declared, fields, inputs, pieces, running, session, shell
+from robomill.ui.cut import path_there
 from robomill.ui.maps import plane
 from robomill.ui.maps.board import Planes, beneath, board
 from robomill.ui.maps.plane import Region
-from robomill.ui.point import in_hand, middle
+from robomill.ui.point import SLACK, in_hand, middle
 from robomill.ui.project import MapView
 from robomill.units import (
     NOT_REACHED,
@@ -53,9 +54,9 @@ def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceMap, unit
     largest, looked = fields.box_there(robot, view.A, view.B)
     size, note = ("none", "nothing in reach at this tilt") if looked else ("…", "not computed yet")
     if largest is not None:
-        spans = [v for v in largest.size if v > 1e-6]  # none: an arm of one joint stands still at a tilt
-        size = format_many(spans, shown.of("m"), 1, " × ") if spans else "one point"
-        note = _against(largest, robot, unit)
+        still = not (largest.size > 1e-6).any()  # an arm of one joint stands still at a tilt
+        size = "one point" if still else f"{box_size(largest.size, unit)} {unit_label(unit)}"
+        note = _against(largest, robot)
     singular = bool(near_singular(robot, det).any())
     return [
         pieces.Tile(
@@ -82,14 +83,16 @@ def box_size(size: FloatArray, unit: str) -> str:
     return format_many(sides, unit, 0, " × ", with_unit=False)
 
 
-def _against(box: ReachBox, robot: Robot, unit: str) -> str:
+def _against(box: ReachBox, robot: Robot) -> str:
     if fields.flat(robot) is not None:
         return "in the plane of the arm"
     ratio = against_paper(box)
     turned = box.holds(PAPER_BOX_SIZE[[1, 0, 2]])
     words = "has room" if ratio["holds_paper_box"] else "turned by 90° has room" if turned else "has no room"
+    there = bool((box.lower <= PAPER_BOX[0] + SLACK).all() and (PAPER_BOX[1] - SLACK <= box.upper).all())
+    where = "" if not ratio["holds_paper_box"] else ", also where that stands" if there else ", not where that stands"
     times = format_number(ratio["volume_ratio"], 1)
-    return f"{words} for a box of the reference's size, {box_size(PAPER_BOX_SIZE, unit)} · {times} × its volume"
+    return f"{words} for a box of the reference's size{where}; {times} × its volume"
 
 
 def sentence(robot: Robot, known: ComplianceMap | None) -> str:
@@ -144,11 +147,26 @@ def box_card(robot: Robot, view: MapView, unit: str) -> None:
         corner = format_many(box.lower, unit, 0, with_unit=False)
         mark = pieces.badge(kind) + (" place in Y " + pieces.badge("assumed") if kind == "paper" else "")
         rows.append((name, f"{box_size(box.size, unit)} {unit_label(unit)}", f"from ({corner}) " + mark))
-    pieces.facts(rows)
+    pieces.facts([*_cut(unit), *rows])
     if largest is not None and view.region != "largest":
         largest_box = partial(session.see, region="largest", at=None, point=None)
         inputs.button("Show the largest box", "maps.largest", "crop_free", largest_box)
     pieces.note("Sides along the axes of {M}, true to about one cell; reached in one posture, without a singularity.")
+
+
+def _cut(unit: str) -> list[tuple[str, str, str]]:
+    """The box around what the project cuts, and how much of it is reached as it is cut."""
+    setup = session.project().setup
+    path, result = path_there(setup), running.quiet(setup)
+    if path is None or not path.cutting.any():
+        return []
+    ends = setup.in_base(path.p[path.cutting | np.append(path.cutting[1:], False)])
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    said = f"from ({format_many(low, unit, 0, with_unit=False)})"
+    if result is not None:
+        share = float(result.reached[result.path.cutting].mean())
+        said += ", all reached" if share == 1.0 else f", {format_percent(share)} reached"
+    return [("this cut", f"{format_many(high - low, unit, 0, ' × ', with_unit=False)} {unit_label(unit)}", said)]
 
 
 @st.fragment

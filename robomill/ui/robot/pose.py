@@ -9,21 +9,83 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport, at_pose
 from robomill.robot.model import Robot
-from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, pieces, point, session
+from robomill.ui import inputs, pieces, point, push, session
 from robomill.ui.box import NumberBox
 from robomill.ui.project import Project
+from robomill.ui.push import Decided, Moved
 from robomill.ui.typed import said_below
+from robomill.ui.verdict import previous
 from robomill.units import format_percent, format_si, from_si, to_si
+from robomill.viz.arm import ArmScene
 from robomill.viz.theme import joint_colours
 
+ASPECT = 1.3  # of the picture
 
-def configuration(project: Project, result: SimulationResult | None) -> FloatArray:
-    """(n,) the configuration looked at: the chosen one, or the cut's worst point, or home."""
-    robot, chosen = project.setup.robot, project.view.theta
-    if chosen is not None and len(chosen) == robot.n:
-        return np.clip(chosen, robot.limits[:, 0], robot.limits[:, 1])
-    return np.array(result.theta[result.worst] if result is not None and result.worst >= 0 else robot.home)
+
+def configuration(project: Project, cut: Decided | None) -> FloatArray:
+    """(n,) the configuration looked at: the chosen one, or that where the cut's verdict is decided, or home."""
+    robot = project.setup.robot
+    theta = _chosen(project)
+    if theta is not None:
+        return np.clip(theta, robot.limits[:, 0], robot.limits[:, 1])
+    return np.array(robot.home) if cut is None else cut.theta
+
+
+def _chosen(project: Project) -> FloatArray | None:
+    theta = project.view.theta
+    return theta if theta is not None and len(theta) == project.setup.robot.n else None
+
+
+def moved(project: Project, now: PoseReport, old: PoseReport | None, cut: Decided | None) -> tuple[Moved, Moved | None]:
+    """What the push in force does at the pose, and did before the last change of the robot: at the cut with all that
+    gives there, elsewhere by the joints."""
+    pushed = push.in_force(project.view, cut)
+    by_joints = None if old is None else Moved.at(old, pushed)
+    if cut is None or pushed.axis or _chosen(project) is not None:
+        return Moved.at(now, pushed), by_joints
+    before = previous(cut.result)
+    if before is None or len(before.path) != len(cut.result.path):
+        return cut.moved, by_joints
+    return cut.moved, Decided(before, cut.i).moved
+
+
+def lead(project: Project, now: Moved, cut: Decided | None) -> str:
+    """Which joints give, and where and by whose force that is."""
+    chosen = _chosen(project) is not None
+    if cut is None:
+        where = "At these joint angles." if chosen else "At its home position: the cut of this project has no answer."
+    elif chosen:
+        force = "" if now.push.axis else f", with the force of the cut at line {cut.line}"
+        where = f"At these joint angles{force}."
+    else:
+        where = f"The arm stands at line {cut.line} of the cut, which decides its verdict."
+    return f"{now.blame()} {where}".lstrip()
+
+
+def tip_tile(now: Moved, before: Moved | None, unit: str) -> pieces.Tile:
+    """How far the tip is displaced, and along which axes."""
+    note = " · ".join(
+        f"{axis} {format_si(float(v), unit, sign=True, with_unit=False)}"
+        for axis, v in zip("XYZ", now.delta, strict=True)
+    )
+    value, was, change = format_si(now.size, unit), "", ""
+    if before is not None and np.isfinite(before.size):
+        was, change = format_si(before.size, unit), format_si(now.size - before.size, unit, sign=True)
+    return pieces.Tile("Tip off its path here", value, note, was, change, kind="computed")
+
+
+def scene(now: PoseReport, old: PoseReport | None, moved: Moved, unit: str) -> ArmScene:
+    """The arm at the pose with what pushes it and where it goes."""
+    return ArmScene(
+        frames=now.frames,
+        joints=now.robot.joint_numbers,
+        ghost=ghost(now, old),
+        aspect=ASPECT,
+        force=moved.push.F,
+        displacement=moved.delta,
+        force_label=moved.push.size,
+        displacement_label=format_si(moved.size, unit),
+    )
 
 
 def compared(project: Project, theta: FloatArray) -> tuple[PoseReport, PoseReport | None]:
@@ -42,17 +104,27 @@ def ghost(now: PoseReport, old: PoseReport | None) -> FloatArray | None:
     return old.frames if np.abs(old.frames - now.frames).max() > 1e-9 else None
 
 
-def controls(project: Project, theta: FloatArray, result: SimulationResult | None) -> None:
+def controls(project: Project, theta: FloatArray, cut: Decided | None) -> None:
     """A slider and a number box a joint; both show the same angle."""
     robot = project.setup.robot
     with st.container(horizontal=True, vertical_alignment="center", gap="small"):
         st.markdown("**Joint angles**")
-        idle = result is None or result.worst < 0
         inputs.button(
-            "At the cut", "pose.cut", "my_location", partial(session.look, theta=None), type="tertiary", disabled=idle
+            "At the cut",
+            "pose.cut",
+            "my_location",
+            partial(session.look, theta=None),
+            type="tertiary",
+            disabled=cut is None,
         )
         home = partial(session.look, theta=robot.home)
         inputs.button("Home", "pose.home", "home", home, type="tertiary")
+    with st.container(key="pose-joints"):
+        _joints(project, theta)
+
+
+def _joints(project: Project, theta: FloatArray) -> None:
+    robot = project.setup.robot
     for i, number in enumerate(robot.joint_numbers):
         with said_below():
             unit = project.view.of(robot.joint_units[i])
@@ -102,10 +174,14 @@ def compliance_matrix(now: PoseReport, old: PoseReport | None) -> None:
         point.compliance_matrix(old)
 
 
-def share_bars(pose: PoseReport, dark: bool) -> None:
-    """Which joint C_yy comes from at this pose, eqs. (13), (14)."""
-    shares = pose.shares("yy")
-    total = float(shares.sum()) or 1.0
-    st.markdown("**Share of the deflection along Y**")
-    each = zip(pose.robot.joint_numbers, shares / total, joint_colours(7, dark))
-    pieces.table([(f"joint {n}", pieces.bar(share, colour), format_percent(share)) for n, share, colour in each], "sbn")
+def share_bars(now: Moved, dark: bool) -> None:
+    """Which joint gives how much of the displacement, eqs. (13), (14)."""
+    st.markdown("**Share of each joint in the displacement**")
+    share = now.shares
+    top = max(float(np.abs(share).max()), 1e-12)
+    each = zip(now.joints, share, joint_colours(7, dark), push.whole(share.tolist()))
+    rows = [(f"joint {n}", pieces.bar(abs(part) / top, colour), f"{said} %") for n, part, colour, said in each]
+    pieces.table(rows, "sbn")
+    rest = 1.0 - float(share.sum())
+    if now.size > 0 and abs(rest) > 0.005:
+        pieces.note(f"Beside the joints: {format_percent(rest)}.")

@@ -1,8 +1,7 @@
 """What the start page tells: the cause in one line, the groove, where the numbers come from, the doors."""
 
 import html
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,11 +12,11 @@ from robomill.paper import SLOT
 from robomill.report.sources import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.stations import joint_shares
 from robomill.ui import cached, evidence, inputs, pieces, rendered, session
 from robomill.ui.markup import unparted
 from robomill.ui.project import Project, View
-from robomill.ui.verdict import decides_at, verdict_sentence
+from robomill.ui.push import decided
+from robomill.ui.verdict import verdict_sentence
 from robomill.units import format_beside, format_count, format_si, format_times
 from robomill.viz.picture import SurfacePicture
 from robomill.viz.surfaces import surface_figure
@@ -39,33 +38,9 @@ def purpose() -> None:
 
 
 def cause(result: SimulationResult, unit: str) -> str:
-    """One line: the force, the joints that give most, and where the tip goes."""
-    i = decides_at(result)
-    if i < 0:
-        return ""
-    size = np.linalg.norm(result.delta_joint[i], axis=-1)
-    order = np.argsort(size)[::-1]
-    share = joint_shares(result, i)
-    main = [j for j in order if share[j] > 0.08][:3]
-    numbers = result.setup.robot.joint_numbers
-    per_cent = _whole([float(share[j]) for j in main])
-    blame = " and ".join(f"joint {numbers[j]} ({each} %)" for j, each in zip(main, per_cent, strict=True))
-    force = format_si(float(np.linalg.norm(result.F[i])), "N", 0)
-    moved = ", ".join(
-        f"{format_si(float(v), unit, sign=True)} in {a}"
-        for a, v in zip("XYZ", result.delta[i])
-        if abs(v) > 0.02 * np.linalg.norm(result.delta[i])
-    )
-    most = "It" if sum(share[j] for j in main) > 0.98 else "Most of it"
-    return f"{force} on the tool moves the tip by {moved}. {most} comes from {blame}."
-
-
-def _whole(shares: Sequence[float]) -> list[int]:
-    """Shares of 1 in whole per cent whose sum is that of the shares: what is cut off most is rounded up first."""
-    floors = [math.floor(100.0 * share) for share in shares]
-    short = round(100.0 * sum(shares)) - sum(floors)
-    order = sorted(range(len(shares)), key=lambda k: floors[k] - 100.0 * shares[k])
-    return [floors[k] + (k in order[:short]) for k in range(len(shares))]
+    """One line: the force, where the tip goes, and the joints that give most."""
+    cut = decided(result)
+    return "" if cut is None else f"{cut.moved.sentence(unit)} {cut.moved.blame()}".rstrip()
 
 
 def groove_picture(result: SimulationResult, view: View, height: int, dark: bool) -> None:

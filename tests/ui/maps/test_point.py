@@ -10,8 +10,9 @@ import pytest
 import robomill as rm
 from robomill.compliance.at_pose import PoseReport
 from robomill.frames import Columns
-from robomill.ui.maps.point import headline, place, share_columns
-from robomill.ui.point import in_hand
+from robomill.ui.maps.point import headline, lead, share_columns
+from robomill.ui.point import in_hand, place
+from robomill.ui.push import Moved, Push
 from robomill.workspace.quantities import COMPONENTS
 
 POINT = (0.2, -1.2, -0.1)
@@ -33,12 +34,16 @@ def test_the_table_of_shares_ends_with_the_sum(found: PoseReport) -> None:
 
 
 def test_headline_words(found: PoseReport) -> None:
-    said = headline(in_hand(found.robot, POINT, 0.0, 0.0), "mm")
-    assert said.startswith("100 N along Y moves the tip ")
-    numbers = [float(v) for v in re.findall(r"([\d.]+) mm (?:in|down|up)", said)]
-    np.testing.assert_allclose(sorted(numbers), sorted(np.abs(found.C[:, 1] * 100e3)), atol=6e-4)
+    push = Push.along("y")
+    moved = Moved.at(found, push)
+    said = headline(in_hand(found.robot, POINT, 0.0, 0.0), moved, "mm")
+    assert said.startswith("100 N along Y moves the tip by ")
+    numbers = [float(v.replace("−", "-")) for v in re.findall(r"([+−][\d.]+) mm in", said)]
+    np.testing.assert_allclose(numbers, found.C[:, 1] * 100e3, atol=6e-4)
     far = in_hand(found.robot, (0.0, -9.0, 0.0), 0.0, 0.0)
-    assert headline(far, "mm").startswith("The tool does not get to (0, −9000, 0) mm: ")
+    nowhere = Moved.at(far.pose, push)
+    assert headline(far, nowhere, "mm").startswith("The tool does not get to (0, −9000, 0) mm: ")
+    assert lead(far, nowhere, None, False, "mm") == "At the selected point (0, −9000, 0) mm."
     assert not far.pose.reached
     assert np.isnan(far.pose.C).all()
 

@@ -6,14 +6,15 @@ import pytest
 
 from robomill.simulation.run import simulate
 from robomill.ui.project import preset_setup
-from robomill.ui.start.story import _whole, cause
+from robomill.ui.push import whole
+from robomill.ui.start.story import cause
 
 
 @pytest.mark.parametrize("shares", [(0.605, 0.395), (0.333, 0.333, 0.334), (0.7004, 0.2996), (0.516, 0.304, 0.1)])
 def test_shares_in_whole_per_cent_sum_to_what_they_are(shares: tuple[float, ...]) -> None:
     """60.5 and 39.5 % were 61 and 40 %: more than all of it."""
-    assert sum(_whole(list(shares))) == round(100.0 * sum(shares))
-    assert all(abs(each - 100.0 * share) < 1.0 for each, share in zip(_whole(list(shares)), shares, strict=True))
+    assert sum(whole(list(shares))) == round(100.0 * sum(shares))
+    assert all(abs(each - 100.0 * share) < 1.0 for each, share in zip(whole(list(shares)), shares, strict=True))
 
 
 def test_the_cause_is_told_of_the_groove() -> None:

@@ -1,0 +1,71 @@
+"""What pushes and what gives: shares that add up, the place of the verdict, and what the springs beside joints give."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.compliance.at_pose import at_pose
+from robomill.ui.project import View, preset_setup
+from robomill.ui.push import Moved, Push, decided, in_force
+
+ROBOT = rm.load_robot("slavkovic_5r")
+
+
+@pytest.fixture(scope="module")
+def flute() -> rm.SimulationResult:
+    return rm.simulate(preset_setup("paper_flute"))
+
+
+def test_each_joint_alone_gives_its_share() -> None:
+    """Rigid but for one joint, the arm is displaced by that joint's part: by a robot of its own each."""
+    pose = at_pose(ROBOT, [0.2, -0.4, -0.3, 0.1, 0.8])
+    push = Push(np.array([30.0, -120.0, 250.0]))
+    moved = Moved.at(pose, push)
+    alone = []
+    for j in range(5):
+        only = ROBOT.replace(C_theta=np.where(np.arange(5) == j, ROBOT.C_theta, 0.0))
+        alone.append(at_pose(only, pose.theta).delta(push.F))
+    np.testing.assert_allclose(moved.delta_joint, alone, atol=1e-15)
+    np.testing.assert_allclose(moved.delta, pose.delta(push.F), rtol=1e-12)
+    along = np.array(alone) @ moved.delta / (moved.delta @ moved.delta)
+    np.testing.assert_allclose(moved.shares, along, atol=1e-12)
+    assert moved.shares.sum() == pytest.approx(1.0)
+
+
+def test_stiffer_joints_by_a_run_of_their_own(flute: rm.SimulationResult) -> None:
+    cut = decided(flute)
+    assert cut is not None
+    factors = np.array([1.0, 1.0, 2.0, 1.0, 1.5])
+    robot = ROBOT.replace(C_theta=ROBOT.C_theta / factors)
+    after = decided(rm.simulate(flute.setup.replace(robot=robot)))
+    assert after is not None
+    np.testing.assert_allclose(cut.moved.stiffer(factors).delta, after.moved.delta, rtol=1e-9, atol=1e-12)
+
+
+def test_the_place_is_that_of_the_verdict(flute: rm.SimulationResult) -> None:
+    cut = decided(flute)
+    assert cut is not None
+    assert (cut.line, cut.in_hand().point) == (7, pytest.approx((cut.in_hand().point[0], -1.3, 0.0)))
+    np.testing.assert_allclose(rm.tool_pose(ROBOT, cut.theta)[:3, 3], cut.in_hand().point, atol=1e-5)
+    assert cut.moved.sentence("mm") == "100 N on the tool moves the tip by +0.230 mm in Y, −0.102 mm in Z."
+    assert cut.moved.blame() == "It comes from joint 3 (70 %) and joint 5 (30 %)."
+    assert decided(None) is None
+
+
+def test_what_pushes_is_chosen(flute: rm.SimulationResult) -> None:
+    cut = decided(flute)
+    assert cut is not None
+    np.testing.assert_array_equal(in_force(View(), cut).F, cut.moved.push.F)
+    np.testing.assert_array_equal(in_force(dataclasses.replace(View(), push="z"), cut).F, [0.0, 0.0, 100.0])
+    assert in_force(View(), None).words == "100 N along Y"
+
+
+def test_a_rigid_arm_is_not_moved() -> None:
+    rigid = at_pose(ROBOT.replace(C_theta=np.zeros(5)), ROBOT.home)
+    moved = Moved.at(rigid, Push.along("x"))
+    assert moved.sentence("mm") == "100 N along X does not move the tip."
+    assert moved.blame() == ""
