@@ -176,7 +176,7 @@ def frame_of(values: list[str], word: str, unit: str, line: int) -> FloatArray:
     else:
         text = f"{word} has {len(numbers)} numbers; expected 12 (CSYS) or an origin and two axes (MSYS)."
         raise GCodeError.at(line, text)
-    if not np.allclose(T[:3, :3].T @ T[:3, :3], np.eye(3), atol=1e-4):
+    if np.abs(T[:3, :3]).max() > 2.0 or not np.allclose(T[:3, :3].T @ T[:3, :3], np.eye(3), atol=1e-4):
         raise GCodeError.at(line, f"the axes of {word} are not at right angles and of length 1; mend the file.")
     T[:3, 3] = [to_si(float(v), unit) for v in T[:3, 3]]
     return T

@@ -54,12 +54,22 @@ def _words(*words: str) -> tuple[tuple[str, str], ...]:
 
 
 _LINUXCNC = (("#<", "#<"), ("o", r"\n[ \t]*o[ \t]*(?:<[^>\n]+>|\d+)[ \t]*(?:sub|if|while|do|repeat|call)"))
-_SINUMERIK_TEXT = (("msg", r"\bmsg[ \t]*\([ \t]*\""), ("$path", r"\n[ \t]*;[ \t]*\$path"))
+_SINUMERIK_TEXT = (
+    ("msg", r"\bmsg[ \t]*\([ \t]*\""),
+    ("$path", r"\n[ \t]*;[ \t]*\$path"),
+    ("workpiece", r"\n[ \t]*(?:n\d+[ \t]*)?workpiece[ \t]*\("),
+    ("cycle8", r"\n[ \t]*(?:n\d+[ \t]*)?cycle8\d+[ \t]*\("),
+)
 _HEIDENHAIN = (("begin pgm", r"\n[ \t]*\d*[ \t]*begin pgm\b"),)
 _GRBL = (("$", r"\n[ \t]*\$(?:[a-z#$]{0,2}[ \t]*(?=\n)|h|\d+=|n\d*=|j=|rst=)"),)
 _SINUMERIK = (
     *_words("g710", "g700", "g500", "g601", "g641", "g642", "g643", "g644", "g645", "m17"),
-    ("=", r"\b(?:(?:cr|ar|turn)|[xyzijkabcfs]\d?)[ \t]*="),
+    ("=", r"\b(?:(?:cr|ar|turn|rnd|chf|chr)|[xyzijkabcfsr]\d*|t(?=[ \t]*=[ \t]*\"))[ \t]*="),
+    ("mcall", r"\bmcall\b"),
+    ("trans", r"\n[ \t]*(?:n\d+[ \t]*)?a?trans[ \t]+[xyz]"),
+    ("traori", r"\btraori\b"),
+    ("supa", r"\bsupa\b"),
+    ("%_n_", r"\n%_n_\w+_[ms]pf\b"),
     ("def", r"\bdef[ \t]+(?:real|int)"),
     ("g7", r"\n[^\n]*\bg7[01]\b(?![^\n]*[qpuwrd][ \t]*[-.\d#\[])"),
 )

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from robomill.provenance import Level
+from robomill.provenance import Finding, Level
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.offsets import stored_system, system_name
@@ -61,22 +61,46 @@ def doubt(machine: Machine, program: Program) -> None:
     _doubt_table(machine, program)
 
 
-def _doubt_table(machine: Machine, program: Program) -> None:
-    """Ask what turns where an axis turns through more than a quarter: a tool that leans, or a table with the part."""
+def turned_far(program: Program) -> list[tuple[str, float, int]]:
+    """Axes that cuts turn through more than a quarter: A, B or C, by how many degrees, and from which line on."""
     cuts = np.flatnonzero(program.at_feed)
     if not len(cuts):
-        return
+        return []
     angles = np.vstack([program.rotary0[cuts], program.rotary[cuts]])
     with np.errstate(over="ignore"):
         most = np.degrees(np.maximum(np.abs(angles).max(axis=0), np.ptp(angles, axis=0)))
+    found = []
     for axis in np.flatnonzero(most > QUARTER):
         turned = (np.abs(program.rotary[cuts, axis]) > 0.0) | (np.abs(program.rotary0[cuts, axis]) > 0.0)
-        letter = "ABC"[axis]
+        found.append(("ABC"[axis], float(most[axis]), int(program.line[cuts[turned][0]])))
+    return found
+
+
+def _doubt_table(machine: Machine, program: Program) -> None:
+    """Ask what turns where an axis turns through more than a quarter: a tool that leans, or a table with the part."""
+    for letter, most, line in turned_far(program):
         text = (
-            f"{letter} turns by {most[axis]:.0f} degrees: does it turn the part (a rotary table) or lean the tool? It "
+            f"{letter} turns by {most:.0f} degrees: does it turn the part (a rotary table) or lean the tool? It "
             f"is read as the tool's, and nothing is judged, until the rotary axis is stated"
         )
-        machine.findings.add(ROTARY_ASKED, "warning", int(program.line[cuts[turned][0]]), text)
+        machine.findings.add(ROTARY_ASKED, "warning", line, text)
+
+
+def doubt_second_table(program: Program, table: str) -> tuple[Finding, ...]:
+    """The findings of a program whose axis ``table`` turns the part: is there another axis that turns as far?"""
+    kept = tuple(each for each in program.findings if each.code != ROTARY_ASKED)
+    more = tuple(
+        Finding(
+            "warning",
+            f"{letter} turns by {most:.0f} degrees beside the rotary table {table[-1]}: two tables are not read, and "
+            "nothing is judged; post the program with the direction of the tool",
+            line,
+            code=ROTARY_ASKED,
+        )
+        for letter, most, line in turned_far(program)
+        if letter != table[-1]
+    )
+    return (*more, *kept)
 
 
 def _doubt_home(machine: Machine, program: Program) -> None:

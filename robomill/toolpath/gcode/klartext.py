@@ -12,6 +12,7 @@ from robomill.lazy import cached_property
 from robomill.toolpath.gcode.corners import LEGS, ROUND
 from robomill.toolpath.gcode.dialects import plain_numbers
 from robomill.toolpath.gcode.klartext_values import NUMBER, KlartextValues
+from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.sinumerik import named_tool
 from robomill.toolpath.gcode.tool_axis import angles_of
 from robomill.toolpath.gcode.words import Block
@@ -37,6 +38,7 @@ _SILENT = re.compile(
 )
 MAX_CODE, MAX_LINES = 1000, 100
 """Characters of a line and lines of a block that can be read."""
+_PLANES = {frozenset({0, 1}): 17, frozenset({0, 2}): 18, frozenset({1, 2}): 19}
 _KEPT_M = (0, 1, 2, 3, 4, 5, 7, 8, 9, 30)
 _PAIRS = {13: "M3 M8", 14: "M4 M8"}
 
@@ -48,7 +50,7 @@ Words = dict[str, tuple[str, float]]
 class Klartext(KlartextValues):
     """Reads what stands in a dialogue; what is left of a line goes on to the reader of words."""
 
-    pole: tuple[float, float] | None = None
+    pole: tuple[int, float, float] | None = None
     heading: tuple[float, float] | None = None
     leaving: tuple[float, float] | None = None
     side = "0"
@@ -124,20 +126,20 @@ class Klartext(KlartextValues):
         return list(self.machine.p)
 
     def _set_pole(self, code: str, line: int) -> None:
-        at, old = self.here(), self.pole or (None, None)
-        said = {letter: (step, self.number(value, line)) for step, letter, value in _WORD.findall(code)}
-        if not said:
-            self.pole = at[0], at[1]
-            return
-        place = []
-        for axis, letter in enumerate("XY"):
-            step, value = said.get(letter, ("", old[axis]))
-            if value is None or said.keys() - {"X", "Y"}:
-                raise GCodeError.at(line, "CC needs X and Y: a centre or pole is read in the plane XY alone.")
-            place.append(value + (at[axis] if step else 0.0))
-        self.pole = place[0], place[1]
+        """CC: a centre or pole in the plane of its two axes; one that is not given stays, without any it is here."""
+        at, said = self.here(), {}
+        for step, letter, value in _WORD.findall(code):
+            axis = "XYZABC".find(letter)
+            said[axis] = self.number(value, line) + (at[axis] if step else 0.0)
+        plane, old = (17, None) if self.pole is None else (self.pole[0], self.pole[1:])
+        plane = _PLANES.get(frozenset(said), plane if len(said) < 2 else 0)
+        if plane == 0 or not said.keys() <= set(axes(plane)[:2]) or (len(said) == 1 and old is None):
+            raise GCodeError.at(line, "CC needs two of X, Y and Z, the centre or pole in their plane.")
+        first, second, _ = axes(plane)
+        u, v = (at[first], at[second]) if old is None or not said else old
+        self.pole = plane, said.get(first, u), said.get(second, v)
 
-    def _pole(self, line: int) -> tuple[float, float]:
+    def _pole(self, line: int) -> tuple[int, float, float]:
         if self.pole is None:
             raise GCodeError.at(line, "a circle or polar coordinates need their centre; give CC X Y before.")
         return self.pole
@@ -156,6 +158,8 @@ class Klartext(KlartextValues):
         codes = [int(number[:6]) for number in _M.findall(rest)]
         where, arc = self._end(kind, words, rest, line)
         out = [self._compensated(side[1] if side else self.side)]
+        if not arc and machine.plane != 17:
+            out.append("G17")
         if feed is not None and feed[1] not in ("MAX", "AUTO"):
             out.append(f"F{self.number(feed[1], line) / (10.0 if machine.unit == 'in' else 1.0):.9f}")
         machine.machine_word = "M140" if 140 in codes else "M91" if 91 in codes else "M92"
@@ -222,7 +226,9 @@ class Klartext(KlartextValues):
         if kind in ("LP", "CP"):
             self._polar(words, at, end, line)
         moved = {letter for letter in "XYZABC" if letter in words}
-        moved |= {"X", "Y"} if kind in ("LP", "CP", "C", "CR", "CT") else {"A", "B"} if "TX" in words else set()
+        if kind in ("LP", "CP", "C"):
+            moved |= {"XYZ"[axis] for axis in axes(self._pole(line)[0])[:2]}
+        moved |= {"X", "Y"} if kind in ("CR", "CT") else {"A", "B"} if "TX" in words else set()
         places = {letter: end["XYZABC".index(letter)] for letter in sorted(moved)}
         arc = "" if kind[0] == "L" else self._arc(kind, words, code, at, end, line)
         if places:
@@ -230,15 +236,16 @@ class Klartext(KlartextValues):
         return places, arc
 
     def _polar(self, words: Words, at: list[float], end: list[float], line: int) -> None:
-        pole = self._pole(line)
-        radius = math.hypot(at[0] - pole[0], at[1] - pole[1])
-        angle = math.degrees(math.atan2(at[1] - pole[1], at[0] - pole[0]))
+        plane, *pole = self._pole(line)
+        first, second, _ = axes(plane)
+        radius = math.hypot(at[first] - pole[0], at[second] - pole[1])
+        angle = math.degrees(math.atan2(at[second] - pole[1], at[first] - pole[0]))
         if "PR" in words:
             radius = words["PR"][1] + (radius if words["PR"][0] else 0.0)
         if "PA" in words:
             angle = words["PA"][1] + (angle if words["PA"][0] else 0.0)
-        end[0] = pole[0] + radius * math.cos(math.radians(angle))
-        end[1] = pole[1] + radius * math.sin(math.radians(angle))
+        end[first] = pole[0] + radius * math.cos(math.radians(angle))
+        end[second] = pole[1] + radius * math.sin(math.radians(angle))
 
     def _arc(self, kind: str, words: Words, code: str, at: list[float], end: list[float], line: int) -> str:
         """G2 or G3 with what says its form; ``leaving`` is its direction at its end."""
@@ -253,10 +260,12 @@ class Klartext(KlartextValues):
             if radius is None:
                 raise GCodeError.at(line, "CR needs R, its radius.")
             self.leaving = None
-            return f"{name} R{self.number(radius[1], line):.12f}"
-        pole = self._pole(line)
-        self.leaving = -turn * (end[1] - pole[1]), turn * (end[0] - pole[0])
-        out = f"{name} I{pole[0] - at[0]:.12f} J{pole[1] - at[1]:.12f}"
+            return f"G17 {name} R{self.number(radius[1], line):.12f}"
+        plane, *pole = self._pole(line)
+        first, second, _ = axes(plane)
+        self.leaving = (-turn * (end[1] - pole[1]), turn * (end[0] - pole[0])) if plane == 17 else None
+        centre = f"{'IJK'[first]}{pole[0] - at[first]:.12f} {'IJK'[second]}{pole[1] - at[second]:.12f}"
+        out = f"G{plane} {name} {centre}"
         if "PA" in words and words["PA"][0]:
             step = words["PA"][1]
             if step * turn < 0.0:
@@ -278,7 +287,7 @@ class Klartext(KlartextValues):
         centre = at[0] - v * radius, at[1] + u * radius
         turn = 1.0 if radius > 0.0 else -1.0
         self.leaving = -turn * (end[1] - centre[1]), turn * (end[0] - centre[0])
-        return f"{'G3' if turn > 0.0 else 'G2'} I{centre[0] - at[0]:.12f} J{centre[1] - at[1]:.12f}"
+        return f"G17 {'G3' if turn > 0.0 else 'G2'} I{centre[0] - at[0]:.12f} J{centre[1] - at[1]:.12f}"
 
     def _look_ahead(self, kind: str) -> None:
         """A corner that the next line rounds or chamfers."""

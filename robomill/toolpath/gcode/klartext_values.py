@@ -194,7 +194,7 @@ class KlartextValues(SinumerikFlow):
             self.due = True
             return text
         self.due = True
-        return " ".join(f"M{m}" for m in re.findall(r"\bM(\d+)", rest) if m in ("3", "4", "5", "8", "9")) or "G90"
+        return " ".join(f"M{m}" for m in re.findall(r"\bM(\d+)", rest) if m in ("3", "4", "5", "8", "9")) or "G17"
 
     def straight(self, code: str, line: int) -> str | None:
         """A straight move in LinuxCNC's words."""

@@ -11,7 +11,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, Dialect, choose_dialect
-from robomill.toolpath.gcode.doubts import doubt, doubt_points
+from robomill.toolpath.gcode.doubts import doubt, doubt_points, doubt_second_table
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.foreign import language_of
 from robomill.toolpath.gcode.interpreter import Interpreter
@@ -20,7 +20,7 @@ from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.macro_calls import begin_empty
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program
-from robomill.toolpath.path import ROTARY_ASKED, TABLES, Toolpath
+from robomill.toolpath.path import TABLES, Toolpath
 from robomill.toolpath.text import Source, read_source
 from robomill.toolpath.tools import Tools
 
@@ -67,7 +67,7 @@ def read_gcode(
     """
     program = interpret(path_or_text, dialect=dialect, tools=tools)
     if table and table in TABLES:
-        program = replace(program, findings=tuple(f for f in program.findings if f.code != ROTARY_ASKED))
+        program = replace(program, findings=doubt_second_table(program, table))
     elif table:
         raise GCodeError(f"Rotary table: found {table!r}; expected one of {', '.join(TABLES[1:])}.")
     return to_toolpath(program, chord_error, table)

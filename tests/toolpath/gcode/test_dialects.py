@@ -207,3 +207,24 @@ def test_systems_that_nobody_has_placed_lie_over_one_another_and_that_is_said() 
     assert "2 coordinate systems, and G54, G55 are nowhere placed" in said[0]
     for alone in ("G55 G1 X2", "G54 G1 X1\nG55 G0 X2", "G10 L2 P1 X9\nG10 L2 P2 X99\nG54 G1 X1\nG55 G1 X2"):
         assert not [f for f in interpret(f"G21 G90 F100\n{alone}\nM2\n").findings if f.code == "zeros-overlaid"], alone
+
+
+ONLY_SINUMERIK = [
+    'WORKPIECE(,"",,"BOX",112,0,-50,-80,-60,60,60,-60)',
+    "N5 MCALL CYCLE81(10,0,2,-5)",
+    "CYCLE83(10,0,2,-5)",
+    'T="MILL 10"',
+    "TRANS X5",
+    "N10 ATRANS Y5 Z1",
+    "TRAORI",
+    "SUPA G0 Z0",
+    "%_N_PART_MPF",
+    "R12=5",
+    "G1 X5 RND=2",
+    "A3=0 B3=0 C3=1",
+]
+
+
+@pytest.mark.parametrize("line", ONLY_SINUMERIK)
+def test_words_that_only_a_sinumerik_has_tell_it(line: str) -> None:
+    assert choose_dialect(f"G90 G54\n{line}\nG1 X5 F100\n", "auto").name == "sinumerik"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode import interpret, read_gcode
 
 POINTS = "".join(f"X{k}.5 Y{k}.\n" for k in range(60))
 
@@ -36,3 +36,11 @@ def test_programs_that_write_whole_numbers_are_not_doubted() -> None:
 def test_a_small_part_is_doubted_only_where_no_unit_is_said(said: str, doubted: bool) -> None:
     found = interpret(f"{said}G90 G0 Z1\nG1 X5 F100\nM30\n").findings
     assert ("size-doubt" in {f.code for f in found}) == doubted
+
+
+def test_a_second_table_is_asked_for() -> None:
+    """One stated table turns the part; another axis that turns as far cannot be a lean of the tool."""
+    text = "G21 G90 G0 X0 Y0 Z30 A0 C0\nG1 Z20 F100\nX5 A120\nX10 A200 {}\nM30\n"
+    both = [f for f in read_gcode(text.format("C180"), table="A").findings if f.code == "rotary-asked"]
+    assert [(f.line, f.message[:44]) for f in both] == [(4, "C turns by 180 degrees beside the rotary tab")]
+    assert not [f for f in read_gcode(text.format("C45"), table="A").findings if f.code == "rotary-asked"]

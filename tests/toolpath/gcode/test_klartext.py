@@ -81,6 +81,23 @@ def test_circles(body: str, centre: tuple[float, ...], sweep_deg: float, end: tu
     assert math.degrees(program.sweep[-1]) == pytest.approx(sweep_deg)
 
 
+@pytest.mark.parametrize(
+    ("body", "centre", "end", "sweep"),
+    [
+        ("L X+4 F99\nCC X+2 Z+0\nCP IPA+90 DR+\n", (2, 0, 0), (2, 0, -2), 90),
+        ("L X+4 F99\nCC X+2 Z+0\nCP IPA-90 DR-\n", (2, 0, 0), (2, 0, 2), -90),
+        ("L Y+4 F99\nCC Y+2 Z+0\nCP IPA+90 IX+1 DR+\n", (0, 2, 0), (1, 2, 2), 90),
+        ("CC X+0 Z+5\nC X+5 Z+5 DR- F99\n", (0, 0, 5), (5, 0, 5), -90),
+    ],
+)
+def test_circles_in_upright_planes(body: str, centre: tuple[float, ...], end: tuple[float, ...], sweep: float) -> None:
+    """DR+ leads from Z to X and from Y to Z; a lead-in from the side goes down."""
+    program = read(f"{body}L X+9 Y+9 Z+9\n")
+    np.testing.assert_allclose(program.centre[-2] * 1e3, centre, atol=1e-9)
+    np.testing.assert_allclose(program.end[-2] * 1e3, end, atol=1e-9)
+    assert math.degrees(program.sweep[-2]) == pytest.approx(sweep)
+
+
 def test_polar_lines() -> None:
     found = ends("CC X+10 Y+10\nLP PR+20 PA+90 F99\nLP IPA+90\nLP IPR-5\n")
     assert found == [[10, 30, 0], [-10, 10, 0], [-5, 10, 0]]
