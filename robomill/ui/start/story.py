@@ -71,7 +71,10 @@ def groove_picture(result: SimulationResult, view: View, height: int, dark: bool
         f'<i style="background:linear-gradient(90deg,{colours})"></i>'
         f"<span>{unparted(ends[1])} material left</span></div>"
     )
-    pieces.note(f"The {what} as milled; its colours end at the tolerance. Displacement shown {format_times(times, 6)}.")
+    whose = " of walls" if setup.floor_tolerance not in (None, setup.tolerance) else ""
+    pieces.note(
+        f"The {what} as milled; its colours end at the tolerance{whose}. Displacement shown {format_times(times, 6)}."
+    )
 
 
 def where_from(setup: SimulationSetup) -> None:
