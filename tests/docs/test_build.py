@@ -5,13 +5,16 @@ from __future__ import annotations
 import argparse
 import ast
 import html
+import json
 import re
 import subprocess
 import sys
+from fnmatch import fnmatchcase
 
 import pytest
 
 import robomill as rm
+from robomill.cli import main
 from robomill.cli.parser import make_parser
 from tests.docs.documents import DOCS, ROOT
 
@@ -96,3 +99,15 @@ def test_every_key_that_a_reader_names_in_the_source_stands_in_the_file_formats(
                     and not (call.func.attr != "read" and key == call.args[-1])
                 ):
                     assert re.search(rf"\b{re.escape(key)}\b", page), f"{file}: {key}"
+
+
+def test_every_key_of_a_pose_and_every_column_of_a_result_is_told(built, capsys, tmp_path):
+    assert main(["pose", "slavkovic_5r", "--theta-deg", "0,0,0,0,0", "--json"]) == 0
+    page = text_of(built, "results")
+    for key in json.loads(capsys.readouterr().out):
+        assert re.search(rf"^{key}\b", page, re.M), key
+    assert main(["simulate", "paper_flute", "--out", str(tmp_path)]) == 0
+    for name in ("deviation.csv", "sections.csv"):
+        told = [cell for row in re.findall(r"^[\w*]+(?=\n)", page.split(name)[1], re.M) for cell in [row.strip()]]
+        for column in (tmp_path / name).read_text().splitlines()[0].split(","):
+            assert any(fnmatchcase(column, each) for each in told), column
