@@ -116,6 +116,10 @@ def test_labels_are_subprograms_and_repeats() -> None:
     assert ends(body) == [[0, 4, 0], [1, 4, 0], [2, 4, 0], [3, 4, 0], [3, 4, 1], [3, 4, 1], [0, 4, 1]]
 
 
+def test_a_repeat_without_a_count_calls_once() -> None:
+    assert ends("CALL LBL 7 REP\nL X+9 F99 M30\nLBL 7\nL Y+4 F99\nLBL 0\n") == [[0, 4, 0], [9, 4, 0]]
+
+
 def test_repeats_within_repeats_begin_anew() -> None:
     body = "LBL 1\nLBL 2\nL IX+1 F99\nCALL LBL 2 REP1\nL IY+1\nCALL LBL 1 REP 1\n"
     assert ends(body)[-1] == [4, 2, 0]
