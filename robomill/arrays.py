@@ -3,7 +3,7 @@
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,17 @@ from robomill.errors import RobomillError
 
 T = TypeVar("T")
 FloatArray = NDArray[np.float64]
+
+
+class Arrays(Protocol):
+    """What NumPy makes an array of: its own, a column of pandas, a variable of xarray."""
+
+    def __array__(self) -> NDArray[Any]: ...
+
+
+# As people write them: of [[0, 0, -2], [1.5, 0, -2]] a type checker sees numbers only where it is told to.
+Numbers = Arrays | Sequence[float]
+Rows = Arrays | Sequence[Arrays | Sequence[float]]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 FARTHEST = 1e4  # m from the base of a robot or the zero of a part
@@ -39,14 +50,30 @@ def as_floats(
     try:
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError) as exc:
-        raise error(f"{name}: expected numbers, found {value!r:.60}.") from exc
+        found = no_number(value) or f"{value!r:.60}"
+        raise error(f"{name}: expected numbers, found {found}.") from exc
     trailing = array.shape[array.ndim - len(shape) :] if array.ndim >= len(shape) else None
     if trailing is None or any(w is not None and w != h for w, h in zip(shape, trailing, strict=True)):
         want = ", ".join("any" if s is None else str(s) for s in shape)
-        raise error(f"{name}: expected shape (..., {want}), found {array.shape}.")
+        turned = array.ndim == len(shape) == 2 and shape[0] is None and array.shape[0] == shape[1]
+        ask = ": is it transposed?" if turned else "."
+        raise error(f"{name}: expected shape (..., {want}), found {array.shape}{ask}")
     if finite and not np.isfinite(array).all():
         raise error(f"{name}: expected finite numbers, found NaN or infinity.")
     return array
+
+
+def no_number(value: Any) -> str:
+    """What in ``value`` is no number: the first such thing, or rows that differ in length; "" where all are numbers."""
+    if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes):
+        lengths = {len(row) for row in value if isinstance(row, Sequence | np.ndarray) and not isinstance(row, str)}
+        uneven = f"rows of {' and '.join(map(str, sorted(lengths)))}" if len(lengths) > 1 else ""
+        return next((found for each in value if (found := no_number(each))), uneven)
+    try:
+        float(value)
+    except (TypeError, ValueError):
+        return f"{value!r:.60}"
+    return ""
 
 
 def check_place(p: ArrayLike, name: str, error: type[RobomillError]) -> None:

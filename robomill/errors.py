@@ -29,6 +29,10 @@ class RobomillError(ValueError):
         self.where = where
 
 
+class ArgumentError(RobomillError, TypeError):
+    """An argument that a function or class does not take, or one that it lacks: Python's TypeError, and a refusal."""
+
+
 class NumberError(RobomillError):
     """A text that is no number, or no single one, of the unit it is typed in."""
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from robomill.errors import RobomillError
 
@@ -45,6 +46,7 @@ def read_file(
     A pipe or a device is read up to the limit, which is for whoever names it himself; ``regular`` refuses it unread.
     ``said`` is what refusals call the file, its path unless given.
     """
+    check_place(path, kind.expected, error)
     place = shown_place(said or path)
     calm = getattr(os, "O_NONBLOCK", 0) if regular else 0  # a pipe that nobody writes to is opened without waiting
     try:
@@ -61,6 +63,12 @@ def read_file(
         raise error(f"{place}: cannot be opened ({why}); expected {kind.expected}.") from None
     check_size(size, kind, error, place)
     return data
+
+
+def check_place(given: Any, expected: str, error: type[RobomillError]) -> None:
+    """Refuse what is no file's name: a number, a table, a value that was given in its place."""
+    if not isinstance(given, str | os.PathLike):
+        raise error(f"Expected the name of a file, found {given!r:.60}; expected {expected}.")
 
 
 def name_of(path: str | Path) -> str:

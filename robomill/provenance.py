@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
+from robomill.arguments import asking
 from robomill.errors import RobomillError
 
 Kind = Literal["paper", "measured", "assumed", "user", "computed", "synthetic"]
@@ -15,6 +16,7 @@ LEVELS: tuple[Level, ...] = get_args(Level)  # the grave ones first
 MANY = 3  # numbers that a sentence names
 
 
+@asking
 @dataclass(frozen=True)
 class Provenance:
     """Where a block of numbers comes from: a kind and the source in words.
@@ -52,11 +54,13 @@ class Provenance:
 UNSTATED = Provenance("user", "not stated")
 
 
+@asking
 @dataclass(frozen=True)
 class Finding:
     """What was noticed. ``code`` says which kind it is, for code; ``message`` is for people and nothing branches on it.
 
-    ``line`` is the 1-based source line (0: the whole), ``count`` how often it was noticed.
+    ``line`` is the 1-based source line (0: the whole), ``count`` how often it was noticed; ``place`` is what ``line``
+    counts, where the path is none of a program: "row", "shape" or "point".
 
     Examples
     --------
@@ -70,6 +74,7 @@ class Finding:
     line: int = 0
     count: int = 1
     code: str = ""
+    place: str = "line"
 
     @property
     def order(self) -> tuple[int, int, str]:
@@ -79,7 +84,7 @@ class Finding:
     @property
     def sentence(self) -> str:
         """The message, with its line before it where it has one."""
-        return f"Line {self.line}: {self.message}" if self.line else self.message
+        return f"{self.place.capitalize()} {self.line}: {self.message}" if self.line else self.message
 
     def record(self) -> dict[str, Any]:
         """As JSON carries it."""

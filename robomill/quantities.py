@@ -47,6 +47,7 @@ class Quantity:
     boxed     whether the page offers a box for it
     sliding   the unit of what belongs to a joint that slides, where it is another than that of one that turns
     slip      in SI: a plain number beyond it was meant in ``unit`` (mm given as m), see ``spelled``
+    tiny      in SI: a number below it (not 0) that was given in ``unit`` was meant in SI (m given as mm)
     name, key   of the field, and in files (with the unit in it)
     default     where nothing is given, unless it is ``needed``
     """
@@ -68,6 +69,7 @@ class Quantity:
     boxed: bool = True
     sliding: str | None = None
     slip: float | None = None
+    tiny: float | None = None
     name: str = ""
     key: str = ""
     default: Any = None

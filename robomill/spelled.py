@@ -3,7 +3,8 @@
     Cutter("flat", diameter=0.008)        Cutter("flat", diameter_mm=8.0)
 
 The second name is the number's key in files, so that whoever knows one knows the other. A plain number that is too
-large to be SI is refused with how it is written; one whose unit is said is never doubted.
+large to be SI is refused with how it is written, and so is one under the other name that is certainly SI: nobody mills
+with a cutter of 0.008 mm. Whoever does mean it has the first name. Arguments are told in ``arguments``.
 """
 
 import inspect
@@ -14,9 +15,11 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
-from robomill.errors import RobomillError
+from robomill.arguments import named, refuse_unknown
+from robomill.arrays import no_number
+from robomill.errors import ArgumentError, RobomillError
 from robomill.quantities import Quantity, quantities
-from robomill.units import SI_NAMES, format_plain, to_si, unit_label
+from robomill.units import SI_NAMES, format_plain, from_si, to_si, unit_label
 
 T = TypeVar("T")
 C = TypeVar("C", bound=type)
@@ -42,18 +45,22 @@ def in_units(
             inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=None) for key in (*spelled(cls), *more)
         ]
 
+        signature = inspect.Signature([*own.values(), *others])
+
         @wraps(make)
         def init(self: Any, *args: Any, **given: Any) -> None:
-            first = dict(zip(list(own)[1:], args))
-            twice = sorted({*first} & {*given})
-            if twice or len(args) >= len(own):
-                make(self, *args, **given)  # which says so
-            found = in_si(cls, first | given)
-            make(self, **(found if new is None else new(found)))
+            found = in_si(cls, named(signature, who, (self, *args), given))
+            found = found if new is None else new(found)
+            for name, each in own.items():
+                if each.default is each.empty and name not in ("self", *found):
+                    declared = quantities(cls).get(name)
+                    other = "" if declared is None or declared.key == name else f" or {name_in_code(declared)}"
+                    raise ArgumentError(f"{who}: {name} is missing{other and f'; give {name}{other}'}.", where=name)
+            make(self, **found)
             if asked:
                 object.__setattr__(self, "unstated", tuple(name for name in asked if name not in found))
 
-        init.__signature__ = inspect.Signature([*own.values(), *others])  # type: ignore[attr-defined]
+        init.__signature__ = signature  # type: ignore[attr-defined]
         cls.__init__ = init  # type: ignore[misc]
         cls.door = error, who  # type: ignore[attr-defined]
         return cls
@@ -93,6 +100,7 @@ def in_si(cls: type, given: Mapping[str, Any]) -> dict[str, Any]:
         if name in given:
             raise error(f"{who}: {name} and {key} are the same number; give one of them.", where=name)
         found[name] = converted(value, other[key].unit, error, f"{who}, {key}")
+        refuse_tiny(other[key], found[name], error, who)
     return found
 
 
@@ -106,7 +114,9 @@ def one_of(
     if plain is not None and in_unit is not None:
         raise error(f"{who}: {declared.name} and {declared.key} are the same; give one of them.", where=declared.name)
     if in_unit is not None:
-        return converted(in_unit, declared.unit, error, f"{who}, {declared.key}")
+        found = converted(in_unit, declared.unit, error, f"{who}, {declared.key}")
+        refuse_tiny(declared, found, error, who)
+        return found
     if plain is not None:
         refuse_slip(declared, plain, error, who)
     return default if plain is None else plain
@@ -118,10 +128,13 @@ def converted(value: Any, unit: str, error: type[RobomillError], name: str) -> A
         return None
     if isinstance(value, Mapping):
         return {key: converted(one, unit, error, name) for key, one in value.items()}
+    if isinstance(value, list | tuple) and None in value:
+        return tuple(converted(one, unit, error, name) for one in value)
     try:
         numbers = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise error(f"{name}: expected a number, found {value!r:.40}.", where=name) from None
+        found = no_number(value) or f"{value!r:.60}"
+        raise error(f"{name}: expected a number, found {found}.", where=name) from None
     return to_si(float(numbers), unit) if numbers.ndim == 0 else to_si(numbers, unit)
 
 
@@ -154,6 +167,36 @@ def slip_words(declared: Quantity, worst: float, alone: bool = True) -> str:
     return f"found {meant} {si}, expected at most {most}: a name alone is in {si}. If {found} is meant, give {give}."
 
 
+def refuse_tiny(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> None:
+    """Raises ``error`` where a ``value`` (SI) that was given in its unit of the edge was certainly meant in SI: too
+    small to be anything, or an angle that is a part of pi to four digits and more."""
+    if value is None:
+        return
+    sizes = np.abs(np.array(list(value.values()) if isinstance(value, Mapping) else value, dtype=np.float64))
+    largest = float(np.where(np.isfinite(sizes), sizes, 0.0).max(initial=0.0))
+    tiny = 0.0 < largest < (declared.tiny or 0.0)
+    if not (tiny or (declared.unit == "deg" and in_radians(float(from_si(largest, "deg"))))):
+        return
+    unit, si = unit_label(declared.unit), SI_NAMES[declared.unit]
+    found, meant = f"{float(from_si(largest, declared.unit)):.6g}", f"{largest:.6g}"
+    least = f", expected at least {from_si(declared.tiny or 0.0, declared.unit):.3g}" if tiny else ""
+    space = "" if unit == "°" else " "
+    other, right = name_in_code(declared), f"{float(from_si(float(found), declared.unit)):.5g}"
+    give = (declared.name, other) if sizes.ndim else (f"{declared.name}={found}", f"{other}={right}")
+    really = f"{declared.name}{'' if sizes.ndim else '=' + meant}"
+    raise error(
+        f"{declared.said_of(who)}: found {found}{space}{unit}{least}: {other} is in {unit or si}. If {found} {si} is "
+        f"meant, give {give[0]} or {give[1]}; if {found}{space}{unit} is, give {really} in {si}.",
+        where=declared.name,
+    )
+
+
+def in_radians(angle: float) -> bool:
+    """Whether a number of degrees is one of radians: a multiple of 15 degrees to four digits and more (1.5708)."""
+    parts = angle / to_si(15.0, "deg")
+    return 0.5 < parts < 24.5 and abs(angle - round(parts) * to_si(15.0, "deg")) < 5.1e-5 and angle != round(angle, 3)
+
+
 def state(value: Any) -> dict[str, Any]:
     """The fields of a dataclass by their names."""
     return {each.name: getattr(value, each.name) for each in fields(value)}
@@ -164,12 +207,9 @@ class Replaceable:
 
     def replace(self, **changes: Any) -> Self:
         """A checked copy with fields changed: ``tolerance=2e-4``, or ``tolerance_mm=0.2``."""
-        known = {each.name for each in fields(self)}  # type: ignore[arg-type]
-        taken = self._taken(in_si(type(self), changes))
-        unknown = sorted({*taken} - known)
-        if unknown:
-            raise TypeError(f"{type(self).__name__} has no field {unknown[0]!r}; it has {', '.join(sorted(known))}")
-        return made(type(self), state(self) | taken)
+        known = inspect.signature(type(self)).parameters
+        refuse_unknown(changes, known, f"{type(self).__name__}.replace")
+        return made(type(self), state(self) | self._taken(in_si(type(self), changes)))
 
     def _taken(self, changes: dict[str, Any]) -> dict[str, Any]:
         """Changes by the names of the fields."""

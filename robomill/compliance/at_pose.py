@@ -1,10 +1,13 @@
 """What holds at one configuration: pose, Jacobian, determinant, compliance and the joints' shares of it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.compliance.cartesian import full_compliance, joint_contributions
 from robomill.compliance.deflection import displacement, soft_direction
@@ -124,6 +127,7 @@ class PoseReport:
         return value if self.reached else np.full(value.shape, np.nan)
 
 
+@asked
 def at_pose(robot: Robot, theta: ArrayLike) -> PoseReport:
     """All that holds of an arm at one configuration: pose, Jacobian, compliance and its shares.
 

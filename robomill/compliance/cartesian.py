@@ -1,8 +1,11 @@
 """Cartesian compliance of the tool tip and each joint's share of it, eqs. (11)-(14)."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.kinematics.forward import rows
@@ -10,6 +13,7 @@ from robomill.kinematics.jacobian import geometric_jacobian, pose_and_jacobian
 from robomill.robot.model import Robot
 
 
+@asked
 def joint_contributions(J_v: ArrayLike, C_theta: ArrayLike) -> FloatArray:
     """What each joint gives to the compliance of the tip: C_theta,i J_i J_i^T, eqs. (13), (14).
 
@@ -55,6 +59,7 @@ def _shares(J: FloatArray, C_theta: FloatArray) -> FloatArray:
     return C_joint
 
 
+@asked
 def cartesian_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:
     """How much the tip gives: the translational block of J C_theta J^T, eqs. (11), (12).
 

@@ -1,12 +1,16 @@
 """Tip displacement under a force on the tool, joint by joint, eqs. (15), (16)."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
 
 
+@asked
 def deflection(C_joint: ArrayLike, F: ArrayLike) -> FloatArray:
     """How far each joint lets the tip move under a force, eq. (16).
 

@@ -3,6 +3,8 @@
 Parts are usually zeroed with the arm sagged, so this is shown and not added to the deviation unless asked for.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -20,6 +22,7 @@ from robomill.spelled import in_units
 
 #: Standard gravity in a {M} whose z axis points up, m/s^2.
 GRAVITY = (0.0, 0.0, -9.80665)
+HEAVIEST = 2e4  # kg: no arm weighs as much: was it meant in g?
 BY_HAND = Provenance("user", "entered by hand")
 
 
@@ -38,8 +41,8 @@ class LinkMasses:
     np.float64(42.0)
     """
 
-    mass: FloatArray = quantity("Mass", "kg", shape=(None,), least=0.0)
-    centre: FloatArray = quantity("Centre of mass", "mm", shape=(None, 3), axes="xyz", slip=20.0)
+    mass: FloatArray = quantity("Mass", "kg", shape=(None,), least=0.0, most=HEAVIEST)
+    centre: FloatArray = quantity("Centre of mass", "mm", shape=(None, 3), axes="xyz", slip=20.0, tiny=1e-3)
     provenance: Provenance = BY_HAND
 
     if TYPE_CHECKING:

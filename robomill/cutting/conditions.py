@@ -24,7 +24,7 @@ from robomill.units import format_count, format_si, to_si
 
 #: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
 PLUNGE = 1e-6
-WHOLE = ("part", "tooling")  # fields that are values of their own
+WHOLE = ("part", "tooling", "block_name")  # fields that are values of their own
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +67,7 @@ class CutConditions:
     part: EngagedPart | None = None
     reach: FloatArray | None = None
     tooling: Tooling | None = None
+    block_name: str = "line"
 
     def __post_init__(self) -> None:
         names = [
@@ -105,7 +106,7 @@ class CutConditions:
 
     def place(self, i: int) -> str:
         """Where step ``i`` is for people: its source line, or its number where no line is stated."""
-        return f"Line {self.block[i]}" if self.block[i] > 0 else f"Step {i}"
+        return f"{self.block_name.capitalize()} {self.block[i]}" if self.block[i] > 0 else f"Step {i}"
 
     def __len__(self) -> int:
         return len(self.v_f)
@@ -127,10 +128,13 @@ class CutConditions:
         for name, text in (("n_s", "the spindle stands still"), ("v_f", "the feed rate is 0")):
             bad = np.flatnonzero(engaged & (getattr(self, name) <= 0.0))
             if bad.size:
-                word = "S and M3" if name == "n_s" else "F"
-                more = ", or the set-up a spindle speed" if name == "n_s" and not self.n_s.any() else ""
+                word = "S and M3 before the cut" if name == "n_s" else "F before the cut"
+                if name == "n_s" and not self.n_s.any():
+                    word += ", or the program's source spindle_1_min"
+                if self.block_name != "line":
+                    word = "the path spindle_1_min" if name == "n_s" else "it feed_mm_min"
                 where = f"{self.place(bad[0])}: {text} while the tool is in the material"
-                raise CuttingError(f"{where}; give {word} before the cut{more}.", where=name)
+                raise CuttingError(f"{where}; give {word}.", where=name)
         result = np.zeros(len(self))
         return np.divide(self.v_f, self.n_s * np.asarray(flutes), out=result, where=engaged)
 
@@ -146,7 +150,7 @@ class CutConditions:
         a_p: ArrayLike,
         *,
         arc: tuple[float, float] = (0.0, np.pi),
-        **others: ArrayLike,
+        **others: Any,
     ) -> CutConditions:
         """The same arc everywhere, a full slot unless ``arc`` (phi_st, phi_ex) says otherwise; cutting, s = t = 0."""
         given: dict[str, Any] = {"cutting": True, "s": 0.0, "t": 0.0, **others}

@@ -1,5 +1,7 @@
 """Milling force from the process: cutter, material, feed and engagement give the mean force and its peak."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any, ClassVar, Self

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import refuse_unknown
 from robomill.arrays import FloatArray
 from robomill.cutting.profile_kernels import Shape, conical, heights, profile, radii, round_nosed
 from robomill.errors import CuttingError
@@ -22,6 +24,7 @@ from robomill.values import Value
 #: by 1 to 3 degrees (dish), so on gentler slopes only their corners touch. An assumption, the same for all mills.
 DISH = math.sin(to_si(0.5, "deg"))
 WIDEST, LONGEST = 0.6, 2.0  # m: hardly a cutter is wider, hardly one sticks out as far: was it meant in mm?
+THINNEST, SHORTEST = 0.05e-3, 0.2e-3  # m: no robot mills with less, none sticks out less: was it meant in m?
 MOST_FLUTES = 100  # a tooth a millimetre on a face mill of 32 mm; a mistyped number costs memory and time
 
 Hand = Literal["right", "left"]
@@ -79,8 +82,8 @@ class Cutter(Value):
     """
 
     kind: str = choice("Kind", {kind: family.short for kind, family in FAMILIES.items()})
-    diameter: float = quantity("Diameter", "mm", least=1e-6, slip=WIDEST)
-    corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0, slip=WIDEST)
+    diameter: float = quantity("Diameter", "mm", least=1e-6, slip=WIDEST, tiny=THINNEST)
+    corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0, slip=WIDEST, tiny=5e-6)
     flutes: int = whole("Flutes", default=2, least=1, most=MOST_FLUTES)
     helix: Hand = choice(
         "Helix",
@@ -97,6 +100,7 @@ class Cutter(Value):
         optional=True,
         above=0.0,
         slip=LONGEST,
+        tiny=THINNEST,
         digits=1,
         hint="Deeper cuts are warned of: the shank would rub.",
     )
@@ -106,6 +110,7 @@ class Cutter(Value):
         optional=True,
         above=0.0,
         slip=LONGEST,
+        tiny=SHORTEST,
         digits=1,
         hint="Free length from the holder; tool bending grows with its cube.",
     )
@@ -285,6 +290,7 @@ class Cutter(Value):
 
     def replace(self, **changes: Any) -> Cutter:
         """A checked copy with fields changed: ``diameter=0.01``, or ``diameter_mm=10``."""
+        refuse_unknown(changes, inspect.signature(Cutter).parameters, "Cutter.replace")
         changes = in_si(Cutter, changes)
         if self.kind == "ball" and "corner_radius" not in changes:
             changes["corner_radius"] = 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from robomill.arguments import asking
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 from robomill.lazy import cached_property
@@ -16,6 +17,7 @@ ASKED = ("kind", "flutes", "helix_angle")
 """Fields of a cutter that a force needs and a table of a machine does not say; without a word they are assumed."""
 
 
+@asking
 @dataclass(frozen=True)
 class TableTool:
     """A tool as T and H words call it by its ``number``.
@@ -63,6 +65,7 @@ class TableTool:
         return self.offset_x, self.offset_y, self.length
 
 
+@asking
 @dataclass(frozen=True)
 class ToolTable(Mapping[int, TableTool]):
     """Tools by number, in the order of their numbers; empty: no table. ``findings`` say what was odd in its file.

@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asking
 from robomill.arrays import BoolArray, FloatArray, IntArray, digest, frozen
 from robomill.errors import LoadTestError
 from robomill.frames import Columns
@@ -76,6 +77,7 @@ class _Rows(Tabled):
         return replace(self, **changed)  # type: ignore[type-var]
 
 
+@asking
 @dataclass(frozen=True, eq=False, repr=False)
 class LoadTests(_Rows):
     """Loads on the tool and the displacements they caused, one entry a test.
@@ -276,6 +278,7 @@ class LoadTests(_Rows):
         return tool_pose(robot, self.theta)
 
 
+@asking
 @dataclass(frozen=True, eq=False, repr=False)
 class JointTests(_Rows):
     """One joint loaded at a time, the joints below it blocked: the paper's Table 2.

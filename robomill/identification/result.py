@@ -1,5 +1,7 @@
 """What an identification says, and how far to trust it."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple

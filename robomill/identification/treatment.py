@@ -36,6 +36,8 @@ class Treatment:
             if getattr(self, name) not in known:
                 listed = ", ".join(known)
                 raise LoadTestError(f"{name}: found {getattr(self, name)!r}, expected one of {listed}.")
+        if not isinstance(self.robust, bool):
+            raise LoadTestError(f"robust: found {self.robust!r:.40}, expected True or False.")
         if self.bending != AUTO:
             object.__setattr__(self, "bending", _joints(self.bending))
         object.__setattr__(self, "exclude", tuple(sorted(set(self.exclude))))

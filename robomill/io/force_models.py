@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.cutting.force import ForceModel
 from robomill.cutting.forces import FORCES, model_of
 from robomill.cutting.forces.measured import ForceRecord
@@ -35,6 +36,7 @@ def force_to_table(force: ForceModel) -> dict[str, Any]:
     return kind_to_table(force, FORCE_CODECS)
 
 
+@asked
 def process_force(
     material: str | Path | Material,
     cutter: Cutter,

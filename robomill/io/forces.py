@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.cutting.forces.measured import FEWEST, Axis, ForceRecord, RecordFrame
 from robomill.errors import CuttingError
 from robomill.io.columns import Columns, Layout, read_columns
@@ -33,6 +34,7 @@ GAP = 5.0
 CREDIBLE_N = (1.0, 20_000.0)
 
 
+@asked
 def read_forces(
     path_or_text: str | Path | bytes,
     *,

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from robomill.arguments import asked, refuse_unknown
+from robomill.errors import LoadTestError
+from robomill.frames import is_frame
 from robomill.identification import estimate
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.result import IdentificationResult
@@ -16,6 +20,7 @@ if TYPE_CHECKING:
     from robomill.frames import DataFrame
 
 
+@asked
 def identify(
     robot: Robot,
     tests: LoadTests | JointTests | DataFrame | str | Path,
@@ -63,5 +68,13 @@ def identify(
     [7.2, 10.13, 12.26, 17.34, 91.24]
     """
     check_robot(robot)
+    known = {each.name for each in fields(Treatment)}
+    refuse_unknown(choices, known, "identify")
+    if not isinstance(tests, LoadTests | JointTests | str | Path | bytes) and not is_frame(tests):
+        found = type(tests).__name__
+        raise LoadTestError(
+            f"identify: expected load tests, a file or a DataFrame with their columns, found {found}; of an array or a "
+            "mapping make a DataFrame first."
+        )
     given = tests if isinstance(tests, LoadTests | JointTests) else read_load_tests(tests, robot)
     return estimate.identify(robot, given, model, treatment, **choices)

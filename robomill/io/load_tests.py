@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.errors import LoadTestError
 from robomill.frames import is_frame
 from robomill.identification.load_test import JointTests, LoadTests
@@ -48,6 +49,7 @@ JOINTS = tuple(f"theta{joint}" for joint in range(1, 10))
 COMPLIANCES = tuple(f"c{row}{column}" for row in XYZ for column in XYZ)
 
 
+@asked
 def read_load_tests(path_or_text: str | Path | bytes | DataFrame, robot: Robot | None = None) -> LoadTests | JointTests:
     """Read load tests of any protocol: poses, loads and displacements, with their units in the header.
 

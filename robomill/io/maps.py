@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray
 from robomill.errors import WorkspaceError
 from robomill.extras import needed
@@ -15,6 +16,7 @@ from robomill.workspace.grid import Grid
 SUFFIXES = (".csv", ".parquet", ".vti")
 
 
+@asked
 def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
     """Quantities of a map as a file; the suffix says the format.
 

@@ -3,10 +3,11 @@
 from pathlib import Path
 from typing import Any
 
+from robomill.arguments import asked
 from robomill.cutting.forces import FORCES
 from robomill.cutting.materials import Material
 from robomill.errors import CuttingError, RobomillError
-from robomill.files import MATERIAL
+from robomill.files import MATERIAL, check_place
 from robomill.io.declared import read_quantity, write_quantity
 from robomill.io.samples import sample_names, samples_dir
 from robomill.io.tables import Table, parse_toml, toml_value
@@ -39,6 +40,7 @@ def sample_materials() -> list[Material]:
     return [load_material(name) for name in material_names()]
 
 
+@asked
 def load_material(name_or_path: str | Path) -> Material:
     """A material's force coefficients, by the name of a sample or from a file.
 
@@ -63,6 +65,7 @@ def load_material(name_or_path: str | Path) -> Material:
     >>> rm.load_material("al7075_t6_carbide_ref190").name
     'al7075_t6_carbide_ref190'
     """
+    check_place(name_or_path, f"{MATERIAL.expected}, or one of material_names()", CuttingError)
     path = Path(name_or_path)
     if path.suffix != ".toml":
         if str(name_or_path) not in material_names():

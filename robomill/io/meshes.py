@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray
 from robomill.errors import MissingExtraError, SurfaceError
 from robomill.extras import missing
@@ -98,6 +99,7 @@ def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> by
         return target.read_bytes()
 
 
+@asked
 def read_stock(path: str | Path, *, unit: str = "mm") -> Stock:
     """The stock from an STL file.
 

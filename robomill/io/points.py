@@ -47,6 +47,7 @@ def points_from_table(table: Table) -> PointsSource:
     table.finish()
     try:
         usual = _usual(p, given["v_f"])
+        given |= {"block_name": "line"} if "block" in given else {}  # of a program that is not kept
         return PointsSource(Toolpath(**{**usual, **given, "p": p}), name)
     except ToolpathError as exc:
         raise table.refuse(points, str(exc)) from None
@@ -75,7 +76,7 @@ def _usual(p: FloatArray, v_f: FloatArray) -> dict[str, Any]:
     cutting = np.asarray(v_f > 0.0)
     cutting[:1] = False
     none: dict[str, Any] = {name: np.zeros(1, dtype=kind) for name, kind in PER_MOVE.items()}
-    return {**none, "v_f": v_f, "cutting": cutting, "block": np.arange(1, len(p) + 1)}
+    return {**none, "v_f": v_f, "cutting": cutting, "block": np.arange(1, len(p) + 1), "block_name": "point"}
 
 
 def _as_many(table: Table, key: str, read: Callable[[str], Any], m: int) -> Any:

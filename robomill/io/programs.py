@@ -2,12 +2,14 @@
 
 from pathlib import Path
 
+from robomill.arguments import asked
 from robomill.errors import ProjectError
 from robomill.files import PROGRAM, check_size, name_of, read_file
 from robomill.io.samples import sample_or_file
 from robomill.toolpath.source import GCodeSource
 
 
+@asked
 def read_program(path: str | Path, dialect: str = "auto") -> GCodeSource:
     """A program's file as the source of a set-up's path.
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from robomill.arguments import asked
 from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.springs import SPRINGS
 from robomill.cutting.tool import Cutter
@@ -50,6 +51,7 @@ ALLOWED = ("tolerance", "floor_tolerance", "feed_tolerance")  # at the top, as t
 NUMERICS = tuple(name for name in NUMBERS if name not in ALLOWED)  # in [numerics]
 
 
+@asked
 def load_setup(path: str | Path, allow_outside: bool = False) -> SimulationSetup:
     """A set-up from its TOML file.
 

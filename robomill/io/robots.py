@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 
+from robomill.arguments import asked
 from robomill.errors import RobotError
 from robomill.files import ROBOT, name_of, read_file
 from robomill.io.robot_reader import robot_from_toml
@@ -54,6 +55,7 @@ def robot_titles() -> Mapping[str, str]:
     return {name: load_robot(name).title or name for name in robot_names()}
 
 
+@asked
 def load_robot(name_or_path: str | Path, *, tip: str | None = None) -> Robot:
     """A robot by the name of a preset, or from a file.
 

@@ -9,7 +9,9 @@ from functools import cache
 from pathlib import Path
 from typing import Literal
 
+from robomill.arguments import asked
 from robomill.errors import ProjectError, RobomillError
+from robomill.files import check_place
 
 SampleKind = Literal["set-up", "robot", "program", "load tests", "material", "drawing"]
 TITLED: tuple[SampleKind, ...] = ("set-up", "robot", "material")  # TOML files, which say what they are called
@@ -94,6 +96,7 @@ def find_sample(kind: SampleKind, name: str | Path) -> Path | None:
 
 def sample_or_file(kind: SampleKind, name: str | Path, error: type[RobomillError]) -> Path:
     """The file of a sample, or the one named. Raises ``error`` for a mere name that is neither, with those known."""
+    check_place(name, f"a file, or the name of a {kind} that comes with robomill", error)
     if not str(name).strip():
         raise error(f"The name of the {kind} is empty; give a file, or one of {', '.join(sample_names(kind))}.")
     path = find_sample(kind, name) or Path(name)
@@ -111,6 +114,7 @@ def sample_or_file(kind: SampleKind, name: str | Path, error: type[RobomillError
     raise refusal
 
 
+@asked
 def copy_samples(folder: str | Path, names: Sequence[str] = ()) -> list[Path]:
     """Copy samples, with what lies beside them, into a folder of one's own.
 

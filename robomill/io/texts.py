@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 from robomill.errors import RobomillError
-from robomill.files import FileKind, check_size, name_of, read_file
+from robomill.files import FileKind, check_place, check_size, name_of, read_file
 
 WINDOWS = "cp1252"
 # Control characters that no text holds, and bytes that the code page has no character for.
@@ -26,6 +26,7 @@ def read_text(given: str | Path | bytes, error: type[RobomillError], kind: FileK
         raw = given
         check_size(len(raw), kind, error, name or "This file")
     else:
+        check_place(given, kind.expected, error)
         name = name or name_of(given) or str(given)
         raw = read_file(given, kind, error)
     called = f"{name}:" if name else "This file:"

@@ -14,6 +14,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+from robomill.arguments import asked
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
 from robomill.errors import CuttingError
@@ -41,6 +42,7 @@ _SILENT = frozenset("PABCUVWIJ")
 _LENGTHS = "XYZD"
 
 
+@asked
 def read_tool_table(given: str | Path | bytes, *, unit: str = "mm", name: str = "") -> ToolTable:
     r"""The tools of a machine's table.
 

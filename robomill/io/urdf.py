@@ -17,23 +17,28 @@ from robomill.kinematics.transforms import rotation_x, rotation_y, rotation_z, t
 from robomill.provenance import Provenance
 from robomill.robot.joints import ASSUMED_COMPLIANCE
 from robomill.robot.model import Robot
+from robomill.robot.table import doubtful_limit
 
 MOVING = ("revolute", "continuous", "prismatic")
 PARALLEL = 1e-9
 ROS_TIP = "tool0"  # the tool frame that ROS-Industrial asks of every arm
 SAME_PLACE = 1e-9  # m, and of directions
+FARTHEST, SHORTEST = 20.0, 0.01  # m: no joint stands farther from the one before, no arm has links as short
+MOST_TURN = 2.0 * np.pi + 1e-2  # rad, as files round it
 MOST_JOINTS = 20  # before a D-H table is made of them; the robot says how many it may have
 
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """One <joint>: T (4, 4) of its frame in its parent's, axis (3,) in its own, limits (lower, upper) or None."""
+    """One <joint>: T (4, 4) of its frame in its parent's, turned by rpy (3,) rad; axis (3,) in its own, limits (lower,
+    upper) or None."""
 
     name: str
     type: str
     parent: str
     child: str
     T: FloatArray
+    rpy: FloatArray
     axis: FloatArray
     limits: tuple[float, float] | None
     mimics: bool
@@ -138,6 +143,7 @@ def _joint(element: ElementTree.Element, where: str) -> Joint:
         inside("parent", "link"),
         inside("child", "link"),
         transform(rotation_z(rpy[2]) @ rotation_y(rpy[1]) @ rotation_x(rpy[0]), xyz),
+        rpy,
         axis / size,
         (numbers("limit", "lower", "", 1)[0], numbers("limit", "upper", "", 1)[0]) if limited else None,
         element.find("mimic") is not None,
@@ -240,6 +246,7 @@ def _walk_up(parents: dict[str, Joint], tip: str, where: str) -> list[Joint]:
 
 
 def _robot(chain: list[Joint], name: str, where: str) -> Robot:
+    _check_units(chain, where)
     T_M = np.eye(4)
     axes: list[FloatArray] = []
     points: list[FloatArray] = []
@@ -292,7 +299,32 @@ def _limits(joint: Joint, where: str) -> tuple[float, float]:
         return -np.pi, np.pi
     if joint.limits is None:
         raise RobotError(f"{where}: joint {joint.name!r:.60} has no limits; give <limit lower= upper=>.")
+    doubt = doubtful_limit(np.array(joint.limits), joint.type == "prismatic")
+    if doubt:
+        raise RobotError(f"{where}: joint {joint.name!r:.60}, limit: {doubt} A URDF is in rad and m.")
     return joint.limits
+
+
+def _check_units(chain: list[Joint], where: str) -> None:
+    """Refuse places in mm and turns in degrees, by what from_dh refuses: a URDF is in m and rad."""
+    for joint in chain:
+        size, turn = float(np.linalg.norm(joint.T[:3, 3])), float(np.abs(joint.rpy).max())
+        if size > FARTHEST:
+            raise RobotError(
+                f"{where}: joint {joint.name!r:.60}, origin xyz: found {size:g} m, expected at most {FARTHEST:g}; was "
+                f"{size:g} mm meant? A URDF is in rad and m."
+            )
+        if turn > MOST_TURN:
+            raise RobotError(
+                f"{where}: joint {joint.name!r:.60}, origin rpy: found {turn:g} rad, expected at most {MOST_TURN:.3g}; "
+                f"was {turn:g}° meant? A URDF is in rad and m."
+            )
+    reach = sum(float(np.linalg.norm(joint.T[:3, 3])) for joint in chain)
+    if 0.0 < reach < SHORTEST and not any(joint.type == "prismatic" for joint in chain):
+        raise RobotError(
+            f"{where}: all links together are {reach:g} m long, expected at least {SHORTEST:g}: a URDF is in m; was "
+            "another unit meant?"
+        )
 
 
 def dh_from_axes(k: FloatArray, p: FloatArray, T_MT: FloatArray) -> dict[str, FloatArray]:

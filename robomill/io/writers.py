@@ -3,6 +3,9 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from robomill.arguments import asked
 from robomill.cutting.materials import Material
 from robomill.errors import CuttingError, ProjectError, RobomillError, RobotError, SurfaceError, ToolpathError
 from robomill.files import shown_place, written
@@ -17,7 +20,10 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.surface.zmap import ZMap
 from robomill.toolpath.path import Toolpath
 
+FEWEST_FACES = 12  # of a box
 
+
+@asked
 def write_robot(path: str | Path, robot: Robot) -> Path:
     """A robot as a file that ``load_robot`` reads.
 
@@ -50,6 +56,7 @@ def write_robot(path: str | Path, robot: Robot) -> Path:
     return _write(path, robot_to_urdf(robot) if is_urdf(str(path)) else robot_to_toml(robot), RobotError)
 
 
+@asked
 def write_setup(path: str | Path, setup: SimulationSetup) -> Path:
     """A set-up as one self-contained TOML file.
 
@@ -82,6 +89,7 @@ def write_setup(path: str | Path, setup: SimulationSetup) -> Path:
     return _write(path, setup_to_toml(setup), ProjectError)
 
 
+@asked
 def write_material(path: str | Path, material: Material) -> Path:
     """A material row as a TOML file.
 
@@ -114,6 +122,7 @@ def write_material(path: str | Path, material: Material) -> Path:
     return _write(path, material_to_toml(material), CuttingError)
 
 
+@asked
 def write_gcode(path: str | Path, toolpath: Toolpath, *, units: str = "mm", title: str = "") -> Path:
     """A toolpath as a G-code program.
 
@@ -151,6 +160,7 @@ def write_gcode(path: str | Path, toolpath: Toolpath, *, units: str = "mm", titl
     return _write(path, toolpath_to_gcode(toolpath, units=units, title=title), ToolpathError)
 
 
+@asked
 def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_TRIANGLES) -> Path:
     """A part as a closed solid in millimetres, binary STL.
 
@@ -161,7 +171,7 @@ def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_TRIANGLE
     surface : ZMap
         ``result.machined`` or ``result.ideal``.
     max_faces : int
-        About so many triangles at most, 50 bytes each: a finer surface is thinned out.
+        About so many triangles, 50 bytes each: a finer surface is thinned out to them.
 
     Returns
     -------
@@ -187,6 +197,8 @@ def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_TRIANGLE
     _check(path, surface, ZMap, SurfaceError)
     if Path(path).suffix.lower() != ".stl":
         raise SurfaceError(f"{shown_place(path)}: this is written as STL; give it a name that ends in .stl.")
+    if not isinstance(max_faces, int | np.integer) or max_faces < FEWEST_FACES:
+        raise SurfaceError(f"Write: max_faces is {max_faces!r:.40}; expected a whole number, {FEWEST_FACES} or more.")
     if surface.removed_volume <= 0.0:
         raise SurfaceError(
             f"{shown_place(path)}: nothing is cut from this surface, it is the stock as it was; see the verdict of the "

@@ -1,5 +1,7 @@
 """Inverse kinematics as people ask it: places meant in mm are refused; those of a program or a map are not."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import wraps
 from typing import Concatenate, ParamSpec
@@ -7,6 +9,7 @@ from typing import Concatenate, ParamSpec
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.kinematics import inverse
@@ -15,31 +18,38 @@ from robomill.robot.model import Robot, check_robot
 from robomill.units import to_si
 
 P = ParamSpec("P")
-SLIPPED = 100.0  # times as far as an arm reaches: such a place was meant in mm
+SLIPPED = 30.0  # times as far as an arm reaches: such a place was meant in mm
 
 
 def _in_metres(
     solve: Callable[Concatenate[Robot, ArrayLike, P], IKResult],
 ) -> Callable[Concatenate[Robot, ArrayLike, P], IKResult]:
+    @asked
     @wraps(solve)
-    def asked(robot: Robot, T_MT: ArrayLike, *args: P.args, **choices: P.kwargs) -> IKResult:
+    def in_metres(robot: Robot, T_MT: ArrayLike, *args: P.args, **choices: P.kwargs) -> IKResult:
         check_robot(robot)
         poses = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
         _check_places(robot, poses[..., :3, 3])
         return solve(robot, poses, *args, **choices)
 
-    return asked
+    return in_metres
+
+
+def longest_reach(robot: Robot) -> float:
+    """m: no tip lies farther from the zero of {M}: all links in a row, those that slide drawn out."""
+    chain, slides = robot.chain, robot.chain.prismatic
+    span = np.linalg.norm(chain.T_0[:3, 3]) + np.linalg.norm(chain.E[:, :3, 3], axis=1).sum()
+    span += np.abs(robot.limits[slides]).max(axis=1).sum() + np.abs(chain.offset[slides]).sum()
+    return float(span)
 
 
 def _check_places(robot: Robot, p: FloatArray) -> None:
     """Refuse places (..., 3) m so many arms' lengths away that they were meant in mm."""
-    chain, slides = robot.chain, robot.chain.prismatic
-    span = np.linalg.norm(chain.T_0[:3, 3]) + np.linalg.norm(chain.E[:, :3, 3], axis=1).sum()
-    span += np.abs(robot.limits[slides]).max(axis=1).sum() + np.abs(chain.offset[slides]).sum()
+    span = longest_reach(robot)
     farthest = float(np.abs(p).max(initial=0.0))
     if farthest > SLIPPED * span:
         raise KinematicsError(
-            f"T_MT: a place lies {farthest:g} m off, {robot.name!r} reaches {float(span):.3g} m at most: places are in "
+            f"T_MT: a place lies {farthest:g} m off, {robot.name!r} reaches {span:.3g} m at most: places are in "
             f"m; {farthest:g} mm are {to_si(farthest, 'mm'):g}."
         )
 

@@ -1,8 +1,11 @@
 """Where the tool is: forward kinematics, batched over leading axes."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asked
 from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.robot.model import Robot, check_robot
@@ -11,7 +14,7 @@ from robomill.units import to_si
 # Poses handled at a time where several arrays of them are needed: a block stays in the second-level cache.
 BLOCK = 4096
 # Turns (strokes, where a joint slides) beyond its limits at which an angle was meant in degrees; whole and half numbers
-# are suspected from one turn on: nobody has such angles in radians.
+# are suspected from one turn on: nobody has such angles in radians. So are all angles where limits are known.
 SLIPPED = 5.0
 
 
@@ -28,9 +31,15 @@ def joint_angles(robot: Robot, theta: ArrayLike) -> FloatArray:
         beyond = (found < low - turns * turn) | (found > high + turns * turn)
         if not beyond.any():
             continue
-        if turns == SLIPPED or not (2.0 * found % 1.0).any():
+        if turns == SLIPPED or not (2.0 * found % 1.0).any() or (beyond & _known_limits(robot)).any():
             raise KinematicsError(_slipped(robot, found, beyond))
     return found
+
+
+def _known_limits(robot: Robot) -> BoolArray:
+    """(n,) where somebody has stated limits; half a turn either way is also what joints without limits are given."""
+    stated = robot.provenance["limits"].kind != "assumed"
+    return np.asarray(stated & ~(np.abs(np.abs(robot.limits) - np.pi) < 1e-9).all(axis=1))
 
 
 def _slipped(robot: Robot, theta: FloatArray, beyond: BoolArray) -> str:
@@ -47,6 +56,7 @@ def _slipped(robot: Robot, theta: FloatArray, beyond: BoolArray) -> str:
     )
 
 
+@asked
 def tool_pose(robot: Robot, theta: ArrayLike) -> FloatArray:
     """Where the tool is: forward kinematics, eqs. (4), (5), (7).
 
@@ -82,6 +92,7 @@ def tool_pose(robot: Robot, theta: ArrayLike) -> FloatArray:
     return T_MT
 
 
+@asked
 def joint_frames(robot: Robot, theta: ArrayLike) -> FloatArray:
     """Frames of all joints and of the tool, eqs. (4), (5).
 

@@ -1,5 +1,7 @@
 """Where the joints must stand: inverse kinematics, checked by forward kinematics before anyone uses it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 

@@ -1,14 +1,18 @@
 """The geometric Jacobian of the tool tip and the task Jacobian of five-axis milling."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asked
 from robomill.arrays import BoolArray, FloatArray
 from robomill.kinematics.forward import joint_angles, rows
 from robomill.kinematics.transforms import rotation_x, rotation_y, tilt_from_axis
 from robomill.robot.model import Robot
 
 
+@asked
 def geometric_jacobian(robot: Robot, theta: ArrayLike) -> FloatArray:
     """The geometric Jacobian of the tool tip, eqs. (8), (9).
 
@@ -65,6 +69,7 @@ def twists(axis: FloatArray, reach: FloatArray, slides: BoolArray | bool = False
     return found
 
 
+@asked
 def task_jacobian(robot: Robot, theta: ArrayLike) -> FloatArray:
     """The Jacobian of what a five-axis task asks: the tip, and the direction of the tool axis.
 

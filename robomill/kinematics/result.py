@@ -1,5 +1,7 @@
 """What inverse kinematics answers, and why a pose was not reached, in words."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, Literal
 

@@ -4,9 +4,12 @@ R = R_x(A) R_y(B), so the tool axis is k_T = (sin B, -sin A cos B, cos A cos B);
 spindle. The paper's eq. (3) leaves A and B undefined; this is robomill's reading.
 """
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.quantities import Quantity
@@ -86,6 +89,7 @@ def turn_between(R: FloatArray, Q: FloatArray, whole: bool) -> FloatArray:
     return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0)))
 
 
+@asked
 def pose_from_world(x_M: ArrayLike) -> FloatArray:
     """The pose of the tool from world coordinates: R = R_x(A) R_y(B) at X, Y, Z.
 
@@ -115,6 +119,7 @@ def pose_from_world(x_M: ArrayLike) -> FloatArray:
     return transform(rotation_x(x_M[..., 3]) @ rotation_y(x_M[..., 4]), x_M[..., :3])
 
 
+@asked
 def world_from_pose(T_MT: ArrayLike) -> FloatArray:
     """World coordinates of poses, the inverse of ``pose_from_world``; the spin about the tool axis is not part of them.
 

@@ -11,7 +11,8 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, frozen, of_kind
+from robomill.arguments import asked, asking, refuse_unknown
+from robomill.arrays import Arrays, BoolArray, FloatArray, Numbers, Rows, frozen, of_kind
 from robomill.errors import RobotError
 from robomill.frames import Columns
 from robomill.lazy import cached_property
@@ -26,11 +27,12 @@ from robomill.values import Tabled
 USER_SET = "user"
 SOFTEST = 1e-2  # rad/(N m), m/N: no joint gives more: was it meant in 1e-7 of it?
 LONGEST = 100.0  # m: no link is longer: was it meant in mm?
-Limits = ArrayLike | Sequence[Sequence[float] | None]
+Limits = Arrays | Sequence[float | Sequence[float] | Arrays | None]
 # Of the last axis's frame, where the tip stands in it: what of T_tool is typed as numbers.
 TOOL_TIP = Quantity("Tip", "mm", "array", shape=(3,), axes=tuple("xyz"), digits=2)
 
 
+@asking
 @dataclass(frozen=True, eq=False, repr=False)
 class Robot(Tabled):
     """A serial arm of 1 to 7 joints. Immutable; ``replace`` gives a changed, checked copy.
@@ -139,6 +141,7 @@ class Robot(Tabled):
             raise RobotError(f"{where}: compliance set {self.compliance_set!r} is not among its sets ({known}).")
 
     @classmethod
+    @asked
     def from_dh(
         cls,
         *,
@@ -160,16 +163,50 @@ class Robot(Tabled):
         convention: Literal["standard", "modified"] = "standard",
         sign: ArrayLike | None = None,
         prismatic: ArrayLike | None = None,
-        T_base: ArrayLike | None = None,
-        base_xyz: ArrayLike | None = None,
-        base_xyz_mm: ArrayLike | None = None,
-        T_tool: ArrayLike | None = None,
-        tool_xyz: ArrayLike | None = None,
-        tool_xyz_mm: ArrayLike | None = None,
+        T_base: Rows | None = None,
+        base_xyz: Numbers | None = None,
+        base_xyz_mm: Numbers | None = None,
+        T_tool: Rows | None = None,
+        tool_xyz: Numbers | None = None,
+        tool_xyz_mm: Numbers | None = None,
         name: str = "robot",
         title: str = "",
     ) -> Robot:
-        """A robot from its Denavit-Hartenberg table; see ``robot.table.robot_fields`` for what each number is.
+        """A robot from its Denavit-Hartenberg table, one entry a joint from the base to the tool.
+
+        Parameters
+        ----------
+        a, alpha, d, theta_offset : array_like, (rows,) or one number for all
+            Link length and twist, offset along the axis and angle at theta = 0; m and rad, or ``_mm`` and ``_deg``.
+            What is left out is 0.
+        limits : array_like, (rows, 2), or one pair for all
+            [lower, upper] in rad (m where a joint slides); or ``limits_deg`` of the joints that turn and ``limits_mm``
+            of those that slide, None for the others. A turning joint without is taken to turn by 180 degrees either
+            way, which is marked as assumed; one that slides must have them.
+        C_theta, C_theta_1e_7_rad_per_Nm, k_theta_Nm_per_rad, k_theta_kNm_per_rad : array_like, (rows,) or one for all
+            Compliances in rad/(N m) (m/N where a joint slides), as papers print them, or stiffnesses in N m/rad or
+            kN m/rad; one of the four. A rigid joint has compliance 0, stiffness inf. Without any, 1e-6 rad/(N m) is
+            assumed, and nothing is judged with it.
+        convention : "standard" or "modified"
+            Which table it is: Denavit and Hartenberg's, or Craig's.
+        sign, prismatic : array_like, (rows,)
+            -1 for joints that count backwards; True for joints that slide.
+        T_base, T_tool : array_like, (4, 4)
+            The base in {M}, and {T} in the last frame of the table, its z_T out of the part towards the spindle.
+        base_xyz, tool_xyz : array_like, (3,)
+            Instead of a frame only where it stands, m (or ``_mm``); its axes are then those of {M}, or of the flange.
+        name, title : str
+            A short name, and one for people.
+
+        Returns
+        -------
+        Robot
+            With ``n`` free joints.
+
+        Raises
+        ------
+        RobotError
+            For a table that cannot be, and for numbers that were meant in another unit; joint and number are named.
 
         Examples
         --------
@@ -283,29 +320,33 @@ class Robot(Tabled):
 
     # ---- change is replacement ------------------------------------------------------------------------------------
     def replace(self, **changes: Any) -> Robot:
-        """A checked copy with fields changed.
+        """A checked copy with fields changed, by their own names or by those of ``from_dh`` with a unit.
 
-        ``C_theta`` and ``limits`` are accepted with n entries (free joints) or with all rows. New compliances that are
-        not given with a ``compliance_set`` are the user's: the set in force becomes "user".
+        Compliances (``C_theta``, ``k_theta_kNm_per_rad`` ...) and limits are accepted with n entries (free joints) or
+        with all rows. New compliances that are not given with a ``compliance_set`` are the user's: the set in force
+        becomes "user". ``tool_xyz_mm`` moves the tip and keeps the axes of the tool.
         """
-        changes = in_si(Robot, changes)
+        from robomill.robot.table import COLUMN_UNITS, OTHERS, changed_fields
+
+        known = [f.name for f in fields(self)]
+        columns = [f"{name}{unit}" for name, unit in COLUMN_UNITS.items()]
+        refuse_unknown(changes, [*known, "C_theta", "limits", *columns, *OTHERS], f"Robot {self.name!r}")
+        changes = in_si(Robot, changed_fields(self, changes))
         for short, full in (("C_theta", "C_theta_all"), ("limits", "limits_all")):
             if short == "C_theta" and short in changes:
-                refuse_slip(replace(quantities(Robot)[full], name=short), changes[short], *Robot.door)
+                _refuse_slip(quantities(Robot)[full], changes[short], self.name)
             if short in changes:
-                changes[full] = self._filled(np.asarray(changes.pop(short)), getattr(self, full))
+                changes[full] = self._filled(changes.pop(short), getattr(self, full))
         if "C_theta_all" in changes and "compliance_set" not in changes:
             changes["compliance_set"] = USER_SET
             if self.assumes_compliances and "provenance" not in changes:
                 changes["provenance"] = {**self.provenance, "compliance": Provenance("user", "given by hand")}
-        known = {f.name for f in fields(self)}
-        unknown = set(changes) - known
-        if unknown:
-            raise RobotError(f"Robot {self.name!r}: has no field {sorted(unknown)[0]!r}.")
         return Robot(**{**{key: getattr(self, key) for key in known}, **changes})
 
     def _filled(self, value: Any, current: FloatArray) -> Any:
-        if self.n == self.rows or len(value) != self.n:
+        if np.ndim(value) == 0 and not isinstance(value, str) and value is not None:
+            return np.where(self.free, value, current) if current.ndim == 1 else value  # one for all
+        if self.n == self.rows or np.ndim(value) == 0 or len(value) != self.n:
             return value
         full = np.array(current)
         full[self.free] = value
@@ -324,6 +365,13 @@ class Robot(Tabled):
         for key in ("compliance_sets", "provenance"):
             state[key] = dict(state[key])
         return _rebuild, (state,)
+
+
+def _refuse_slip(declared: Quantity, C_theta: Any, name: str) -> None:
+    """Refuse compliances as papers print them, without their power of ten; the joint is named."""
+    for i, each in enumerate(np.ravel(np.asarray(C_theta))):
+        who = f"Robot {name!r}" + (f", joint {i + 1}" if np.ndim(C_theta) else "")
+        refuse_slip(replace(declared, name="C_theta", key="C_theta_1e_7_rad_per_Nm"), each, RobotError, who)
 
 
 def check_robot(robot: Any) -> None:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -11,9 +11,10 @@ from robomill.errors import RobotError
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity
 from robomill.spelled import one_of, refuse_slip
-from robomill.units import to_si
+from robomill.units import format_plain, from_si, to_si
 
-COLUMNS = ("alpha", "a", "d", "theta_offset")
+COLUMN_UNITS = {"alpha": "_deg", "a": "_mm", "d": "_mm", "theta_offset": "_deg"}
+COLUMNS = tuple(COLUMN_UNITS)
 HERE = Provenance("user", "given in code")
 ASSUMED_C = 1e-6  # rad/(N m), m/N: where nobody has given one
 SOFTEST, STIFFEST = 1e-3, 1e-9  # rad/(N m): no joint of a machine gives more, or less without being called rigid
@@ -25,11 +26,22 @@ GIVES = {
     "k_theta_kNm_per_rad": ("kN m/rad", True),
 }
 TURNS = 5  # beyond so many, a limit in rad was meant in degrees
+ALIKE = 3e-3  # of a right angle: so near to it in radians is a twist that was given as degrees
+SHORTEST, SLIGHTEST = 0.05, 0.01  # m: no arm has links that are as short together, or stands on such with its tool
 FARTHEST = 200.0  # m: a limit of a sliding joint beyond it was meant in mm
 FRAME = {
     part: Quantity(f"{part} frame", "mm", "array", name=f"{part}_xyz", key=f"{part}_xyz_mm", slip=20.0)
     for part in ("base", "tool")
 }
+
+
+OTHERS = (
+    "limits_deg",
+    "limits_mm",
+    *(name for name in GIVES if name != "C_theta"),
+    *(f"{part}_xyz{unit}" for part in FRAME for unit in ("", "_mm")),
+)
+"""Names that ``Robot.replace`` takes beside those of the fields."""
 
 
 def robot_fields(given: Mapping[str, Any], declared: Mapping[str, Quantity]) -> dict[str, Any]:
@@ -48,13 +60,17 @@ def robot_fields(given: Mapping[str, Any], declared: Mapping[str, Quantity]) -> 
     """
     who = f"Robot {(given['title'] or given['name'])!r}"
     table: dict[str, Any] = {name: _column(given, declared[name], who) for name in COLUMNS}
-    rows = _rows([*table.values(), *(given.get(key) for key in ("prismatic", "sign", *GIVES))], who)
+    keys = {name: name if given[declared[name].key] is None else declared[name].key for name in COLUMNS}
+    columns = {keys[name]: value for name, value in table.items()}
+    rows = _rows(columns | {key: given[key] for key in ("prismatic", "sign", *GIVES)}, who)
     table = {name: np.array(np.broadcast_to(0.0 if value is None else value, (rows,))) for name, value in table.items()}
     slides = np.zeros(rows, dtype=bool)
     if given["prismatic"] is not None:
         slides = np.array(np.broadcast_to(np.asarray(given["prismatic"], dtype=bool), (rows,)))
     limits, limits_said = _limits(given, slides, who)
     C_theta, C_said = _compliances(given, slides, who)
+    frames = {part: _frame(given, part, who) for part in FRAME}
+    _check_links(given, table, slides, list(frames.values()), who)
     return {
         **table,
         "name": given["name"],
@@ -64,8 +80,8 @@ def robot_fields(given: Mapping[str, Any], declared: Mapping[str, Quantity]) -> 
         "sign": given["sign"],
         "limits_all": limits,
         "C_theta_all": C_theta,
-        "T_base": _frame(given, "base", who),
-        "T_tool": _frame(given, "tool", who),
+        "T_base": frames["base"],
+        "T_tool": frames["tool"],
         "provenance": {
             **dict.fromkeys(("geometry", "base", "tool"), HERE),
             "limits": limits_said,
@@ -74,37 +90,125 @@ def robot_fields(given: Mapping[str, Any], declared: Mapping[str, Quantity]) -> 
     }
 
 
+class Table(Protocol):
+    """What of a robot a change of its limits, compliances and frames rests on."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def n(self) -> int: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def free(self) -> BoolArray: ...
+    @property
+    def prismatic(self) -> BoolArray: ...
+    @property
+    def limits_all(self) -> FloatArray: ...
+    @property
+    def C_theta_all(self) -> FloatArray: ...
+
+
+def changed_fields(robot: Table, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """``changes`` of a robot by the names of its fields, where they go by another one that ``robot_fields`` takes.
+
+    Limits and compliances have an entry for each free joint, or for every row.
+    """
+    who, given = f"Robot {(robot.title or robot.name)!r}", {"limits": None, **dict.fromkeys(OTHERS), **changes}
+    found = {name: value for name, value in changes.items() if name not in OTHERS}
+    if given["limits_deg"] is not None or given["limits_mm"] is not None:
+        value = given["limits_mm"] if given["limits_deg"] is None else given["limits_deg"]
+        rows = _rows_of(robot, value)
+        limits = np.array(robot.limits_all)
+        limits[rows] = _limits(given, robot.prismatic[rows], who, limits[rows])[0]
+        found["limits_all"] = limits
+    names = [name for name in GIVES if name in OTHERS and changes.get(name) is not None]
+    if names:
+        rows = _rows_of(robot, changes[names[0]])
+        C_theta = np.array(robot.C_theta_all)
+        C_theta[rows] = _compliances({**dict.fromkeys(GIVES), **changes}, robot.prismatic[rows], who)[0]
+        found["C_theta_all"] = C_theta
+        found.pop("C_theta", None)
+    for part in FRAME:
+        if given[f"{part}_xyz"] is not None or given[f"{part}_xyz_mm"] is not None:
+            T = np.array(getattr(robot, f"T_{part}"))
+            T[:3, 3] = _frame({f"T_{part}": None, **given}, part, who)[:3, 3]
+            found[f"T_{part}"] = T
+    return found
+
+
+def _rows_of(robot: Table, value: Any) -> Any:
+    """The rows of the table that the entries of ``value`` are of: the free ones where there are as many."""
+    return np.flatnonzero(robot.free) if hasattr(value, "__len__") and len(value) == robot.n else np.arange(robot.rows)
+
+
 def _column(given: Mapping[str, Any], declared: Quantity, who: str) -> FloatArray | None:
     """A column of the table in SI, one number for all or one a joint; None where it is left out."""
     plain, in_unit = given[declared.name], given[declared.key]
     if plain is None and in_unit is None:
         return None
-    return _numbers(one_of(declared, plain, in_unit, RobotError, who), declared.label, who)
+    found = _numbers(one_of(declared, plain, in_unit, RobotError, who), declared.label, who)
+    if in_unit is not None and declared.name == "alpha":
+        _check_twists(from_si(found, "deg"), who)
+    return found
+
+
+def _check_twists(alpha: FloatArray, who: str) -> None:
+    """Refuse twists in degrees whose largest is a right angle, or two, in radians: no arm is twisted by 1.57 degrees
+    and nowhere more."""
+    turns = float(np.abs(alpha).max(initial=0.0)) / (0.5 * math.pi)
+    if 0.5 < turns < 2.5 and abs(turns - round(turns)) < ALIKE * round(turns):
+        largest = f"{turns * 0.5 * math.pi:.6g}"
+        raise RobotError(
+            f"{who}: alpha_deg: the largest twist is {largest}°, in radians that is {90 * round(turns)}°: alpha_deg is "
+            f"in degrees. If radians are meant, give alpha; so you do where {largest}° is meant."
+        )
+
+
+def _check_links(
+    given: Mapping[str, Any], table: Mapping[str, Any], slides: BoolArray, frames: list[Any], who: str
+) -> None:
+    """Refuse links in mm that make an arm as short as none is: they were meant in m."""
+    keys = [key for key in ("a_mm", "d_mm") if given[key] is not None]
+    links = float(np.abs(table["a"]).sum() + np.abs(table["d"]).sum())
+    beside = max((float(np.linalg.norm(np.asarray(T)[:3, 3])) for T in frames if np.shape(T) == (4, 4)), default=0.0)
+    most = SHORTEST if beside < SHORTEST else SLIGHTEST
+    if keys and not slides.any() and 0.0 < links < most:
+        raise RobotError(
+            f"{who}: {' and '.join(keys)}: all links together are {format_plain(from_si(links, 'mm'), 4)} mm long, "
+            f"expected at least {format_plain(from_si(most, 'mm'), 3)}: was it meant in m? Then give "
+            f"{' and '.join(key[0] for key in keys)}; so you do where an arm as small is meant."
+        )
 
 
 def _numbers(value: Any, name: str, who: str) -> FloatArray:
     try:
         found = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise RobotError(f"{who}: {name}: expected numbers, found {value!r:.40}.") from None
+        raise RobotError(f"{who}: {name}: expected a list of numbers, one a joint; found {value!r:.40}.") from None
     if found.ndim > 1:
         raise RobotError(f"{who}: {name}: expected one number, or one a joint; found shape {found.shape}.")
     return found
 
 
-def _rows(columns: list[Any], who: str) -> int:
+def _rows(columns: Mapping[str, Any], who: str) -> int:
     """How many joints there are; columns that disagree are refused."""
-    lengths = {len(value) for value in map(np.asarray, (c for c in columns if c is not None)) if value.ndim == 1}
+    lengths = {name: len(value) for name, value in columns.items() if value is not None and np.ndim(value) == 1}
     if not lengths:
         raise RobotError(f"{who}: found no list of numbers; give at least one column with a number a joint, e.g. a_mm.")
-    if len(lengths) > 1:
-        found = " and ".join(map(str, sorted(lengths)))
-        raise RobotError(f"{who}: columns of {found} numbers do not make a table; expected one number a joint in each.")
-    return lengths.pop()
+    if len({*lengths.values()}) > 1:
+        alike = {rows: [name for name, k in lengths.items() if k == rows] for rows in sorted({*lengths.values()})}
+        told = ", ".join(f"{' and '.join(names)} {rows}" for rows, names in alike.items())
+        raise RobotError(f"{who}: the columns differ in length ({told}); expected one number a joint in each.")
+    return next(iter(lengths.values()))
 
 
-def _limits(given: Mapping[str, Any], slides: BoolArray, who: str) -> tuple[FloatArray, Provenance]:
-    """(rows, 2) in SI, and where they come from."""
+def _limits(
+    given: Mapping[str, Any], slides: BoolArray, who: str, before: FloatArray | None = None
+) -> tuple[FloatArray, Provenance]:
+    """(rows, 2) in SI, and where they come from; what is left out is as ``before``."""
     by_unit = {"1": given["limits"], "deg": given["limits_deg"], "mm": given["limits_mm"]}
     found, said = np.full((len(slides), 2), np.nan), HERE
     for unit, value in by_unit.items():
@@ -113,10 +217,14 @@ def _limits(given: Mapping[str, Any], slides: BoolArray, who: str) -> tuple[Floa
                 continue
             if not np.isnan(found[i]).all():
                 raise RobotError(f"{who}: joint {i + 1}: its limits are given twice; keep one.")
-            found[i] = to_si(np.array(pair, dtype=float), unit)
+            found[i] = to_si(_pair(pair, f"{who}: joint {i + 1}"), unit)
             if unit == "1":
                 _check_plain_limit(found[i], bool(slides[i]), f"{who}: joint {i + 1}")
+    if given["limits_deg"] is not None:
+        _check_limits_in_degrees(found[~slides], who)
     missing = np.isnan(found).any(axis=1)
+    if before is not None:
+        return np.where(missing[:, None], before, found), said
     if (missing & slides).any():
         joint = int(np.argmax(missing & slides)) + 1
         raise RobotError(f"{who}: joint {joint} slides and has no limits; give limits_mm=[..., [lower, upper], ...].")
@@ -138,14 +246,37 @@ def _pairs(value: Any, rows: int, who: str) -> list[Any]:
     return items
 
 
-def _check_plain_limit(pair: FloatArray, slides: bool, who: str) -> None:
-    most, unit, si = (FARTHEST, "mm", "m") if slides else (TURNS * math.tau, "deg", "rad")
-    worst = float(np.abs(pair).max())
-    if worst > most:
+def _pair(value: Any, who: str) -> FloatArray:
+    try:
+        return np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        raise RobotError(f"{who}: limits: expected two numbers, [lower, upper], found {value!r:.40}.") from None
+
+
+def _check_limits_in_degrees(limits: FloatArray, who: str) -> None:
+    """Refuse limits (k, 2) rad that were given in degrees and would hold every turning joint within a few of them."""
+    widest = float(from_si(np.abs(limits).max(initial=0.0), "deg"))
+    if len(limits) > 1 and 0.0 < widest <= 2.0 * math.pi + 1e-3:
         raise RobotError(
-            f"{who}: limit: found {worst:g} {si}, expected at most {most:.3g}: limits alone are in {si}. If {worst:g} "
-            f"{unit} is meant, give them as limits_{unit}."
+            f"{who}: limits_deg: no joint could turn beyond {widest:.4g}°: limits_deg is in degrees. If radians are "
+            "meant, give limits; so you do where limits as narrow are meant."
         )
+
+
+def _check_plain_limit(pair: FloatArray, slides: bool, who: str) -> None:
+    doubt = doubtful_limit(pair, slides)
+    if doubt:
+        unit = "mm" if slides else "deg"
+        raise RobotError(f"{who}: limit: {doubt}; limits alone are in SI: give them as limits_{unit}.")
+
+
+def doubtful_limit(pair: FloatArray, slides: bool) -> str:
+    """What to say of limits (2,) in rad (m where the joint ``slides``) that were meant in degrees or mm; "" else."""
+    most, unit, si = (FARTHEST, "mm", "m") if slides else (TURNS * math.tau, "°", "rad")
+    worst = float(np.abs(pair).max())
+    if worst <= most:
+        return ""
+    return f"found {worst:g} {si}, expected at most {most:.3g}; was {worst:g} {unit} meant?"
 
 
 def _compliances(given: Mapping[str, Any], slides: BoolArray, who: str) -> tuple[FloatArray, Provenance]:
@@ -158,9 +289,14 @@ def _compliances(given: Mapping[str, Any], slides: BoolArray, who: str) -> tuple
         return np.full(len(slides), ASSUMED_C), Provenance("assumed", words)
     unit, stiff = GIVES[names[0]]
     numbers = _numbers(given[names[0]], names[0], who)
+    if numbers.ndim and len(numbers) != len(slides):
+        raise RobotError(f"{who}: {names[0]}: found {len(numbers)} numbers, expected {len(slides)}, one a joint.")
     value = np.array(np.broadcast_to(to_si(numbers, unit), slides.shape))
     if stiff and not (value > 0.0).all():
-        raise RobotError(f"{who}: {names[0]}: found {value.min():g}; a stiffness is above 0 (inf for a rigid joint).")
+        i, each = int(np.argmin(value > 0.0)), np.broadcast_to(numbers, slides.shape)
+        raise RobotError(
+            f"{who}: joint {i + 1}: {names[0]}: found {each[i]:g}; a stiffness is above 0 (inf for a rigid joint)."
+        )
     C_theta = 1.0 / value if stiff else value
     out = (C_theta > SOFTEST) | ((C_theta > 0.0) & (C_theta < STIFFEST) & ~slides)
     if out.any():
@@ -186,7 +322,7 @@ def _frame(given: Mapping[str, Any], part: str, who: str) -> Any:
         raise RobotError(f"{who}: T_{part} and {part}_xyz are both given; keep one of them.")
     p = _numbers(one_of(FRAME[part], plain, in_mm, RobotError, who), f"{part}_xyz", who)
     if p.shape != (3,):
-        raise RobotError(f"{who}: {part}_xyz: expected three numbers, found {p!r:.40}.")
+        raise RobotError(f"{who}: {part}_xyz: expected three numbers, found {np.size(p)}.")
     found = np.eye(4)
     found[:3, 3] = p
     return found

@@ -35,7 +35,7 @@ def path_columns(result: Judged) -> Columns:
     """
     path = result.path
     columns: Columns = {
-        "line": path.block,
+        path.block_name: path.block,
         "tool": path.tool,
         "cutting": path.cutting,
         "reached": result.reached,

@@ -53,6 +53,7 @@ def told_conditions(setup: SimulationSetup, path: Toolpath, reached: BoolArray) 
         along=gathered(len(path), "", lambda some: feed_along(way[some], path.k[some])),
         ccw=path.ccw,
         block=path.block,
+        block_name=path.block_name,
     )
     return replace(told, tooling=tooling(setup, path))
 

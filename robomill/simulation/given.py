@@ -14,16 +14,18 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import SetupError
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity, quantities
-from robomill.robot.model import check_robot
+from robomill.robot.model import Robot, check_robot
 from robomill.spelled import one_of
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PointsSource
+from robomill.units import format_many
 
 # What people type of T_MW, of a part that stands upright, and of the spin.
 PART_ZERO = Quantity("Zero", "mm", "array", shape=(3,), axes=tuple("XYZ"), digits=2, key="zero_mm", slip=200.0)
 PART_TURN = Quantity("Turn about Z", "deg", key="rotation_z_deg", slip=2.0 * np.pi)
 SPIN = Quantity("Turn about z_T", "deg", name="spin", key="spin_deg", digits=1, slip=4.0 * np.pi)
+FOOT = 0.01  # m: where nothing can be milled
 PART = ("part_zero", "part_zero_mm", "part_rotation_z", "part_rotation_z_deg")
 OTHERS = (*PART, "spin_deg")
 """The names beside those of the fields."""
@@ -40,8 +42,9 @@ def part_frame(zero: Any, rotation_z: float = 0.0) -> FloatArray:
     return T_MW
 
 
-def taken(given: Mapping[str, Any], T_MW: FloatArray | None = None) -> dict[str, Any]:
-    """``given`` by the names of the fields; ``T_MW`` is the part's place so far. Raises SetupError."""
+def taken(given: Mapping[str, Any], T_MW: FloatArray | None = None, robot: Any = None) -> dict[str, Any]:
+    """``given`` by the names of the fields; ``T_MW`` is the part's place so far, ``robot`` the one so far. Raises
+    SetupError."""
     found = {name: value for name, value in given.items() if name not in OTHERS}
     if isinstance(found.get("source"), Toolpath):
         found["source"] = PointsSource(found["source"])
@@ -49,6 +52,8 @@ def taken(given: Mapping[str, Any], T_MW: FloatArray | None = None) -> dict[str,
         if "T_MW" in found:
             raise SetupError("Part zero: T_MW and part_zero are both given; keep one of them.", where="T_MW")
         found["T_MW"] = _placed(given, T_MW)
+        if given.get("part_zero_mm") is not None:
+            _check_zero(found["T_MW"][:3, 3], given.get("robot", robot))
     if "spin" in given and isinstance(given["spin"], str) and "spin_deg" not in given:
         return found
     if "spin" in given or "spin_deg" in given:
@@ -67,6 +72,20 @@ def _placed(given: Mapping[str, Any], before: FloatArray | None) -> FloatArray:
         angle = one_of(_TURN, turn, turn_deg, SetupError, "Part zero")
         T_MW = part_frame(T_MW[:3, 3], float(as_floats(angle, "Part zero, turn", (), error=SetupError)))
     return T_MW
+
+
+def _check_zero(zero: FloatArray, robot: Any) -> None:
+    """Refuse a part zero (3,) m that was given in mm and would lie in the middle of the robot's foot."""
+    if not isinstance(robot, Robot) or robot.chain.prismatic[0] or not np.array_equal(robot.T_base, np.eye(4)):
+        return
+    farthest = float(np.abs(zero).max())
+    if 0.0 < farthest < FOOT:
+        found = format_many(zero, "mm", 3)
+        raise SetupError(
+            f"Part zero: {found} lies in the middle of the robot's foot: part_zero_mm is in mm. If m are meant, give "
+            "part_zero; so you do where this place is meant.",
+            where="T_MW",
+        )
 
 
 def check_kinds(setup: Any) -> None:

@@ -1,6 +1,9 @@
 """What one run says: deflection and its shares, force, both surfaces, groove sections, the verdict."""
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,7 +13,7 @@ from robomill.compliance.deflection import displacement
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged
-from robomill.errors import RobomillError
+from robomill.errors import RobomillError, SurfaceError
 from robomill.frames import Columns
 from robomill.kinematics.inverse import IKResult
 from robomill.lazy import cached_property
@@ -18,6 +21,7 @@ from robomill.provenance import Finding
 from robomill.simulation.columns import path_columns
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
+from robomill.simulation.doubts import unit_doubts
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.posture import posture_notes, turned_notes
@@ -168,7 +172,7 @@ class SimulationResult(Tabled):
 
     @property
     def worst_block(self) -> int:
-        """Source line of the largest deviation, 0 where nothing was reached."""
+        """Line (or what ``path.block_name`` says) of the largest deviation, 0 where nothing was reached."""
         return int(self.path.block[self.worst]) if self.worst >= 0 else 0
 
     @cached_property
@@ -181,7 +185,9 @@ class SimulationResult(Tabled):
         """What a reader of the numbers must know."""
         found = [*cut_notes(self.setup, self.conditions, ~self.not_judged), *tool_notes(self.setup, self.path)]
         found += map_notes(self.setup, self.path)
-        found += suspicions(self.setup, self.force_components[self.judged & self.conditions.engaged])
+        pushed = self.judged & self.conditions.engaged
+        found += suspicions(self.setup, self.force_components[pushed])
+        found += unit_doubts(self.setup, self.path, self.F, pushed)
         if self.coupling is not None:
             found.append(self.coupling.finding)
         if self.setup.add_sag:
@@ -192,10 +198,19 @@ class SimulationResult(Tabled):
         found += self.steadiness
         if self.worst >= 0:
             found += posture_notes(self.setup.robot, self.ik.T_MT[self.worst], self.F[self.worst])
+        return self._placed([*found, *self.turned])
+
+    @cached_property
+    def turned(self) -> tuple[Finding, ...]:
+        """Whether the cut, of which nothing is reached, would be with the tool's axis turned round."""
         at_feed = np.flatnonzero(self.path.cutting)
-        if not self.reached[at_feed].any():
-            found += turned_notes(self.setup.robot, self.ik.T_MT[at_feed[len(at_feed) // 2]])
-        return tuple(found)
+        if self.reached[at_feed].any():
+            return ()
+        return turned_notes(self.setup.robot, self.ik.T_MT[at_feed[len(at_feed) // 2]])
+
+    def _placed(self, findings: Iterable[Finding]) -> tuple[Finding, ...]:
+        """With what their lines count on this path."""
+        return tuple(replace(each, place=self.path.block_name) for each in findings)
 
     @cached_property
     def steadiness(self) -> tuple[Finding, ...]:
@@ -248,7 +263,8 @@ class SimulationResult(Tabled):
     def surface_notes(self) -> tuple[Finding, ...]:
         """What the surfaces say beside ``notes``: undercuts, cuts through the bottom, rapids through material, thin
         walls."""
-        return self.machined.notes() + self._crashes.notes() + thin_wall_notes(self.path.block[self.gauge.thin])
+        thin = thin_wall_notes(self.path.block[self.gauge.thin])
+        return self._placed(self.machined.notes() + self._crashes.notes() + thin)
 
     def _cut(self, p: FloatArray) -> ZMap:
         setup = self.setup
@@ -257,6 +273,8 @@ class SimulationResult(Tabled):
 
     def groove(self, station: float) -> GrooveSection:
         """The groove's section at ``station`` (m, length travelled at feed); NaN where that was not reached."""
+        if np.ndim(station) > 0:
+            raise SurfaceError(f"Groove: expected one station, found {np.size(station)}; give several to grooves.")
         return self.grooves([station])[0]
 
     def grooves(self, stations: ArrayLike) -> GrooveSections:
@@ -315,6 +333,6 @@ class SimulationResult(Tabled):
         return [
             ("Set-up", self.setup._said()),
             *((name, format_si(value, "mm")) for name, value in shown),
-            ("Line of the largest", str(self.worst_block)),
+            (f"{self.path.block_name.capitalize()} of the largest", str(self.worst_block)),
             ("Samples reached", f"{int(self.reached.sum())} of {len(self.path)}"),
         ]

@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 
 from robomill import budgets
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, of_kind
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
@@ -36,6 +37,7 @@ from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sampling import check_samples
 
 
+@asked
 def simulate(setup: SimulationSetup) -> SimulationResult:
     """How far the tip is pushed off its path by the cutting force, and what that leaves of the part.
 
@@ -80,7 +82,7 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     if setup.engagement:
         check_samples(setup.toolpath, setup.step, len(path), budgets.samples(marched=True))
     if not path.cutting.any():
-        raise ToolpathError("The path has no feed move, so nothing is cut: add a G1 move or a line.")
+        raise ToolpathError("The path has no feed move, so nothing is cut: add a G1 move, or a point with a feed.")
     checkpoint(0.0, "How the arm stands")
     ik = configurations(setup, path)
     checkpoint(0.0, "Compliance")

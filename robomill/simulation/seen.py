@@ -6,6 +6,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged
+from robomill.provenance import Finding
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 
@@ -39,6 +40,8 @@ class Run(Protocol):
     def removes(self) -> BoolArray: ...
     @property
     def reached(self) -> BoolArray: ...
+    @property
+    def turned(self) -> tuple[Finding, ...]: ...
     @property
     def answered(self) -> BoolArray: ...
     @property

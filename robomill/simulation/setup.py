@@ -1,13 +1,15 @@
 """One simulation as a value: robot, path, part zero, cutter, force, stock, tolerance, numerics."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, as_floats, check_place, frozen
+from robomill.arguments import refuse_unknown
+from robomill.arrays import FloatArray, Numbers, Rows, as_floats, check_place, frozen
 from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.spring import Spring
 from robomill.cutting.force import ForceModel
@@ -25,9 +27,10 @@ from robomill.spelled import Replaceable, in_units
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
-from robomill.units import format_limit, format_many
+from robomill.units import format_limit, format_many, to_si
 from robomill.values import Value
 
+FINEST = 1e-6  # m: no robot mills as precisely: was it meant in m?
 NO_TOOLS = ToolTable()
 TOLERANCES = ("wall", "floor", "feed")
 
@@ -86,12 +89,13 @@ class SimulationSetup(Replaceable, Value):
     cutter: Cutter
     force: ForceModel
     stock: Stock | None = None
-    tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0, slip=0.05)
+    tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0, slip=0.05, tiny=FINEST)
     floor_tolerance: float | None = quantity(
         "Tolerance of floors",
         "mm",
         optional=True,
         slip=0.05,
+        tiny=FINEST,
         above=0.0,
         hint="Along the tool axis. Left out: the one tolerance holds for walls and floors.",
     )
@@ -100,11 +104,12 @@ class SimulationSetup(Replaceable, Value):
         "mm",
         optional=True,
         slip=0.05,
+        tiny=FINEST,
         above=0.0,
         hint="Of the tip on its way, and where a cut begins or ends in the material. Left out: given, but not judged.",
     )
-    step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0, slip=0.5)
-    cell: float = quantity("Surface grid", "mm", default=1e-4, above=0.0, digits=4, slip=0.04)
+    step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0, slip=0.5, tiny=1.5e-6)
+    cell: float = quantity("Surface grid", "mm", default=1e-4, above=0.0, digits=4, slip=0.04, tiny=FINEST)
     engagement: bool = switch(
         "Use the material actually left",
         default=False,
@@ -124,6 +129,7 @@ class SimulationSetup(Replaceable, Value):
         "mm/min",
         optional=True,
         slip=20.0,
+        tiny=to_si(10.0, "mm/min"),
         above=0.0,
         digits=0,
         hint="How fast the machine goes on rapids: a force recorded over time runs on meanwhile.",
@@ -149,9 +155,9 @@ class SimulationSetup(Replaceable, Value):
             cutter: Cutter,
             force: ForceModel,
             name: str = ...,
-            T_MW: ArrayLike = ...,
-            part_zero: ArrayLike = ...,
-            part_zero_mm: ArrayLike = ...,
+            T_MW: Rows = ...,
+            part_zero: Numbers = ...,
+            part_zero_mm: Numbers = ...,
             part_rotation_z: float = ...,
             part_rotation_z_deg: float = ...,
             stock: Stock | None = ...,
@@ -206,7 +212,7 @@ class SimulationSetup(Replaceable, Value):
             raise SetupError("Coupling: the force must follow the engagement; switch engagement on or coupling off.")
 
     def _taken(self, changes: dict[str, Any]) -> dict[str, Any]:
-        return given.taken(changes, self.T_MW)
+        return given.taken(changes, self.T_MW, self.robot)
 
     def _take_spin(self) -> None:
         """An angle, or one of the rules."""
@@ -222,6 +228,7 @@ class SimulationSetup(Replaceable, Value):
         """One number, or three: wall, floor, feed."""
         given: Any = self.tolerance
         if isinstance(given, Mapping):
+            refuse_unknown(given, TOLERANCES, "Tolerance")
             given = [given.get(name) for name in TOLERANCES]
         if np.ndim(given) == 0:
             return

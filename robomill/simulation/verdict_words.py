@@ -1,5 +1,6 @@
 """What the verdict of a milled part says: its readings, and the one sentence that every screen and report shows."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -114,6 +115,8 @@ def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
     if result.worst < 0:
         if level == "unreached" and result.reached.any():
             return "No point of the cut lies inside the measured map.", beside
+        if level == "unreached" and result.turned:
+            return "No point of the cut can be reached: turn the tool frame, whose z_T points into the part.", beside
         return NOTHING.get(level, ""), beside
     if level == "unjudged" and result.not_judged.any() and not verdict.decides:
         return "", beside
@@ -128,6 +131,11 @@ def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
 def way(name: str, reading: Reading) -> str:
     """To which side a wall, floor or end is off."""
     return WAYS[name][0 if reading.value > 0 else 1]
+
+
+def _at(result: Run, blocks: Iterable[int]) -> str:
+    """Where on the path: ``"(line 3, 5)"``."""
+    return f"({result.path.block_name} {named(blocks)})"
 
 
 def _sentence(words: str) -> str:
@@ -148,7 +156,7 @@ def _measured(result: Run, verdict: Verdict, unit: str) -> str:
         return format_beside(abs(found.value), found.tolerance, unit, 2)
 
     def line(reading: Reading) -> str:
-        return f"(line {int(result.path.block[reading.worst])})"
+        return _at(result, [int(result.path.block[reading.worst])])
 
     wall, floor = verdict.wall, verdict.floor
     if result.path.on_one_line and wall.worst >= 0 and floor.worst >= 0:
@@ -167,8 +175,8 @@ def _measured(result: Run, verdict: Verdict, unit: str) -> str:
         parts.append(f"the {name} is {size(found)} off along the feed {line(found)}")
     if not parts:
         off = format_beside(result.max_deviation, verdict.wall.tolerance, unit, 2)
-        parts = [f"no wall or floor is left to measure; the tip is {off} off (line {result.worst_block})"]
-    gone = f"; a wall that should stand is cut away (line {named(verdict.gone)})" if verdict.gone else ""
+        parts = [f"no wall or floor is left to measure; the tip is {off} off {_at(result, [result.worst_block])}"]
+    gone = f"; a wall that should stand is cut away {_at(result, verdict.gone)}" if verdict.gone else ""
     return ", ".join(parts) + gone
 
 
@@ -188,16 +196,16 @@ def _unjudged(result: Run) -> str:
         more = f" (and {format_count(len(result.unjudged) - 1, 'more reason')})" if len(result.unjudged) > 1 else ""
         lost_points, every = format_count(int(lost.sum())), format_count(int(result.path.cutting.sum()))
         points = f"{lost_points} of {every} points of the cut are not judged"
-        told.append(f"{points} (line {named(result.path.block[lost].tolist())}): {why.rstrip('.')}{more}")
+        told.append(f"{points} {_at(result, result.path.block[lost].tolist())}: {why.rstrip('.')}{more}")
     if result.rapids:
-        told.append(f"{RAPID[0].upper()}{RAPID[1:]} (line {named(result.rapids)}): not judged")
+        told.append(f"{RAPID[0].upper()}{RAPID[1:]} {_at(result, result.rapids)}: not judged")
     return ". ".join(told)
 
 
 def _early(result: Run) -> str:
     """Which rapids come before what they run through is cut; "" where none does."""
     lines = result.early_rapids
-    return f"a rapid runs through material that is cut only later (line {named(lines)})" if lines else ""
+    return f"a rapid runs through material that is cut only later {_at(result, lines)}" if lines else ""
 
 
 def _missed(result: Run) -> str:
@@ -205,4 +213,4 @@ def _missed(result: Run) -> str:
     missed = result.missed
     why = "cannot be reached" if not result.reached.all() else "lie outside the measured map"
     of = f"{format_count(int(missed.sum()))} of {format_count(len(result.path))}"
-    return f"{of} points {why} (line {named(result.path.block[missed].tolist())})"
+    return f"{of} points {why} {_at(result, result.path.block[missed].tolist())}"

@@ -4,6 +4,8 @@ A section is a vertical plane across the commanded feed. ``w`` (m) counts in it 
 along the feed-normal z x feed, so positive is left of the feed. Nothing here is read off a grid.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -171,7 +173,9 @@ def groove_sections(
     known = np.where(np.isfinite(moved).all(axis=1, keepdims=True), ideal, np.nan)
     told, left, sure = (swept_path(stock, tooling, p, path.k, used) for p in (ideal, moved, known))
     s, found = np.cumsum(np.append(0.0, np.where(used[1:], np.linalg.norm(np.diff(ideal, axis=0), axis=1), 0.0))), []
-    places = np.atleast_1d(np.asarray(stations, dtype=float))
+    places = np.atleast_1d(as_floats(stations, "stations (m)", (), error=SurfaceError))
+    if places.ndim != 1:
+        raise SurfaceError(f"Stations: expected a list of lengths, found shape {places.shape}.")
     for n, station in enumerate(places):
         checkpoint(n / len(places), "Sections")
         place = station_at(ideal, used, float(station))

@@ -15,7 +15,7 @@ from robomill.errors import SurfaceError
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
-from robomill.spelled import in_units
+from robomill.spelled import in_units, made
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_count, format_many, format_si
 from robomill.values import Value
@@ -76,7 +76,8 @@ class Stock(Value):
         low, high = path.extents
         reach = cutter.radius + BESIDE
         top = 0.0 if low[2] < -1e-9 else float(high[2]) + ABOVE
-        return cls(np.array([*(low[:2] - reach), low[2] - BENEATH]), np.array([*(high[:2] + reach), top]))
+        corners = np.array([*(low[:2] - reach), low[2] - BENEATH]), np.array([*(high[:2] + reach), top])
+        return made(cls, dict(zip(("lower", "upper"), corners, strict=True)))
 
     @cached_property
     def size(self) -> FloatArray:

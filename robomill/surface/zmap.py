@@ -1,5 +1,7 @@
 """The part after the cut as a height map: exact heights at cell centres, exact shares of cells at walls."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 import numpy as np

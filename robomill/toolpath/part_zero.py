@@ -1,11 +1,14 @@
 """The part zero {W} in the robot's frame {M} from touched points."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import ToolpathError
 from robomill.units import format_si, to_si
@@ -33,6 +36,7 @@ class TouchedFrame:
         return math.hypot(2.0 * error / self.base, 2.0 * error / self.lever)
 
 
+@asked
 def frame_from_points(zero: ArrayLike, on_x: ArrayLike, in_xy: ArrayLike) -> TouchedFrame:
     """The part frame {W} from three points that were touched.
 

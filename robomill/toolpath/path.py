@@ -1,19 +1,22 @@
 """The toolpath: what the tool is told to do, in the part frame {W}. Units, arcs and modes are gone."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FARTHEST, BoolArray, FloatArray, IntArray, as_floats, digest, frozen
+from robomill.arguments import asked, asking
+from robomill.arrays import FARTHEST, BoolArray, FloatArray, IntArray, Rows, as_floats, digest, frozen
 from robomill.errors import ToolpathError
 from robomill.frames import Columns
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.quantities import Quantity
 from robomill.spelled import one_of
-from robomill.units import format_count, format_many, format_si, format_significant, from_si
+from robomill.units import format_count, format_many, format_si, format_significant, from_si, to_si
 from robomill.values import Tabled
 
 SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
@@ -34,8 +37,10 @@ PER_MOVE: dict[str, type] = {
     "dwell": float,
 }
 """Arrays of a path with one value a move, and their types."""
-POINTS = Quantity("Points", "mm", "array", name="p", key="p_mm", slip=20.0)
-FEED = Quantity("Feed", "mm/min", "array", name="v_f", key="feed_mm_min", slip=1.0)
+POINTS = Quantity("Points", "mm", "array", name="p", key="p_mm", slip=10.0)
+SLOWEST = to_si(1.0, "mm/min")  # hardly a tool is fed as slowly: was it meant in m/s?
+SMALLEST = 0.1e-3  # m: hardly a path is as small: was it meant in m?
+FEED = Quantity("Feed", "mm/min", "array", name="v_f", key="feed_mm_min", slip=1.0, tiny=SLOWEST)
 SPINDLE = Quantity("Spindle speed", "1/min", "array", name="n_s", key="spindle_1_min", slip=1000.0)
 
 
@@ -49,6 +54,7 @@ def far_off(p: FloatArray, block: IntArray) -> tuple[int, str] | None:
     return int(np.broadcast_to(block, len(p))[far[0]]), why
 
 
+@asking
 @dataclass(frozen=True, eq=False, repr=False)
 class Toolpath(Tabled):
     r"""Tool tip positions in {W}; entry i describes the move from point i - 1 to point i, entry 0 the start.
@@ -57,7 +63,7 @@ class Toolpath(Tabled):
     k        (m, 3)          unit tool axis z_T, out of the part towards the spindle
     v_f      (m,) m/s        feed rate of the move (0 on rapids)
     cutting  (m,) bool       True on feed moves, False on rapids and at the start
-    block    (m,) int        1-based source line of the move (row of the table for a table of lines)
+    block    (m,) int        1-based source line of the move (row of a table, shape of a sketch, point)
     n_s      (m,) 1/s        spindle revolutions per second, 0 where stopped or not stated, NaN where they are
                              not known (G96)
     tool     (m,) int        tool number, 0 where not stated
@@ -65,6 +71,7 @@ class Toolpath(Tabled):
     thread   (m,) bool       True where a tap or a thread cutter is led in step with the spindle
     dwell    (m,) s          time that the tool stands still before the move
     counts                   rapid moves, straight cuts and arcs of the program, None where there is none
+    block_name               what ``block`` counts: "line" of a program, "row" of a table, "shape" or "point"
 
     Raises
     ------
@@ -91,6 +98,7 @@ class Toolpath(Tabled):
     findings: tuple[Finding, ...] = field(default=(), compare=False)
     units: str = "mm"
     counts: tuple[int, int, int] | None = field(default=None, compare=False)
+    block_name: str = field(default="line", compare=False)
 
     def __post_init__(self) -> None:
         p = as_floats(self.p, "toolpath points", (None, 3), error=ToolpathError)
@@ -108,24 +116,25 @@ class Toolpath(Tabled):
         if not np.isfinite(values["v_f"]).all() or (values["v_f"] < 0).any():
             raise ToolpathError("Toolpath: a feed rate is negative or not a number; feeds must be 0 or more.")
         if far := far_off(p, values["block"]):
-            raise ToolpathError("Line {}: {}".format(*far))
+            raise ToolpathError("{} {}: {}".format(self.block_name.capitalize(), *far))
         for name, value in values.items():
             object.__setattr__(self, name, value)
 
     @classmethod
+    @asked
     def from_points(
         cls,
-        p: ArrayLike | None = None,
+        p: Rows | None = None,
         v_f: ArrayLike | None = None,
         *,
-        p_mm: ArrayLike | None = None,
+        p_mm: Rows | None = None,
         feed_mm_min: ArrayLike | None = None,
         n_s: ArrayLike | None = None,
         spindle_1_min: ArrayLike | None = None,
         k: ArrayLike = (0.0, 0.0, 1.0),
         cutting: ArrayLike | None = None,
         tool: ArrayLike = 0,
-    ) -> "Toolpath":
+    ) -> Toolpath:
         """A path through points of the part frame {W}, the first one its start; ``block`` counts the points from 1.
 
         Parameters
@@ -149,8 +158,8 @@ class Toolpath(Tabled):
         >>> len(path), float(path.s[-1]), round(float(path.v_f[-1]), 6)
         (2, 0.1, 0.03)
         """
-        points = as_floats(one_of(POINTS, p, p_mm, ToolpathError, "Toolpath"), "Points", (None, 3), error=ToolpathError)
-        m = len(np.atleast_2d(points))
+        points = _points(one_of(POINTS, p, p_mm, ToolpathError, "Toolpath"), p is None)
+        m = len(points)
         feed = _each(FEED, one_of(FEED, v_f, feed_mm_min, ToolpathError, "Toolpath"), m)
         speed = one_of(SPINDLE, n_s, spindle_1_min, ToolpathError, "Toolpath", 0.0)
         axis = as_floats(k, "Tool axis", (3,), error=ToolpathError)
@@ -167,6 +176,7 @@ class Toolpath(Tabled):
             block=np.arange(1, m + 1),
             n_s=_each(SPINDLE, speed, m),
             tool=np.asarray(tool),
+            block_name="point",
         )
 
     def __len__(self) -> int:
@@ -231,7 +241,7 @@ class Toolpath(Tabled):
 
     def columns(self) -> Columns:
         """One row a point, with what is told of the move that ends there; the first is the start."""
-        found: Columns = {"line": self.block, "tool": self.tool, "cutting": self.cutting}
+        found: Columns = {self.block_name: self.block, "tool": self.tool, "cutting": self.cutting}
         found["station_mm"] = from_si(self.s, "mm")
         found |= {f"{axis}_mm": from_si(self.p[:, i], "mm") for i, axis in enumerate("XYZ")}
         found |= {f"k_{axis}": self.k[:, i] for i, axis in enumerate("xyz")}
@@ -244,6 +254,23 @@ class Toolpath(Tabled):
         size = format_many(high - low, "mm", 1, between=" × ")
         length = format_si(float(self.s[-1]), "mm", 1)
         return f"{format_count(len(self), 'point')}, {length} at feed within {size}"
+
+
+def _points(given: Any, in_mm: bool) -> FloatArray:
+    """(m, 3) m; refused is what is no list of points, and ``in_mm`` a whole path as small as none is."""
+    p = as_floats(given, "Points", (), error=ToolpathError)
+    if p.ndim != 2 or p.shape[1] != 3:
+        shape = " x ".join(map(str, p.shape)) or "one number"
+        ask = "; is it transposed?" if p.ndim == 2 and len(p) == 3 else "."
+        raise ToolpathError(f"Points: expected a row of three numbers (X, Y, Z) for each point, found {shape}{ask}")
+    size = float(np.ptp(p, axis=0).max()) if len(p) else 0.0
+    if in_mm and 0.0 < size < SMALLEST:
+        raise ToolpathError(
+            f"Points: the whole path lies within {format_significant(from_si(size, 'mm'))} mm: p_mm is in mm. If m are "
+            "meant, give p; so you do where a path as small is meant.",
+            where="p",
+        )
+    return p
 
 
 def _each(declared: Quantity, value: Any, m: int) -> FloatArray:
@@ -299,4 +326,5 @@ def toolpath_from_lines(
         block=np.array(rows),
         n_s=np.array(n),
         tool=np.zeros(len(points), dtype=np.int64),
+        block_name="row",
     )

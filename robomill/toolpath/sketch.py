@@ -5,19 +5,20 @@ goes down to ``APPROACH`` above it as a rapid, plunges at the plunge feed, cuts 
 A shape that begins where the one before it ended is cut without lifting.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, frozen
+from robomill.arrays import FloatArray, Rows, frozen
 from robomill.errors import ToolpathError
 from robomill.quantities import choice, quantities, quantity, settle
 from robomill.spelled import Replaceable, in_units
-from robomill.toolpath.path import Toolpath
+from robomill.toolpath.path import SLOWEST, Toolpath
 from robomill.units import format_si, from_si, to_si
 
 Shape = Literal["line", "polyline", "polygon", "rectangle", "arc", "circle"]
@@ -39,6 +40,7 @@ MAX_ELEMENTS = 5_000
 MAX_POINTS = 100_000
 MAX_COORDINATE = 100.0
 FARTHEST, DEEPEST, FASTEST = 20.0, 1.0, 1.0  # m, m, m/s: hardly more was meant in SI
+SHALLOWEST = 5e-6  # m: nothing as shallow is milled
 
 
 @in_units(ToolpathError, "Sketch")
@@ -59,20 +61,20 @@ class Element(Replaceable):
     """
 
     shape: Shape = choice("Shape", {shape: shape for shape in SHAPES})
-    points: FloatArray = quantity("Points", "mm", shape=(None, 2), slip=FARTHEST)
-    depth: float = quantity("Depth", "mm", above=0.0, slip=DEEPEST)
-    v_f: float = quantity("Feed", "mm/min", above=0.0, key="feed_mm_min", slip=FASTEST)
+    points: FloatArray = quantity("Points", "mm", shape=(None, 2), slip=FARTHEST, tiny=0.1e-3)
+    depth: float = quantity("Depth", "mm", above=0.0, slip=DEEPEST, tiny=SHALLOWEST)
+    v_f: float = quantity("Feed", "mm/min", above=0.0, key="feed_mm_min", slip=FASTEST, tiny=SLOWEST)
 
     if TYPE_CHECKING:
 
         def __init__(
             self,
             shape: Shape,
-            points: ArrayLike = ...,
+            points: Rows = ...,
             depth: float = ...,
             v_f: float = ...,
             *,
-            points_mm: ArrayLike = ...,
+            points_mm: Rows = ...,
             depth_mm: float = ...,
             feed_mm_min: float = ...,
         ) -> None: ...
@@ -117,7 +119,9 @@ class Sketch(Replaceable):
     """
 
     elements: tuple[Element, ...] = ()
-    v_plunge: float = quantity("Plunge feed", "mm/min", default=5e-3, above=0.0, key="plunge_mm_min", slip=FASTEST)
+    v_plunge: float = quantity(
+        "Plunge feed", "mm/min", default=5e-3, above=0.0, key="plunge_mm_min", slip=FASTEST, tiny=SLOWEST
+    )
     clearance: float = quantity("Clearance", "mm", default=5e-3, least=APPROACH, digits=2)
     n_s: float = quantity("Spindle", "1/min", default=0.0, least=0.0, key="spindle_1_min", slip=1000.0)
     v_f: float = quantity("Feed", "mm/min", default=30e-3, above=0.0, key="feed_mm_min", compare=False, slip=FASTEST)
@@ -172,6 +176,7 @@ class Sketch(Replaceable):
             block=columns[2],
             n_s=np.full(len(rows), self.n_s),
             tool=np.zeros(len(rows), dtype=np.int64),
+            block_name="shape",
         )
 
     def _moves(self) -> Iterator[tuple[list[float], float, int]]:

@@ -4,6 +4,8 @@ Each says what it is (``kind``), what a number in ``Toolpath.block`` counts (``b
 (``block_texts``).
 """
 
+from __future__ import annotations
+
 import threading
 from collections import OrderedDict
 from copy import copy
@@ -13,7 +15,8 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, digest, frozen
+from robomill.arguments import asking
+from robomill.arrays import FloatArray, Rows, digest, frozen
 from robomill.errors import GCodeError, ToolpathError
 from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
@@ -167,7 +170,7 @@ class LinesSource:
 
     start: FloatArray = quantity("start", "mm", shape=(None, 3), slip=POINTS.slip)
     end: FloatArray = quantity("end", "mm", shape=(None, 3), slip=POINTS.slip)
-    v_f: FloatArray = quantity("feed", "mm/min", shape=(None,), key=FEED.key, slip=FEED.slip)
+    v_f: FloatArray = quantity("feed", "mm/min", shape=(None,), key=FEED.key, slip=FEED.slip, tiny=FEED.tiny)
     n_s: float = quantity("Spindle speed", "1/min", default=0.0, least=0.0, key=SPINDLE.key, slip=SPINDLE.slip)
     name: str = field(default="table of lines", compare=False)
 
@@ -175,14 +178,14 @@ class LinesSource:
 
         def __init__(
             self,
-            start: ArrayLike = ...,
-            end: ArrayLike = ...,
+            start: Rows = ...,
+            end: Rows = ...,
             v_f: ArrayLike = ...,
             n_s: float = ...,
             name: str = ...,
             *,
-            start_mm: ArrayLike = ...,
-            end_mm: ArrayLike = ...,
+            start_mm: Rows = ...,
+            end_mm: Rows = ...,
             feed_mm_min: ArrayLike = ...,
             spindle_1_min: float = ...,
         ) -> None: ...
@@ -203,6 +206,7 @@ class LinesSource:
         return [f"({_point(a)}) → ({_point(b)})  {format_si(v, 'mm/min')}" for a, b, v in ends]
 
 
+@asking
 @dataclass(frozen=True)
 class SketchSource:
     """A path drawn by hand.
@@ -232,6 +236,7 @@ class SketchSource:
         ]
 
 
+@asking
 @dataclass(frozen=True)
 class PointsSource:
     """A path that is given as it is, point by point.

@@ -1,5 +1,7 @@
 """What is known of every cell of a grid: the laws of one configuration at every point, and what follows from them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, digest, of_kind
 from robomill.errors import WorkspaceError
 from robomill.frames import Columns, data_array, data_set
@@ -174,6 +175,7 @@ def _whose(robot: Robot) -> dict[str, str]:
     return {"robot": robot.name, "compliance_set": robot.compliance_set, "robot_digest": robot.digest()}
 
 
+@asked
 def compliance_map(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -> ComplianceMap:
     """Reach, joints, Jacobian and joint shares of the compliance over a grid, in one pass.
 

@@ -1,5 +1,7 @@
 """Grids of points in {M}: planes and boxes, with a budget that refuses what memory cannot hold."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -7,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill import budgets
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import WorkspaceError
 from robomill.paper import BOX, BOX_SIZE
@@ -105,6 +108,7 @@ class Grid(Value):
         )
 
 
+@asked
 def box_grid(lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
     """A grid of points over a box.
 
@@ -142,6 +146,7 @@ def box_grid(lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
     return Grid(*(axis_points(low[i], high[i], step, "xyz"[i]) for i in range(3)))
 
 
+@asked
 def plane_grid(normal: str, at: float, lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
     """A grid of points over a plane across an axis of {M}.
 

@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray
 from robomill.compliance.components import COMPONENTS, DIRECT
 from robomill.errors import WorkspaceError
@@ -55,6 +56,7 @@ class MapQuantity:
         return self.name if unit == "1" else f"{self.name}_{unit}"
 
 
+@asked
 def map_quantities(robot: Robot, rests_on: Basis | None = None) -> dict[str, MapQuantity]:
     """Every quantity that a map of a robot can show.
 

@@ -1,10 +1,13 @@
 """Where the arm can work: reach at one or several tilts, and the largest machining box inside it."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import BoolArray, FloatArray, frozen
 from robomill.errors import WorkspaceError
 from robomill.kinematics.forward import BLOCK
@@ -39,6 +42,7 @@ class ReachBox:
         return bool((self.size >= np.asarray(size) - 1e-9).all())
 
 
+@asked
 def reach(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0, 0.0),)) -> BoolArray:
     """Where the tool can be brought, eq. (10).
 

@@ -29,6 +29,19 @@ def from_nothing() -> rm.SimulationSetup:
     return setup
 
 
+def of_nested_lists() -> None:
+    """Whole numbers beside others, in lists of lists, as the documents write them."""
+    arm = rm.Robot.from_dh(
+        a_mm=[500, 400.5],
+        limits_deg=[[-170, 170], [-60.5, 140]],
+        T_tool=[[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0.16], [0, 0, 0, 1]],
+    )
+    assert_type(arm, rm.Robot)
+    path = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [1.5, 0, -2]], feed_mm_min=1800)
+    assert_type(path, rm.Toolpath)
+    assert_type(rm.Element("line", points_mm=[[0, 0], [50.5, 0]], depth_mm=2, feed_mm_min=1800), rm.Element)
+
+
 def of_a_run(setup: rm.SimulationSetup) -> None:
     """What a run answers."""
     result = rm.simulate(setup)

@@ -13,7 +13,7 @@ import pytest
 import robomill as rm
 from robomill.errors import CuttingError, RobomillError, SetupError, SurfaceError, WorkspaceError
 from robomill.quantities import quantities
-from robomill.spelled import converted, made, spelled
+from robomill.spelled import converted, in_radians, made, spelled
 
 CLASSES = (rm.Cutter, rm.Stock, rm.Grid, rm.SimulationSetup)
 
@@ -31,7 +31,7 @@ def test_a_copy_takes_either_name() -> None:
     setup = rm.load_setup("samples/paper_flute")
     assert setup.replace(tolerance_mm=0.2).tolerance == 0.2e-3
     assert setup.replace(tolerance_mm={"wall": 0.2, "feed": 1.0}).feed_tolerance == 1e-3
-    with pytest.raises(TypeError, match="no field 'tolerence'"):
+    with pytest.raises(TypeError, match="no 'tolerence'; did you mean tolerance?"):
         setup.replace(tolerence=1e-4)
 
 
@@ -119,3 +119,88 @@ def test_springs_sketches_lines_and_forces_go_by_either_name() -> None:
     ):
         with pytest.raises(RobomillError, match="is meant, give"):
             slip()
+
+
+SHORT_PATH = [[-0.02, 0.0, -0.002], [0.02, 0.0, -0.002]]
+
+
+@pytest.mark.parametrize(
+    ("make", "again", "words"),
+    [
+        (
+            lambda: rm.Cutter("flat", diameter_mm=0.008),
+            lambda: rm.Cutter("flat", diameter=8e-6),
+            "found 0.008 mm, expected at least 0.05: .* diameter=0.008 or diameter_mm=8; .* give diameter=8e-06 in m",
+        ),
+        (
+            lambda: rm.Cutter("drill", diameter_mm=8, tip_angle_deg=1.5708),
+            lambda: rm.Cutter("drill", diameter_mm=8, tip_angle=math.radians(1.5708)),
+            "found 1.5708°: .*give tip_angle=1.5708 or tip_angle_deg=90;",
+        ),
+        (
+            lambda: rm.ToolBending(diameter_mm=8, stick_out_mm=0.04),
+            lambda: rm.ToolBending(diameter_mm=8, stick_out=4e-5),
+            "stick_out_mm=40",
+        ),
+        (
+            lambda: rm.SpindleSpring(lateral_um_N=5e-8),
+            lambda: rm.SpindleSpring(lateral=5e-14),
+            "lateral=5e-08 or lateral_um_N=0.05",
+        ),
+        (
+            lambda: rm.Element("line", points_mm=[[0, 0], [50, 0]], depth_mm=0.002, feed_mm_min=1800),
+            lambda: rm.Element("line", points_mm=[[0, 0], [50, 0]], depth=2e-6, feed_mm_min=1800),
+            "depth_mm=2;",
+        ),
+        (
+            lambda: rm.LinesSource(start_mm=[[0, 0, -2]], end_mm=[[50, 0, -2]], feed_mm_min=[0.03]),
+            lambda: rm.LinesSource(start_mm=[[0, 0, -2]], end_mm=[[50, 0, -2]], v_f=[5e-7]),
+            "feed_mm_min is in mm/min",
+        ),
+        (
+            lambda: rm.Toolpath.from_points(p_mm=SHORT_PATH, feed_mm_min=1800),
+            lambda: rm.Toolpath.from_points(p=1e-3 * np.array(SHORT_PATH), feed_mm_min=1800),
+            "whole path lies within 0.04 mm",
+        ),
+        (
+            lambda: rm.load_setup("paper_flute").replace(tolerance_mm=3e-4),
+            lambda: rm.load_setup("paper_flute").replace(tolerance=3e-7),
+            "tolerance=0.0003 or tolerance_mm=0.3",
+        ),
+        (
+            lambda: rm.load_setup("paper_flute").replace(part_zero_mm=[0, -1.3, 0]),
+            lambda: rm.load_setup("paper_flute").replace(part_zero=[0, -1.3e-3, 0]),
+            "in the middle of the robot's foot",
+        ),
+        (
+            lambda: rm.load_setup("paper_flute").replace(part_rotation_z_deg=1.5708),
+            lambda: rm.load_setup("paper_flute").replace(part_rotation_z=math.radians(1.5708)),
+            "part_rotation_z=1.5708 or part_rotation_z_deg=90",
+        ),
+    ],
+)
+def test_what_was_certainly_meant_in_si_is_refused_under_a_name_with_a_unit(make, again, words: str) -> None:
+    """And whoever does mean it has the name in SI."""
+    with pytest.raises(RobomillError, match=words):
+        make()
+    again()
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.5, 1.57, 3.14, 0.5, 0.0175, 15.0, 90.0, 1.2345, 89.98, 2.6182])
+def test_degrees_that_somebody_may_mean_are_taken(angle: float) -> None:
+    """Measured turns of a part, and whole ones; 2.6182 rad are 150.01 degrees."""
+    assert not in_radians(angle)
+
+
+@pytest.mark.parametrize("parts", [1, 2, 3, 4, 6, 8, 12, 18, 24])
+def test_parts_of_pi_are_radians(parts: int) -> None:
+    assert in_radians(round(parts * math.pi / 12, 4))
+    assert in_radians(parts * math.pi / 12)
+
+
+def test_of_numbers_in_lists_the_largest_counts() -> None:
+    """A wall of 0 and one of nothing beside a good one; corners at zero."""
+    setup = rm.load_setup("paper_flute")
+    assert setup.replace(tolerance_mm=[0.3, None, None]).tolerance == pytest.approx(3e-4)
+    assert setup.replace(part_zero_mm=[0, 0, 0]).T_MW[0, 3] == 0.0
+    assert rm.Stock(lower_mm=[0, 0, -0.2], upper_mm=[60, 40, 0]).size[2] == pytest.approx(2e-4)

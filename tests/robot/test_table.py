@@ -128,7 +128,7 @@ def test_what_nobody_gave_is_assumed_and_says_so() -> None:
         ({"a_mm": [500, 400], "tool_xyz": [0, 0, 150]}, "tool_xyz in m, or tool_xyz_mm"),
         ({"a_mm": [500, 400], "C_theta": 1e-6, "k_theta_Nm_per_rad": 1e6}, "given twice"),
         ({"a_mm": [500, 400], "a": [0.5, 0.4]}, "a and a_mm"),
-        ({"a_mm": [500, 400], "alpha_deg": [0, 90, 0]}, "columns of 2 and 3"),
+        ({"a_mm": [500, 400], "alpha_deg": [0, 90, 0]}, "differ in length .a_mm 2, alpha_deg 3."),
         ({"a_mm": 500}, "no list of numbers"),
         ({"a_mm": [500, 400], "prismatic": [1, 0]}, "joint 1 slides and has no limits"),
         ({"a_mm": [500, 400], "limits_deg": [(-1, 1)]}, "for each of 2 joints"),

@@ -1,7 +1,9 @@
 """Tilting of a joint's bearing and link."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +18,7 @@ from robomill.quantities import quantity, switch, whole
 from robomill.robot.model import SOFTEST
 from robomill.spelled import in_units
 
+STIFFEST = 1e-12  # rad/(N m): nothing gives as little without being called rigid
 UNIT = "1e-7 rad/(N m)"
 
 
@@ -28,6 +31,11 @@ def bending_axes(frames: FloatArray, i: int, turned: bool) -> tuple[FloatArray, 
     size = np.linalg.norm(x, axis=-1, keepdims=True)
     x = np.where(size > 1e-9, x / np.maximum(size, 1e-9), frames[..., i + 1, :3, 1])  # next x along z: its y is across
     return x, np.cross(z, x)
+
+
+def _bending(axis: str) -> Any:
+    key = f"C_{axis}_1e-7_rad_per_Nm"
+    return quantity(f"about {axis}", UNIT, default=0.0, least=0.0, key=key, slip=SOFTEST, tiny=STIFFEST)
 
 
 @in_units(RobotError, "Bending of a joint")
@@ -53,8 +61,12 @@ class JointBending(Spring):
     each_joint: ClassVar[bool] = True
 
     joint: int = whole("Joint", least=1)
-    C_x: float = quantity("about x", UNIT, default=0.0, least=0.0, key="C_x_1e-7_rad_per_Nm", slip=SOFTEST)
-    C_y: float = quantity("about y", UNIT, default=0.0, least=0.0, key="C_y_1e-7_rad_per_Nm", slip=SOFTEST)
+    C_x: float = quantity(
+        "about x", UNIT, default=0.0, least=0.0, key="C_x_1e-7_rad_per_Nm", slip=SOFTEST, tiny=STIFFEST
+    )
+    C_y: float = quantity(
+        "about y", UNIT, default=0.0, least=0.0, key="C_y_1e-7_rad_per_Nm", slip=SOFTEST, tiny=STIFFEST
+    )
     provenance: Provenance = ASSUMED
     turned: bool = switch("Axes turn with the joint", default=False)
 

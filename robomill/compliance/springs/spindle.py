@@ -1,5 +1,7 @@
 """Spindle, holder and their bearings."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Self
 
@@ -17,6 +19,7 @@ from robomill.units import to_si
 TYPICAL = Provenance("assumed", "20 N/µm across and 50 N/µm along, typical of a milling spindle with its holder")
 
 
+STIFFEST = 1e-11  # m/N: nothing gives as little without being called rigid: was it meant in m/N?
 SOFTEST = 1e-3  # m/N: no spindle gives as much: was it meant in um/N?
 
 
@@ -37,8 +40,8 @@ class SpindleSpring(Spring):
     follows_tooth: ClassVar[bool] = True
     rank: ClassVar[int] = 2
 
-    lateral: float = quantity("Across", "um/N", least=0.0, digits=4, slip=SOFTEST)
-    axial: float = quantity("Along", "um/N", default=0.0, least=0.0, digits=4, slip=SOFTEST)
+    lateral: float = quantity("Across", "um/N", least=0.0, digits=4, slip=SOFTEST, tiny=STIFFEST)
+    axial: float = quantity("Along", "um/N", default=0.0, least=0.0, digits=4, slip=SOFTEST, tiny=STIFFEST)
     name: str = "spindle and holder"
     provenance: Provenance = ASSUMED
 

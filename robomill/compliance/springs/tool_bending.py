@@ -1,5 +1,7 @@
 """Bending of the cutter."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -8,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
 from robomill.compliance.spring import Spring, about_tool
-from robomill.cutting.tool import LONGEST, WIDEST, Cutter
+from robomill.cutting.tool import LONGEST, SHORTEST, THINNEST, WIDEST, Cutter
 from robomill.errors import RobotError
 from robomill.provenance import Provenance
 from robomill.quantities import quantity
@@ -17,6 +19,7 @@ from robomill.units import format_si, to_si
 
 #: Young's modulus of solid carbide, Pa.
 E_CARBIDE = to_si(600e3, "N/mm2")
+SOFT, HARD = to_si(1e3, "N/mm2"), to_si(2e6, "N/mm2")  # a plastic, and more than diamond
 #: Bending diameter of a fluted cutter over its outer diameter.
 FLUTED_CORE = 0.8
 CARBIDE = Provenance("assumed", "cantilever of solid carbide, E = 600 GPa, bending diameter 0.8 of the cutter's")
@@ -42,9 +45,9 @@ class ToolBending(Spring):
     follows_tooth: ClassVar[bool] = True
     rank: ClassVar[int] = 1
 
-    diameter: float = quantity("Diameter", "mm", above=0.0, boxed=False, slip=WIDEST)
-    stick_out: float = quantity("Stick-out", "mm", above=0.0, digits=1, slip=LONGEST)
-    E: float = quantity("Young's modulus", "N/mm2", default=E_CARBIDE, above=0.0, digits=0)
+    diameter: float = quantity("Diameter", "mm", above=0.0, boxed=False, slip=WIDEST, tiny=THINNEST)
+    stick_out: float = quantity("Stick-out", "mm", above=0.0, digits=1, slip=LONGEST, tiny=SHORTEST)
+    E: float = quantity("Young's modulus", "N/mm2", default=E_CARBIDE, least=SOFT, most=HARD, digits=0)
     core: float = quantity(
         "Bending Ø / Ø",
         default=FLUTED_CORE,

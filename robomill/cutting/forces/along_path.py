@@ -1,5 +1,7 @@
 """A force that turns with the path."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from robomill.arguments import asking
 from robomill.cutting.edge import EdgeTerm
 from robomill.cutting.materials import Material, per_area
 from robomill.cutting.process import ProcessForce
@@ -14,6 +15,7 @@ from robomill.units import to_si
 REFERENCE_CHIP = to_si(1.0, "mm")
 
 
+@asking
 @dataclass(frozen=True)
 class KienzleRow(Material):
     """F_t = kc11 (h / 1 mm)^(-mc) h b, kc11 in N/m^2; radial_ratio and axial_ratio are F_r / F_t and F_a / F_t.
@@ -41,6 +43,7 @@ class KienzleRow(Material):
         return (EdgeTerm(1.0 - self.mc, K, K * (self.radial_ratio or 0.0), K * (self.axial_ratio or 0.0)),)
 
 
+@asking
 @dataclass(frozen=True)
 class KienzleForce(ProcessForce):
     """Kienzle's kc = kc1.1 (h / 1 mm)^(-mc), its mean over the arc as incomplete beta integrals.

@@ -8,6 +8,7 @@ from typing import ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asked, asking
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import ForceModel, Frame
@@ -29,6 +30,7 @@ ROUNDING = 1e-6  # of a rate: instants written with a few digits are not spaced 
 LEFT_OVER = 0.2  # of a record over time: that much behind the last cut is suspected
 
 
+@asking
 @dataclass(frozen=True, eq=False)
 class ForceRecord:
     """Force ON the tool against time (s) or path length (m) from the start of the path.
@@ -98,6 +100,7 @@ class ForceRecord:
         return replace(self, x=even, F=sosfiltfilt(sections, F, axis=0, padlen=pad))
 
 
+@asking
 @dataclass(frozen=True, eq=False)
 class MeasuredForce(ForceModel):
     """A record laid on the path. ``start`` is the record's time (s) or path length (m) at the start of the first cut.
@@ -134,6 +137,7 @@ class MeasuredForce(ForceModel):
     R_MW: FloatArray = field(default_factory=lambda: np.eye(3))
 
     @classmethod
+    @asked
     def over_time(
         cls,
         t: ArrayLike,
@@ -152,6 +156,7 @@ class MeasuredForce(ForceModel):
         return cls(ForceRecord(t, F, "time", frame, source, kind="user"), cutoff, start)  # type: ignore[arg-type]
 
     @classmethod
+    @asked
     def along_path(
         cls, s: ArrayLike, F: ArrayLike, *, frame: RecordFrame = "path", start: float = 0.0, source: str = FROM_ARRAYS
     ) -> MeasuredForce:

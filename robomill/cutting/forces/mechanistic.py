@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from robomill.arguments import asking
 from robomill.cutting.edge import EdgeTerm
 from robomill.cutting.materials import Material, per_area
 from robomill.cutting.process import ProcessForce
@@ -16,6 +17,7 @@ def _per_length(label: str, *, optional: bool = False) -> Any:
     return quantity(label, "N/mm", optional=optional, least=0.0, most=to_si(1e3, "N/mm"))
 
 
+@asking
 @dataclass(frozen=True)
 class MechanisticRow(Material):
     """Ktc, Krc, Kac (N/m^2): per chip area, tangential, radial, axial; Kte, Kre, Kae (N/m): per length of edge.
@@ -56,6 +58,7 @@ class MechanisticRow(Material):
         )
 
 
+@asking
 @dataclass(frozen=True)
 class MechanisticForce(ProcessForce):
     """Chip and edge coefficients (Ktc..Kae), closed form of the mean (Altintas, Manufacturing Automation).

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import frozen
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
@@ -25,6 +26,7 @@ from robomill.toolpath.text import Source, read_source
 from robomill.toolpath.tools import Tools
 
 
+@asked
 def read_gcode(
     path_or_text: Source,
     *,

@@ -1,0 +1,86 @@
+"""Numbers of a set-up that can be meant, and hardly are: what they would be in another unit is said beside the result.
+
+What is certainly a slip of unit is refused where it is given (``spelled``).
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray
+from robomill.kinematics.asked import longest_reach
+from robomill.provenance import Finding
+from robomill.robot.model import Robot
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Toolpath
+from robomill.units import format_count, format_many, format_short, format_si
+
+CODE = "unit-doubt"
+THIN = 0.6e-3  # m: the widest cutter there is, with its metres taken for mm
+SMALL_PATH, NEAR, SHORT_TOOL = 2e-3, 0.05, 2e-3  # m
+SLIGHT, HEAVY = 1.0, 20e3  # N: hardly a cut pushes less, or more
+FINE, COARSE = 2e-6, 2e-3  # m a tooth
+
+
+def unit_doubts(setup: SimulationSetup, path: Toolpath, F: FloatArray, pushed: BoolArray) -> tuple[Finding, ...]:
+    """What looks like another unit, for F (m, 3) N and the steps ``pushed`` (m,) that are judged and cut."""
+    told = [*_of_sizes(setup, path), *_of_robot(setup.robot, setup.T_MW[:3, 3])]
+    told += [*_of_force(setup, F[pushed]), *_of_feed(setup, path, pushed)]
+    return tuple(Finding("suspicious", text, code=CODE) for text in told)
+
+
+def _of_sizes(setup: SimulationSetup, path: Toolpath) -> Iterator[str]:
+    """Cutter and path."""
+    diameter = setup.cutter.diameter
+    if diameter < THIN:
+        yield f"The cutter is {format_short(diameter, 'mm')} wide: was its diameter given in m?"
+    low, high = path.p.min(axis=0), path.p.max(axis=0)
+    if path.cutting.any() and (high - low).max() < min(SMALL_PATH, diameter):
+        size = format_many(high - low, "mm", 2, between=" × ")
+        yield f"The whole path lies within {size}, less than the cutter is wide: were its points given in m?"
+    if (high - low).max() > 2.0 * (reach := longest_reach(setup.robot)):
+        size = format_si(float((high - low).max()), "m", 1)
+        yield f"The path is {size} long, more than the arm reaches ({format_si(reach, 'm', 1)}): are its points in mm?"
+
+
+def _of_robot(robot: Robot, zero: FloatArray) -> Iterator[str]:
+    """Where the part lies, and the tool."""
+    chain = robot.chain
+    off = zero - chain.T_0[:3, 3]
+    from_axis = float(np.linalg.norm(np.cross(off, chain.T_0[:3, 2])))
+    if not chain.prismatic[0] and from_axis < NEAR and abs(float(zero[2])) < NEAR and zero.any():
+        place = format_many(zero, "mm", 1)
+        yield (
+            f"The part zero ({place}) lies in the foot of the robot, {format_si(from_axis, 'mm', 1)} from its first "
+            "axis: was it given in m?"
+        )
+    tip = float(np.linalg.norm(robot.T_tool[:3, 3]))
+    if 1e-6 < tip < SHORT_TOOL:
+        yield f"The tool ends {format_short(tip, 'mm')} from the last axis's frame: was its place given in m?"
+
+
+def _of_force(setup: SimulationSetup, F: FloatArray) -> Iterator[str]:
+    """A force that a person states; one from the material follows from it."""
+    if setup.force.follows_cut or not len(F):
+        return
+    largest = float(np.nan_to_num(np.linalg.norm(F, axis=1)).max())
+    if 0.0 < largest < SLIGHT:
+        yield f"Force: it never exceeds {format_short(largest, 'N')}, less than any cut: was it given in kN?"
+    elif largest > HEAVY:
+        yield f"Force: it grows to {format_short(largest, 'N')}, more than any robot mills with: is it in N?"
+
+
+def _of_feed(setup: SimulationSetup, path: Toolpath, pushed: BoolArray) -> Iterator[str]:
+    """Feed per tooth, where the spindle's speed is stated; drills and threads go by their own."""
+    known = pushed & np.isfinite(path.n_s) & (path.n_s > 0.0) & ~path.thread
+    if not known.any() or setup.cutter.family.drills or setup.tools:
+        return
+    f_z = float(np.median(path.v_f[known] / (path.n_s[known] * setup.cutter.flutes)))
+    if FINE <= f_z <= COARSE:
+        return
+    feed, speed = format_short(float(np.median(path.v_f[known])), "mm/min"), float(np.median(path.n_s[known]))
+    asked = "is the feed in mm/s?" if f_z < FINE else "is the spindle's speed in 1/s?"
+    yield (
+        f"Each tooth takes {format_short(f_z, 'mm')} ({feed}, {format_short(speed, '1/min')}, "
+        f"{format_count(setup.cutter.flutes, 'flute')}): {asked}"
+    )
