@@ -198,4 +198,4 @@ if not TYPE_CHECKING:  # with it in sight, a name that does not exist would have
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_PUBLIC])
+    return sorted([*_PUBLIC, *(name for name in globals() if name[:2] == "__")])

@@ -23,10 +23,17 @@ MOST_ROWS = 10  # of a table in a notebook
 PLAIN = str.maketrans({"−": "-", "×": "x", "µ": "u", "°": " deg", "²": "2", "³": "3", "⁻": "^-", "¹": "1", "⁷": "7"})
 
 
+# Attributes of values that completion does not offer: what other parts of the product go by.
+MACHINERY = {"carried", "carried_from", "door", "first", "hint", "kinds", "rank", "seals_itself", "unstated"}
+
+
 class ReadOnly:
     """A frozen dataclass whose arrays nobody writes to."""
 
     seals_itself: ClassVar[bool] = True
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__()} - MACHINERY)
 
     def __post_init__(self) -> None:
         for each in fields(self):  # type: ignore[arg-type]

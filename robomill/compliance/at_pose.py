@@ -13,10 +13,10 @@ from robomill.compliance.cartesian import full_compliance, joint_contributions
 from robomill.compliance.deflection import displacement, soft_direction
 from robomill.errors import KinematicsError
 from robomill.kinematics import dexterity
-from robomill.kinematics.forward import joint_frames
+from robomill.kinematics.forward import joint_angles, joint_frames
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.lazy import cached_property
-from robomill.robot.model import Robot, check_robot
+from robomill.robot.model import Robot
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +112,7 @@ class PoseReport:
         return values, axes * np.sign(largest)
 
     def component(self, name: str) -> float:
-        """C_ab in m/N, ``name`` two of x, y, z: "yy", "xz"."""
+        """C_ab in m/N, ``name`` two of x, y, z: "yy", "xz", or as maps call it, "C_yy"."""
         return float(self.C[_indices(name)])
 
     def shares(self, name: str) -> FloatArray:
@@ -121,7 +121,7 @@ class PoseReport:
 
     def delta(self, F: ArrayLike) -> FloatArray:
         """(3,) m in {M}: the tip displacement under F (3,) N on the tool, C F. Eq. (16)."""
-        return displacement(self.C, F)
+        return displacement(self.C, as_floats(F, "F (N)", (3,), error=KinematicsError))
 
     def _known(self, value: FloatArray) -> FloatArray:
         return value if self.reached else np.full(value.shape, np.nan)
@@ -155,14 +155,14 @@ def at_pose(robot: Robot, theta: ArrayLike) -> PoseReport:
     >>> rm.at_pose(robot, robot.home).C.shape
     (3, 3)
     """
-    check_robot(robot)
-    one = as_floats(theta, f"theta of {robot.name!r}", (robot.n,), error=KinematicsError, finite=False)
+    one = joint_angles(robot, theta)
     if one.ndim != 1:
         raise KinematicsError(f"theta of {robot.name!r}: expected one configuration, found shape {one.shape}.")
     return PoseReport(robot, frozen(one))
 
 
 def _indices(name: str) -> tuple[int, int]:
-    if len(name) != 2 or not set(name) <= set("xyz"):
-        raise KinematicsError(f"Component {name!r}: expected two of x, y, z, as in 'xy'.")
-    return "xyz".index(name[0]), "xyz".index(name[1])
+    axes = str(name).removeprefix("C_")
+    if len(axes) != 2 or not set(axes) <= set("xyz"):
+        raise KinematicsError(f"Component {name!r:.40}: expected two of x, y, z, as in 'xy' or 'C_xy'.")
+    return "xyz".index(axes[0]), "xyz".index(axes[1])

@@ -42,6 +42,11 @@ def joint_contributions(J_v: ArrayLike, C_theta: ArrayLike) -> FloatArray:
     >>> rm.joint_contributions(J_v, robot.C_theta).shape
     (2, 3, 3)
     """
+    if isinstance(J_v, Robot):
+        raise KinematicsError(
+            "J_v: found a Robot, expected the linear rows of its Jacobian; of a robot and a configuration "
+            "rm.at_pose(robot, theta).C_joint gives the joints' shares."
+        )
     J_v = as_floats(J_v, "J_v", (3, None), error=KinematicsError, finite=False)
     return _shares(J_v, as_floats(C_theta, "C_theta", (J_v.shape[-1],), error=KinematicsError))
 

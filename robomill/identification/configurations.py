@@ -15,12 +15,14 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, rotation_z, world_from_pose
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
-from robomill.units import format_many, format_percent, format_si, to_si
+from robomill.units import format_many, format_percent, format_si, from_si, to_si
 
-OTHER_UNITS = {  # what a length is times when its number was meant in the one unit and stands under the other
-    f"{meant} under a header in {said}": to_si(1.0, meant) / to_si(1.0, said)
+SLIPS = {  # by words: a number that was meant in the one unit, and stands under the other
+    f"{meant} under a header in {said}": (meant, said)
     for meant, said in (("in", "mm"), ("mm", "in"), ("m", "mm"), ("mm", "m"))
 }
+OTHER_UNITS = {slip: to_si(1.0, meant) / to_si(1.0, said) for slip, (meant, said) in SLIPS.items()}  # times
+WRITTEN = 4  # decimals of a length as tables have it
 LIMIT_SLACK = 1e-5  # rad (m): rounding of a written angle allowed beyond a joint limit
 
 
@@ -69,6 +71,9 @@ def _other_unit(robot: Robot, poses: FloatArray, reached: BoolArray) -> str:
     """What the lengths of poses (k, 5 or 6) may have been meant in, where that would be reached far more often."""
     spin: Literal["fixed", "least_motion"] = "fixed" if poses.shape[1] == 6 else "least_motion"
     for slip, factor in OTHER_UNITS.items():
+        written = from_si(poses[:, :3], SLIPS[slip][1])
+        if np.abs(written - written.round(WRITTEN)).max() > 1e-6 * max(1.0, np.abs(written).max()):
+            continue  # a table in that unit would hardly have such numbers
         scaled = np.concatenate([poses[:, :3] * factor, poses[:, 3:]], axis=1)
         share = inverse_kinematics(robot, pose_of(scaled), spin=spin).reached.mean()
         if share > max(0.5, 2.0 * reached.mean()):

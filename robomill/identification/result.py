@@ -195,7 +195,9 @@ class IdentificationResult(Tabled):
         told = zip(found["parameter"], found["value"], found["unit"], strict=True)
         values = ", ".join(f"{name} {format_value(value, unit, missing='not seen')}" for name, value, unit in told)
         missed = format_percent(self.cv_relative_error, 1)
-        return f"{values}; {format_count(len(self.row), 'test')}, error at poses left out {missed}"
+        doubts = sum(each.level not in ("info", "ignored") for each in self.findings)
+        more = f"; {format_count(doubts, 'finding')} that puts it in doubt: see .findings" if doubts else ""
+        return f"{values}; {format_count(len(self.row), 'test')}, error at poses left out {missed}{more}"
 
     @property
     def weakest(self) -> int:

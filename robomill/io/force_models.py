@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 
 from robomill.arguments import asked
+from robomill.arrays import of_kind
 from robomill.cutting.force import ForceModel
 from robomill.cutting.forces import FORCES, model_of
 from robomill.cutting.forces.measured import ForceRecord
 from robomill.cutting.materials import Material, alternatives
 from robomill.cutting.process import ProcessForce
 from robomill.cutting.tool import Cutter
+from robomill.errors import CuttingError
 from robomill.files import MATERIAL, TABLE
 from robomill.io.beside import ALONE, Beside
 from robomill.io.declared import CODECS, Around, Codec, from_table, kind_to_table
@@ -75,6 +77,7 @@ def process_force(
     >>> force.material.name
     'al7075_t6_carbide_ref190'
     """
+    of_kind(cutter, Cutter, "cutter", 'rm.Cutter("flat", diameter_mm=8)', CuttingError)
     row = material if isinstance(material, Material) else load_material(material)
     others = alternatives(row, sample_materials())
     model: type[ProcessForce] = model_of(row)  # type: ignore[assignment]

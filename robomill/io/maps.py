@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from robomill.arguments import asked
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, of_kind
 from robomill.errors import WorkspaceError
 from robomill.extras import needed
-from robomill.files import written
+from robomill.files import check_place, written
 from robomill.workspace.fields import Field, map_columns
 from robomill.workspace.grid import Grid
 
@@ -47,7 +47,10 @@ def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
     >>> file.read_text().splitlines()[0]
     'X_mm,Y_mm,Z_mm,C_yy_um/N'
     """
-    path = Path(path)
+    check_place(path, f"a file that ends in {', '.join(SUFFIXES)}", WorkspaceError)
+    path, fields = Path(path), (fields,) if isinstance(fields, Field) else fields
+    for field in fields if isinstance(fields, Sequence) else (fields,):
+        of_kind(field, Field, "Map", 'a list of fields, [found.field("C_yy")]', WorkspaceError)
     suffix = path.suffix.lower()
     if not fields:
         raise WorkspaceError("Map: there is no quantity to write.")

@@ -13,8 +13,8 @@ from robomill.units import to_si
 
 # Poses handled at a time where several arrays of them are needed: a block stays in the second-level cache.
 BLOCK = 4096
-# Turns (strokes, where a joint slides) beyond its limits at which an angle was meant in degrees; whole and half numbers
-# are suspected from one turn on: nobody has such angles in radians. So are all angles where limits are known.
+# Turns (strokes, where a joint slides) beyond its limits at which an angle was meant in degrees; numbers of one
+# decimal are suspected from one turn on: nobody has such angles in radians. So are all angles where limits are known.
 SLIPPED = 5.0
 
 
@@ -31,7 +31,11 @@ def joint_angles(robot: Robot, theta: ArrayLike) -> FloatArray:
         beyond = (found < low - turns * turn) | (found > high + turns * turn)
         if not beyond.any():
             continue
-        if turns == SLIPPED or not (2.0 * found % 1.0).any() or (beyond & _known_limits(robot)).any():
+        if (
+            turns == SLIPPED
+            or not (np.nan_to_num(10.0 * found).round(9) % 1.0).any()
+            or (beyond & _known_limits(robot)).any()
+        ):
             raise KinematicsError(_slipped(robot, found, beyond))
     return found
 

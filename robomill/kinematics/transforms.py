@@ -115,7 +115,7 @@ def pose_from_world(x_M: ArrayLike) -> FloatArray:
     [0.1, -1.2, 0.05]
     """
     x_M = as_floats(x_M, "x_M", (5,), error=KinematicsError)
-    refuse_slip(TILT, x_M[..., 3:], KinematicsError, "x_M")
+    refuse_slip(TILT, x_M[..., 3:], KinematicsError, "Pose")
     return transform(rotation_x(x_M[..., 3]) @ rotation_y(x_M[..., 4]), x_M[..., :3])
 
 

@@ -238,6 +238,8 @@ def _pairs(value: Any, rows: int, who: str) -> list[Any]:
     """One pair, or None, a joint."""
     if value is None:
         return [None] * rows
+    if isinstance(value, str) or not hasattr(value, "__iter__"):
+        raise RobotError(f"{who}: limits: expected [lower, upper] for each of {rows} joints, found {value!r:.60}.")
     items = list(value)
     if len(items) == 2 and all(np.ndim(item) == 0 and item is not None for item in items):
         return [items] * rows

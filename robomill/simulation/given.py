@@ -8,17 +8,21 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray, as_floats, of_kind
+from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.spring import Spring
 from robomill.cutting.force import ForceModel
 from robomill.cutting.tool import Cutter
+from robomill.cutting.tool_table import ToolTable
 from robomill.errors import SetupError
+from robomill.identification.measured_field import MeasuredField
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity, quantities
 from robomill.robot.model import Robot, check_robot
 from robomill.spelled import one_of
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
-from robomill.toolpath.source import PointsSource
+from robomill.toolpath.sketch import Sketch
+from robomill.toolpath.source import PointsSource, SketchSource
 from robomill.units import format_many
 
 # What people type of T_MW, of a part that stands upright, and of the spin.
@@ -48,6 +52,8 @@ def taken(given: Mapping[str, Any], T_MW: FloatArray | None = None, robot: Any =
     found = {name: value for name, value in given.items() if name not in OTHERS}
     if isinstance(found.get("source"), Toolpath):
         found["source"] = PointsSource(found["source"])
+    elif isinstance(found.get("source"), Sketch):
+        found["source"] = SketchSource(found["source"])
     if any(given.get(name) is not None for name in PART):
         if "T_MW" in found:
             raise SetupError("Part zero: T_MW and part_zero are both given; keep one of them.", where="T_MW")
@@ -98,6 +104,14 @@ def check_kinds(setup: Any) -> None:
         of_kind(setup.source, Toolpath, "source", give, SetupError)
     of_kind(setup.force, ForceModel, "force", "rm.ConstantForce((0, 100, 0)), in N", SetupError)
     of_kind(setup.stock, (Stock, NoneType), "stock", "rm.Stock(lower_mm=..., upper_mm=...)", SetupError)
+    of_kind(setup.tools, ToolTable, "tools", 'rm.read_tool_table("tools.csv")', SetupError)
+    of_kind(setup.links, (LinkMasses, NoneType), "links", "rm.LinkMasses(mass=..., centre=...)", SetupError)
+    of_kind(setup.measured_map, (MeasuredField, NoneType), "measured_map", "one that was read, or None", SetupError)
+    for name in ("name", "description"):
+        of_kind(getattr(setup, name), str, name, "a text", SetupError)
+    of_kind(setup.provenance, Mapping, "provenance", "a mapping of blocks to rm.Provenance", SetupError)
+    for said in setup.provenance.values():
+        of_kind(said, Provenance, "provenance", 'rm.Provenance("measured", "where from")', SetupError)
     if isinstance(setup.springs, Spring):
         object.__setattr__(setup, "springs", (setup.springs,))
     of_kind(setup.springs, (tuple, list), "springs", "a list of rm.ToolBending and the like", SetupError)

@@ -8,13 +8,13 @@ A shape that begins where the one before it ended is cut without lifting.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from robomill.arrays import FloatArray, Rows, frozen
+from robomill.arrays import FloatArray, Rows, frozen, of_kind
 from robomill.errors import ToolpathError
 from robomill.quantities import choice, quantities, quantity, settle
 from robomill.spelled import Replaceable, in_units
@@ -149,7 +149,10 @@ class Sketch(Replaceable):
         ) -> None: ...
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "elements", tuple(self.elements))
+        given = (self.elements,) if isinstance(self.elements, Element) else self.elements
+        for each in given if isinstance(given, Sequence) else (given,):
+            of_kind(each, Element, "Sketch, elements", 'rm.Element("line", points_mm=..., ...)', ToolpathError)
+        object.__setattr__(self, "elements", tuple(given))
         count = sum(len(e.points) for e in self.elements)
         if len(self.elements) > MAX_ELEMENTS or count > MAX_POINTS:
             raise ToolpathError(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robomill.arguments import asked
-from robomill.arrays import FloatArray, digest, of_kind
+from robomill.arrays import FloatArray, as_floats, digest, of_kind
 from robomill.errors import WorkspaceError
 from robomill.frames import Columns, data_array, data_set
 from robomill.lazy import cached_property
@@ -217,5 +217,5 @@ def compliance_map(robot: Robot, grid: Grid, A: float = 0.0, B: float = 0.0) -> 
 
 
 def _finite_tilt(A: float, B: float) -> None:
-    if not np.isfinite([A, B]).all():
+    if not np.isfinite(as_floats([A, B], "Tool tilt A, B (rad)", (2,), error=WorkspaceError, finite=False)).all():
         raise WorkspaceError(f"Tool tilt: A and B must be finite angles, found {A!r} and {B!r}.")

@@ -135,6 +135,7 @@ def box_grid(lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
     >>> rm.box_grid([-0.6, -1.6, 0.0], [0.6, -1.0, 0.0], 0.1).shape
     (13, 7, 1)
     """
+    step = float(as_floats(step, "Grid, step (m)", (), error=WorkspaceError, finite=False))
     low = as_floats(lower, "Box, lower corner", (3,), error=WorkspaceError)
     high = as_floats(upper, "Box, upper corner", (3,), error=WorkspaceError)
     longest = float(np.abs(high - low).max())
@@ -181,6 +182,7 @@ def plane_grid(normal: str, at: float, lower: ArrayLike, upper: ArrayLike, step:
         raise WorkspaceError(f"Plane: the normal is {normal!r}; expected 'x', 'y' or 'z'.")
     low = np.array(as_floats(lower, "Plane, lower corner", (3,), error=WorkspaceError))
     high = np.array(as_floats(upper, "Plane, upper corner", (3,), error=WorkspaceError))
+    at = float(as_floats(at, "Plane, at (m)", (), error=WorkspaceError))
     low["xyz".index(normal)] = high["xyz".index(normal)] = at
     return box_grid(low, high, step)
 

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from robomill.arguments import asked
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, of_kind
 from robomill.compliance.components import COMPONENTS, DIRECT
 from robomill.errors import WorkspaceError
 from robomill.kinematics import dexterity
@@ -83,6 +83,7 @@ def map_quantities(robot: Robot, rests_on: Basis | None = None) -> dict[str, Map
 
 def map_quantity(robot: Robot, name: str) -> MapQuantity:
     """The quantity called ``name`` (C_zy is C_yz); joints count from 1 over the free joints. Raises WorkspaceError."""
+    of_kind(name, str, "Quantity", 'the name of one, "C_yy"', WorkspaceError)
     known = map_quantities(robot).get(name.replace("zy", "yz").replace("zx", "xz").replace("yx", "xy"))
     if known is None:
         names = [f[0].name if len(f) == 1 else f"{f[0].name} ... {f[-1].name}" for f in _families(robot)]

@@ -39,7 +39,6 @@ RUNNING = (
 # What only readers of the public API, a library or an attribute of somebody else's object uses, with the reason.
 UNUSED = {
     "__getattr__": "Python asks the package for a public name",
-    "__dir__": "Python lists the package",
     "over_time": "public: forces from arrays",
     "from_dh": "public: robots in code",
     "__signature__": "what completion and help ask a function for",

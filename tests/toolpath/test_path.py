@@ -82,7 +82,7 @@ def test_a_point_beyond_any_machine_is_refused_by_its_row(far: float) -> None:
     def line(end: float) -> Toolpath:
         return toolpath_from_lines([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0, 1.0, 0.0], [0.0, end, 0.0]], 0.01)
 
-    with pytest.raises(ToolpathError, match="Line 2"):
+    with pytest.raises(ToolpathError, match="Row 2"):
         line(far)
     assert line(1e4).s[-1] == 1e4
 

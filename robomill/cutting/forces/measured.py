@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked, asking
-from robomill.arrays import FloatArray, as_floats, frozen
+from robomill.arrays import FloatArray, as_floats, frozen, of_kind
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import ForceModel, Frame
 from robomill.errors import CuttingError
@@ -136,6 +136,10 @@ class MeasuredForce(ForceModel):
     start: float = quantity("Path starts at", default=0.0, digits=3, boxed=False)
     R_MW: FloatArray = field(default_factory=lambda: np.eye(3))
 
+    def __post_init__(self) -> None:
+        of_kind(self.record, ForceRecord, "record", 'rm.read_forces("force.csv") or rm.ForceRecord(...)', CuttingError)
+        super().__post_init__()
+
     @classmethod
     @asked
     def over_time(
@@ -209,16 +213,19 @@ class MeasuredForce(ForceModel):
     def findings(self, conditions: CutConditions) -> tuple[Finding, ...]:
         """What the reader noticed; of a record over time where it is taken to begin, and whether much is left of it."""
         found, record = super().findings(conditions), self.record
-        if not self.in_time or not conditions.cutting.any():
+        if not conditions.cutting.any():
             return found
-        began, last = (format_si(v, "s", 3) for v in (self.start, record.x[-1]))
-        text = f"the first cut is taken to begin at {began} of the force record; what moves before it is no part of it."
-        found += (Finding("info", text, int(conditions.block[np.argmax(conditions.cutting)]), code="record-start"),)
-        ends = float(conditions.t[conditions.cutting].max()) + self.start
+        unit, along = self.start_unit, conditions.t if self.in_time else conditions.s
+        began, last = (format_si(v, unit, 3) for v in (self.start, record.x[-1]))
+        if self.in_time:
+            text = f"the first cut is taken to begin at {began} of the force record; moves before it are no part of it."
+            found += (Finding("info", text, int(conditions.block[np.argmax(conditions.cutting)]), code="record-start"),)
+        ends = float(along[conditions.cutting].max()) + self.start
         if record.x[-1] - ends > LEFT_OVER * (record.x[-1] - record.x[0]):
+            asked = "at this feed, and does it begin with the first cut" if self.in_time else "and is its length in m"
             text = (
-                f"Force: the record goes on to {last}, the last cut ends at {format_si(ends, 's', 3)}: is it of this "
-                "program, at this feed, and does it begin with the first cut?"
+                f"Force: the record goes on to {last}, the last cut ends at {format_si(ends, unit, 3)}: is it of this "
+                f"program, {asked}?"
             )
             found += (Finding("suspicious", text, code="record-longer"),)
         return found
