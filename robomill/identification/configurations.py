@@ -71,9 +71,10 @@ def _other_unit(robot: Robot, poses: FloatArray, reached: BoolArray) -> str:
     """What the lengths of poses (k, 5 or 6) may have been meant in, where that would be reached far more often."""
     spin: Literal["fixed", "least_motion"] = "fixed" if poses.shape[1] == 6 else "least_motion"
     for slip, factor in OTHER_UNITS.items():
-        written = from_si(poses[:, :3], SLIPS[slip][1])
-        if np.abs(written - written.round(WRITTEN)).max() > 1e-6 * max(1.0, np.abs(written).max()):
-            continue  # a table in that unit would hardly have such numbers
+        said = SLIPS[slip][1]
+        written = from_si(poses[:, :3], said)
+        if said == "in" and np.abs(written - written.round(WRITTEN)).max() > 1e-6 * np.abs(written).max():
+            continue  # a table in inches would hardly have such numbers: they are converted from mm
         scaled = np.concatenate([poses[:, :3] * factor, poses[:, 3:]], axis=1)
         share = inverse_kinematics(robot, pose_of(scaled), spin=spin).reached.mean()
         if share > max(0.5, 2.0 * reached.mean()):

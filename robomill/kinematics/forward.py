@@ -31,11 +31,8 @@ def joint_angles(robot: Robot, theta: ArrayLike) -> FloatArray:
         beyond = (found < low - turns * turn) | (found > high + turns * turn)
         if not beyond.any():
             continue
-        if (
-            turns == SLIPPED
-            or not (np.nan_to_num(10.0 * found).round(9) % 1.0).any()
-            or (beyond & _known_limits(robot)).any()
-        ):
+        short = not (np.nan_to_num(10.0 * found).round(9) % 1.0).any()
+        if turns == SLIPPED or short or (beyond & _known_limits(robot)).any():
             raise KinematicsError(_slipped(robot, found, beyond))
     return found
 

@@ -26,6 +26,7 @@ from robomill.simulation import given
 from robomill.spelled import Replaceable, in_units
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.source import PathSource
 from robomill.units import format_limit, format_many, to_si
 from robomill.values import Value
@@ -41,7 +42,7 @@ class SimulationSetup(Replaceable, Value):
     """Everything ``simulate`` needs, SI units.
 
     robot       the machine; its C_theta is the one in force
-    source      the program, table, sketch or points the path is read from; a Toolpath is taken as it is
+    source      the program, table, sketch or points the path is read from; a Toolpath or a Sketch is taken as it is
     T_MW        (4, 4) where the part zero {W} lies in {M}; instead of it ``part_zero`` (3,) m or ``part_zero_mm``, and
                 ``part_rotation_z`` or ``part_rotation_z_deg``, the part's turn about z_M
     cutter, force, stock   stock None: the path's bounds with a margin
@@ -151,7 +152,7 @@ class SimulationSetup(Replaceable, Value):
             self,
             *,
             robot: Robot,
-            source: PathSource | Toolpath,
+            source: PathSource | Toolpath | Sketch,
             cutter: Cutter,
             force: ForceModel,
             name: str = ...,

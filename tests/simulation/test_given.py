@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.errors import SetupError
+from robomill.errors import RobomillError, SetupError
 from robomill.simulation.given import part_frame
 
 FLUTE = rm.load_setup("samples/paper_flute")
@@ -162,3 +162,50 @@ def test_a_misspelled_name_has_a_suggestion() -> None:
         rm.load_robots  # noqa: B018
     assert missing.value.name == "load_robots"
     assert missing.value.obj is rm
+
+
+ARM = rm.load_robot("slavkovic_5r")
+LINE = rm.Element("line", points_mm=[[0, 0], [50, 0]], depth_mm=2, feed_mm_min=1800)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: rm.plane_grid("z", "a", [0] * 3, [1] * 3, 0.1), "Plane, at .m.: expected numbers, found 'a'"),
+        (lambda: rm.box_grid([0] * 3, [1] * 3, "a"), "Grid, step .m.: expected numbers, found 'a'"),
+        (lambda: rm.compliance_map(ARM, rm.Grid([0], [-1.3], 0)).values(3), "Quantity: expected a str, found 3"),
+        (lambda: rm.compliance_map(ARM, rm.Grid([0], [-1.3], 0), A="x"), "Tool tilt A, B .rad.: expected numbers"),
+        (lambda: rm.at_pose(ARM, ARM.home).delta([0, 100]), "F .N.: expected shape"),
+        (lambda: rm.at_pose(ARM, [10.5, -20.2, 30.1, 0, 5]), "numpy.deg2rad"),
+        (lambda: rm.joint_contributions(ARM, ARM.home), "at_pose.robot, theta..C_joint"),
+        (lambda: rm.MeasuredForce("a.csv"), "record: expected a ForceRecord, .*rm.read_forces"),
+        (lambda: rm.process_force("al7075_t6_carbide_ref190", 8), "cutter: expected a Cutter, found 8"),
+        (lambda: rm.Robot.from_dh(a_mm=[100, 200], limits_deg=170), "limits: expected .lower, upper. for each of 2"),
+        (lambda: rm.Sketch([1]), "elements: expected a Element, found 1"),
+        (lambda: rm.write_map("m.csv", 5), "Map: expected a Field, found 5"),
+        (lambda: rm.write_map(5, []), "Expected the name of a file, found 5"),
+        (lambda: rm.load_robot(5), "Expected the name of a file, found 5"),
+        (lambda: rm.load_setup(5), "Expected the name of a file, found 5"),
+        (lambda: rm.read_load_tests(5), "Expected the name of a file, found 5"),
+        (lambda: rm.identify(ARM, np.zeros((3, 11))), "found ndarray; of an array or a mapping make a DataFrame"),
+        (lambda: rm.load_setup("paper_flute").replace(links=[1]), "links: expected a LinkMasses"),
+        (lambda: rm.load_setup("paper_flute").replace(provenance={"a": "b"}), "provenance: expected a Provenance"),
+        (lambda: rm.load_setup("paper_flute").replace(name=5), "name: expected a str, found 5"),
+    ],
+)
+def test_what_a_stranger_gives_by_mistake_is_refused_in_a_sentence(call, words: str) -> None:
+    with pytest.raises(RobomillError, match=words):
+        call()
+
+
+def test_a_sketch_is_a_source_and_one_shape_a_sketch() -> None:
+    drawn = rm.load_setup("paper_flute").replace(source=rm.Sketch(LINE))
+    assert drawn.source.kind == "sketch"
+    assert drawn.toolpath.block_name == "shape"
+
+
+def test_an_angle_of_one_decimal_within_a_turn_of_its_limits_is_taken() -> None:
+    most = float(ARM.limits[0, 1]) + 2.0 * np.pi
+    assert np.isfinite(rm.tool_pose(ARM, [np.floor(10.0 * most) / 10.0, 0, 0, 0, 0])).all()
+    with pytest.raises(RobomillError, match="deg2rad"):
+        rm.tool_pose(ARM, [np.ceil(10.0 * most) / 10.0, 0, 0, 0, 0])

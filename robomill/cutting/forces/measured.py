@@ -27,6 +27,7 @@ ORDER = 2
 FEWEST = 4
 FROM_ARRAYS = "force from arrays"
 ROUNDING = 1e-6  # of a rate: instants written with a few digits are not spaced alike
+SLIPPED = 100.0  # times the length cut: such a record over length was hardly given in m
 LEFT_OVER = 0.2  # of a record over time: that much behind the last cut is suspected
 
 
@@ -221,7 +222,8 @@ class MeasuredForce(ForceModel):
             text = f"the first cut is taken to begin at {began} of the force record; moves before it are no part of it."
             found += (Finding("info", text, int(conditions.block[np.argmax(conditions.cutting)]), code="record-start"),)
         ends = float(along[conditions.cutting].max()) + self.start
-        if record.x[-1] - ends > LEFT_OVER * (record.x[-1] - record.x[0]):
+        rest = record.x[-1] - ends
+        if rest > LEFT_OVER * (record.x[-1] - record.x[0]) if self.in_time else rest > SLIPPED * ends > 0.0:
             asked = "at this feed, and does it begin with the first cut" if self.in_time else "and is its length in m"
             text = (
                 f"Force: the record goes on to {last}, the last cut ends at {format_si(ends, unit, 3)}: is it of this "

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import robomill as rm
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import feed_frame, force_on_tool
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
@@ -208,3 +209,12 @@ def test_no_filter_is_written_as_a_cut_off_of_nothing():
     assert quantities(MeasuredForce)["cutoff"].written_none == 0.0
     assert MeasuredForce(record(1.0)).cutoff == 50.0
     assert MeasuredForce(record(1.0)).start == 0.0
+
+
+def test_a_record_over_length_that_was_given_in_mm_is_doubted() -> None:
+    """100 mm of cut, and a record over 100 of what stands for m."""
+    setup = rm.load_setup("paper_flute")
+    s, F = np.linspace(0.0, 200.0, 50), np.tile([0.0, 100.0, 0.0], (50, 1))
+    for times, doubted in ((1.0, True), (1e-3, False)):
+        run = rm.simulate(setup.replace(force=rm.MeasuredForce.along_path(s * times, F)))
+        assert ("record-longer" in {note.code for note in run.notes}) == doubted
