@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path, PurePath
 
+from robomill.arguments import asked
 from robomill.errors import ToolpathError, UnitAskedError
 from robomill.files import DRAWING, check_size, name_of, read_file
 from robomill.io.dxf import Dxf, Read, metres
@@ -19,6 +20,7 @@ ASKED = ("mm", "in", "cm", "m", "px", "pt")
 SMALLEST, LARGEST = 1e-3, 5.0  # m: a drawing outside these was probably drawn in another unit
 
 
+@asked
 def read_drawing(path: str | Path, *, unit: str = "") -> Drawing:
     """The lines of a drawing, layer by layer.
 

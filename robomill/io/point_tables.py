@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError, UnitAskedError
 from robomill.extras import needed
@@ -42,6 +43,7 @@ ALIASES = {"k_x": "i", "k_y": "j", "k_z": "k", "f": "feed", "feedrate": "feed", 
 EXAMPLE = "X_mm,Y_mm,Z_mm,feed_mm_min"
 
 
+@asked
 def read_points(
     path: str | Path,
     *,
