@@ -203,7 +203,7 @@ WORDS: dict[str, dict[str, str]] = {
 }
 COLUMNS: dict[str, dict[str, str]] = {
     "deviation.csv": {
-        "line": "Line of the program.",
+        "line": "Line of the program; of a table, a sketch or points the column is `row`, `shape` or `point`.",
         "tool": "Number of the tool.",
         "cutting": "1 where the move to this point cuts.",
         "reached": "1 where the arm gets there.",
