@@ -7,7 +7,6 @@ import robomill as rm
 from robomill.compliance.at_pose import at_pose
 from robomill.compliance.deflection import deflection
 from robomill.errors import KinematicsError
-from tests.robot.written_otherwise import with_blocked
 
 NAMES = ("slavkovic_5r", "kuka_kr500", "planar_2r", "planar_3r")
 
@@ -72,8 +71,6 @@ def test_components_shares_and_axes(name):
         )
         shares = deflection(here.C_joint, unit_b) @ unit_a
         np.testing.assert_allclose(here.shares(a + b), shares, atol=1e-18)
-        largest = max(range(robot.n), key=lambda i: abs(shares[i]))
-        assert here.gives_most(a + b) == robot.joint_numbers[largest]
     values, axes = here.principal
     assert (np.diff(values) >= 0).all()
     for value, axis in zip(values, axes.T, strict=True):
@@ -85,13 +82,6 @@ def test_components_shares_and_axes(name):
     along = np.einsum("mi,ij,mj->m", push, here.C, push)
     assert values[0] - 1e-15 <= along.min()
     assert along.max() <= values[2] + 1e-15
-
-
-def test_joint_numbers_are_those_of_the_table():
-    robot = with_blocked(rm.load_robot("kuka_kr500"), 1, 0.0)
-    here = at_pose(robot, np.full(5, 0.3))
-    assert here.gives_most("zz") in (2, 3, 4, 5, 6)
-    assert here.gives_most("zz") == robot.joint_numbers[int(np.abs(here.C_joint[:, 2, 2]).argmax())]
 
 
 def test_a_pose_that_is_not_reached_is_nan_throughout():

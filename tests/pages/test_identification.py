@@ -64,7 +64,8 @@ def exercise(page: AppTest) -> Exercise:
 
 
 def html(page: AppTest) -> str:
-    return "\n".join(element.proto.body for element in page.get("html"))
+    """What stands on the page; a number and its unit are held together on it by a space of their own."""
+    return "\n".join(element.proto.body for element in page.get("html")).replace("\u00a0", " ")
 
 
 def typed(page: AppTest, text: str) -> AppTest:

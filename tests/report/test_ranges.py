@@ -34,7 +34,7 @@ def test_assumed_lengths_leave_the_wall_and_move_the_floor(setup: SimulationSetu
 def test_each_row_of_the_alloy_in_force_stays_within_the_range() -> None:
     setup = load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(coupling=False)
     result = simulate(setup)
-    found = next(r for r in ranges(result, None) if "alloy" in r.over)
+    found = next(r for r in ranges(result, None) if "coefficients" in r.over)
     i, walls = result.verdict.wall.worst, []
     for material in (setup.force.material, *setup.force.alternatives):  # type: ignore[attr-defined]
         own = setup.force.material  # type: ignore[attr-defined]

@@ -55,9 +55,9 @@ def test_a_tool_axis_of_any_length_is_one_of_length_1() -> None:
         ({"p_mm": P, "feed_mm_min": [1, 2]}, "or 4, one a point"),
         ({"p_mm": P, "feed_mm_min": -5}, "expected 0 or more"),
         ({"p_mm": P, "feed_mm_min": 600, "k": (0, 0, 0)}, "without length"),
-        ({"p_mm": P[:, :2], "feed_mm_min": 600}, "shape"),
-        ({"p_mm": P[0], "feed_mm_min": 600}, "shape"),
-        ({"p_mm": [], "feed_mm_min": 600}, "shape"),
+        ({"p_mm": P[:, :2], "feed_mm_min": 600}, "three numbers .* found 4 x 2"),
+        ({"p_mm": P[0], "feed_mm_min": 600}, "three numbers .* found 3"),
+        ({"p_mm": [], "feed_mm_min": 600}, "three numbers .* found 0"),
         ({"p_mm": P * np.nan, "feed_mm_min": 600}, "finite"),
     ],
 )
