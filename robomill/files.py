@@ -35,7 +35,7 @@ TOOLS = FileKind("a tool table (.tbl, .csv or .toml)", 2, any_code=True)
 TABLE = FileKind("a CSV table", 60, any_code=True)
 POINTS = FileKind("points of a path (.csv or .parquet)", 60, any_code=True)
 DRAWING = FileKind("a drawing (.dxf or .svg)", 10)
-STL = FileKind("a stock as STL", 80)
+STL = FileKind("a stock as STL, OBJ, PLY or 3MF", 80)
 
 
 def read_file(

@@ -76,8 +76,8 @@ WORDS: dict[str, dict[str, str]] = {
         "last column. For a part that is tilted.",
     },
     "stock": {
-        "stl": "An STL file beside the set-up or below, in place of the corners.",
-        "unit": 'The unit of the STL file: `"mm"`, `"in"`, `"m"` or what else a length may have.',
+        "stl": "A solid (STL, OBJ, PLY or 3MF) beside the set-up or below, in place of the corners.",
+        "unit": 'The unit of that file (a 3MF says it itself): `"mm"`, `"in"`, `"m"` or what else a length may have.',
         "triangles": "The mesh of a solid as the app saves it: packed.",
         "triangles_count": "How many triangles are packed there.",
     },

@@ -1,6 +1,5 @@
-"""Meshes in and out: the part as STL, PLY, GLB or VTP, a stock from an STL; in millimetres, as CAM expects."""
+"""Meshes in and out: the part as STL, PLY, GLB or VTP, a stock from a solid; in millimetres, as CAM expects."""
 
-import io
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import MissingExtraError, SurfaceError
 from robomill.extras import missing
 from robomill.files import STL, check_size, read_file
+from robomill.io.solids import kind_of, solid_of
 from robomill.progress import slices
 from robomill.provenance import Finding
 from robomill.spelled import made
@@ -101,14 +101,14 @@ def _vtp(zmap: ZMap, mesh: Mesh, error: FloatArray | None, max_faces: int) -> by
 
 @asked
 def read_stock(path: str | Path, *, unit: str = "mm") -> Stock:
-    """The stock from an STL file.
+    """The stock from a file of a solid: STL, OBJ, PLY or 3MF.
 
     Parameters
     ----------
     path : str or Path
-        A closed mesh.
+        A closed mesh, of one body or several.
     unit : str
-        Of its numbers: "mm", "in", "cm" or "m".
+        Of its numbers: "mm", "in", "cm" or "m"; a 3MF says it itself.
 
     Returns
     -------
@@ -136,36 +136,31 @@ def read_stock(path: str | Path, *, unit: str = "mm") -> Stock:
 def read_stl_stock(
     source: str | Path | bytes, *, unit: str = "mm", name: str = ""
 ) -> tuple[Stock, tuple[Finding, ...]]:
-    """A stock from an STL file (path or bytes), and what is odd about it.
+    """A stock from an STL, OBJ, PLY or 3MF file (path or bytes, by the ending of its name), and what is odd about it.
 
-    STL carries no unit: ``unit`` ("mm", "in", "cm" or "m") is what its numbers are taken as. Raises SurfaceError for a
-    file that is empty, not STL, flat, or not watertight.
+    ``unit`` ("mm", "in", "cm" or "m") is what its numbers are taken as; a 3MF says its unit itself. Raises SurfaceError
+    for a file that is empty, none of these, or not watertight.
     """
-    import trimesh
-
     label = name or (Path(source).name if isinstance(source, str | Path) else "STL")
     data = source if isinstance(source, bytes) else read_file(source, STL, SurfaceError, said=label)
     check_size(len(data), STL, SurfaceError, label)
     if unit not in UNITS_OF_STL:
         raise SurfaceError(f"{label}: the unit is {unit!r}; expected one of {', '.join(UNITS_OF_STL)}.")
+    kind = kind_of(label)
+    unit = "mm" if kind == "3mf" else unit
     if not data.strip():
-        raise SurfaceError(f"{label}: the file is empty; export the stock again as STL.")
-    try:
-        solid = trimesh.load_mesh(io.BytesIO(data), file_type="stl")
-        empty = len(solid.faces) == 0
-    except Exception as exc:
-        text = f"{label}: this is no STL file, or one that is damaged or cut off; export the stock again as STL."
-        raise SurfaceError(text) from exc
-    if empty:
-        raise SurfaceError(f"{label}: the STL holds no triangles; export the stock as a closed solid.")
+        raise SurfaceError(f"{label}: the file is empty; export the stock again as {kind.upper()}.")
+    numbers, solid = solid_of(data, kind, label)
+    if len(numbers) == 0:
+        raise SurfaceError(f"{label}: the {kind.upper()} holds no triangles; export the stock as a closed solid.")
     if not np.isfinite(solid.vertices).all():
-        raise SurfaceError(f"{label}: the STL has corners that are not numbers; export it again.")
+        raise SurfaceError(f"{label}: the {kind.upper()} has corners that are not numbers; export it again.")
     if not solid.is_watertight:
         edges = int((np.bincount(solid.edges_unique_inverse) != 2).sum())
         raise SurfaceError(
             f"{label}: the mesh is not watertight ({edges} open edges); close it in CAD before using it as a stock."
         )
-    triangles = to_si(np.asarray(solid.triangles, dtype=float), unit)
+    triangles = to_si(numbers, unit)
     corners = triangles.reshape(-1, 3)
     known = {"lower": corners.min(axis=0), "upper": corners.max(axis=0), "triangles": triangles}
     return made(Stock, known), _size_findings(label, solid.extents, unit)

@@ -11,7 +11,7 @@ from robomill.surface.stock import Stock
 from robomill.ui import declared, inputs, pieces, running, session
 from robomill.units import format_count, format_many, format_short
 
-STOCKS = {"path": "Around the path", "block": "Block", "stl": "From STL"}
+STOCKS = {"path": "Around the path", "block": "Block", "stl": "From a solid"}
 FILE, UNIT = "milling.stock.file", "milling.stock.unit"
 PENDING, ODD = "milling.stock.pending", "milling.stock.odd"
 MAX_STL_MB = 80
@@ -39,7 +39,7 @@ def stock_words() -> str:
 
 
 def stock_inputs() -> None:
-    """Around the path, a block, or a solid from an STL file."""
+    """Around the path, a block, or a solid from a file."""
     setup = session.project().setup
     stock = setup.stock
     given = "path" if stock is None else "stl" if stock.triangles is not None else "block"
@@ -83,9 +83,10 @@ def _switch_stock(kind: str) -> None:
 
 
 def _stl(stock: Stock | None) -> None:
-    look, take = inputs.Look(hint="STL carries no unit."), partial(inputs.reread, FILE, _take, UNIT)
+    look = inputs.Look(hint="STL, OBJ and PLY carry no unit; a 3MF says its own, which holds.")
+    take = partial(inputs.reread, FILE, _take, UNIT)
     inputs.choice("Unit of the file", UNIT, UNITS_OF_STL, session.kept(UNIT, "mm"), take, look)
-    inputs.upload("Stock as a closed solid (.stl), placed in {W}", FILE, _take, most_MB=MAX_STL_MB)
+    inputs.upload("Stock as a closed solid (.stl, .obj, .ply, .3mf), placed in {W}", FILE, _take, most_MB=MAX_STL_MB)
     if stock is not None and stock.triangles is not None:
         for finding in session.kept(ODD, ()):
             pieces.said("warning", finding.sentence, "straighten")

@@ -1,0 +1,145 @@
+"""Closed solids from files: STL, OBJ, PLY by trimesh, which follows nothing outside them, and 3MF by its own words.
+
+A 3MF is an archive of XML: how large it unpacks and how often its parts are placed is looked at first.
+"""
+
+import io
+import zipfile
+from collections.abc import Iterator
+from pathlib import PurePath
+from typing import Any, Literal, get_args
+from xml.etree import ElementTree
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import SurfaceError
+
+Kind = Literal["stl", "obj", "ply", "3mf"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+MOST_UNPACKED = 300_000_000  # bytes of the models in a 3MF
+MOST_TRIANGLES = 1_600_000  # as in an STL of 80 MB
+MOST_PLACED, DEEPEST = 10_000, 16
+UNITS_OF_3MF = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
+"""Units of a 3MF, in mm."""
+
+
+def kind_of(name: str) -> Kind:
+    """What a file is by its ending; an STL where that says nothing."""
+    suffix = PurePath(name).suffix.lower().lstrip(".")
+    return next((kind for kind in KINDS if kind == suffix), "stl")
+
+
+def solid_of(data: bytes, kind: Kind, label: str) -> tuple[FloatArray, Any]:
+    """Triangles (t, 3, 3) in the numbers of the file (of a 3MF in mm), and the solid as trimesh has it, merged at its
+    corners. Raises SurfaceError for a file that is none."""
+    import trimesh
+
+    try:
+        if kind == "3mf":
+            solid = trimesh.Trimesh(**_of_3mf(data, label))
+        else:
+            solid = trimesh.load_mesh(io.BytesIO(data), file_type=kind)
+        if kind != "stl":  # corners stand there once for each normal and each colour
+            solid.merge_vertices(merge_tex=True, merge_norm=True)
+        return np.asarray(solid.triangles, dtype=float), solid
+    except SurfaceError:
+        raise
+    except Exception as exc:  # each reader has its own words for a file that is damaged
+        name = kind.upper()
+        text = f"{label}: this is no {name} file, or one that is damaged or cut off; export the stock again as {name}."
+        raise SurfaceError(text) from exc
+
+
+def _of_3mf(data: bytes, label: str) -> dict[str, Any]:
+    """Vertices in mm and faces of all that the build of a 3MF places."""
+    models = _models(data, label)
+    root = next((name for name in models if name.lower() == "3d/3dmodel.model"), next(iter(models), ""))
+    if not root:
+        raise SurfaceError(f"{label}: the 3MF holds no model; export the stock again as 3MF.")
+    objects = {
+        (name, each.get("id", "")): each
+        for name, model in models.items()
+        for each in model.iter()
+        if _is(each, "object")
+    }
+    scale = UNITS_OF_3MF.get(models[root].get("unit", "millimeter"))
+    if scale is None:
+        raise SurfaceError(f"{label}: the unit of the 3MF is {models[root].get('unit')!r:.40}; expected millimeter.")
+    vertices: list[FloatArray] = []
+    faces: list[Any] = []
+    count = triangles = 0
+    for item in (each for each in models[root].iter() if _is(each, "item")):
+        for placed, mesh in _placed(objects, root, item, np.eye(4), label):
+            corners, own = _mesh(mesh)
+            triangles += len(own)
+            if triangles > MOST_TRIANGLES:
+                raise SurfaceError(f"{label}: the 3MF has more than {MOST_TRIANGLES:,} triangles; export it coarser.")
+            vertices.append((corners @ placed[:3, :3] + placed[3, :3]) * scale)
+            faces.append((own if np.linalg.det(placed[:3, :3]) > 0 else own[:, ::-1]) + count)
+            count += len(corners)
+    if not faces:
+        return {"vertices": np.zeros((0, 3)), "faces": np.zeros((0, 3), dtype=np.int64)}
+    return {"vertices": np.vstack(vertices), "faces": np.vstack(faces)}
+
+
+def _models(data: bytes, label: str) -> dict[str, ElementTree.Element]:
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        entries = [each for each in archive.infolist() if each.filename.lower().endswith(".model")]
+        left, found = MOST_UNPACKED, {}
+        for entry in entries:
+            with archive.open(entry) as stream:
+                text = stream.read(left + 1)
+            left -= len(text)
+            if left < 0:
+                raise SurfaceError(
+                    f"{label}: the 3MF unpacks to more than {MOST_UNPACKED // 1_000_000} MB; export the stock coarser."
+                )
+            if b"<!DOCTYPE" in text or b"<!ENTITY" in text:
+                raise SurfaceError(f"{label}: the 3MF declares entities, which no model needs; export it again.")
+            found[entry.filename] = ElementTree.fromstring(text)
+    return found
+
+
+def _placed(
+    objects: dict[tuple[str, str], ElementTree.Element],
+    model: str,
+    item: ElementTree.Element,
+    T: FloatArray,
+    label: str,
+) -> Iterator[tuple[FloatArray, ElementTree.Element]]:
+    """Every mesh of an item with where it is placed (rows of points times the matrix)."""
+    waiting, placed = [(model, item, T, 0)], 0
+    while waiting:
+        model, item, T, depth = waiting.pop()
+        placed += 1
+        if depth > DEEPEST or placed > MOST_PLACED:
+            raise SurfaceError(f"{label}: parts of the 3MF are placed in each other too often; export one solid.")
+        named = next((value.lstrip("/") for key, value in item.attrib.items() if key.endswith("}path")), model)
+        whole = objects[named, item.get("objectid", "")]
+        T = _matrix(item.get("transform", "")) @ T
+        for each in whole.iter():
+            if _is(each, "mesh"):
+                yield T, each
+            elif _is(each, "component"):
+                waiting.append((named, each, T, depth + 1))
+
+
+def _matrix(text: str) -> FloatArray:
+    T = np.eye(4)
+    if text.strip():
+        T[:, :3] = np.array([float(word) for word in text.split()]).reshape(4, 3)
+    return T
+
+
+def _mesh(mesh: ElementTree.Element) -> tuple[FloatArray, Any]:
+    corners = [[float(each.attrib[axis]) for axis in "xyz"] for each in mesh.iter() if _is(each, "vertex")]
+    faces = [[int(each.attrib[key]) for key in ("v1", "v2", "v3")] for each in mesh.iter() if _is(each, "triangle")]
+    points, own = np.array(corners, dtype=float).reshape(-1, 3), np.array(faces, dtype=np.int64).reshape(-1, 3)
+    if len(own) and not 0 <= own.min() <= own.max() < len(points):
+        raise ValueError("a triangle names a corner that is not there")
+    return points, own
+
+
+def _is(element: ElementTree.Element, name: str) -> bool:
+    return isinstance(element.tag, str) and element.tag.rpartition("}")[2] == name
