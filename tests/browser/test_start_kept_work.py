@@ -14,7 +14,7 @@ from server import Server
 
 pytestmark = pytest.mark.browser
 NOTICE = ".st-key-autosave-notice"
-TABLE_2, TABLE_3 = "text=moves the tip 0.230 mm in Y", "text=moves the tip 0.264 mm in Y"
+TABLE_2, TABLE_3 = "text=by +0.230 mm in Y", "text=by +0.264 mm in Y"
 
 
 @pytest.fixture
