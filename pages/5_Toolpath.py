@@ -65,5 +65,5 @@ with right:
         details.path_facts(setup, unit)
     if source.kind == "program":
         with st.container(border=True):
-            details.findings_list(path.findings)
+            details.findings_list(view.findings(path, result))
             details.support_table()

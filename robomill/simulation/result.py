@@ -29,7 +29,7 @@ from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
 from robomill.simulation.strays import Stray, stray
-from robomill.simulation.tools import tool_notes, tooling
+from robomill.simulation.tools import feed_notes, tool_notes, tooling
 from robomill.simulation.verdict import judge, thin_wall_notes
 from robomill.simulation.verdict_words import Verdict
 from robomill.surface.deviation import Deviation, deviation
@@ -184,7 +184,7 @@ class SimulationResult(Tabled):
     def notes(self) -> tuple[Finding, ...]:
         """What a reader of the numbers must know."""
         found = [*cut_notes(self.setup, self.conditions, ~self.not_judged), *tool_notes(self.setup, self.path)]
-        found += map_notes(self.setup, self.path)
+        found += [*feed_notes(self.setup, self.path), *map_notes(self.setup, self.path)]
         pushed = self.judged & self.conditions.engaged
         found += suspicions(self.setup, self.force_components[pushed])
         found += unit_doubts(self.setup, self.path, self.F, pushed)

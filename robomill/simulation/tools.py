@@ -18,7 +18,9 @@ from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
-from robomill.units import format_si
+from robomill.units import format_si, from_si, unit_label
+
+FASTEST = 1.0  # m/s, of a feed
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +110,22 @@ def tool_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
         )
         found.append(Finding("info", text, code="tool-frame"))
     return (*found, *_holders(setup, path))
+
+
+def feed_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
+    """The fastest of the feeds that no cutter takes: more than its radius a tooth, or ``FASTEST`` where no speed is
+    known."""
+    tools, turns = tooling(setup, path), np.isfinite(path.n_s) & (path.n_s > 0)
+    turn = path.v_f / np.where(turns, path.n_s, 1.0)
+    odd = np.where(turns, turn > tools.each("radius") * tools.each("flutes"), path.v_f > FASTEST)
+    odd &= path.cutting & (path.step_length > 0)
+    if not odd.any():
+        return ()
+    i, lines = int(np.argmax(np.where(odd, path.v_f, 0.0))), len(np.unique(path.block[odd]))
+    a_turn = f", {format_si(turn[i], 'mm', 1)} a revolution" if turns[i] else ""
+    feed = f"{from_si(path.v_f[i], 'mm/min'):,.0f} {unit_label('mm/min')}"
+    text = f"a feed of {feed}{a_turn}: no cutter takes that; check F and its unit."
+    return (Finding("warning", text, int(path.block[i]), count=lines, code="feed-absurd"),)
 
 
 def _holders(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:

@@ -48,14 +48,14 @@ def _papers(process: bool) -> list[Claim]:
     third = plain.robot.with_compliance_set("table_3")
     rows = [
         Claim("paper, predicted from Table 2", "paper", SLOT.from_table_2, note=f"{force} measured force"),
-        _computed(f"robomill, {force} and Table 2", plain),
-        _computed(f"robomill, {force} and Table 3", plain.replace(robot=third)),
+        _computed(f"robomill, {force}, Table 2", plain),
+        _computed(f"robomill, {force}, Table 3", plain.replace(robot=third)),
         Claim("paper, predicted from its measured map", "paper", SLOT.from_map, note="raw data not printed"),
         Claim("paper, measured on the part", "measured", SLOT.measured, note="in the paper's words", rough=True),
     ]
     if process:
-        rows.append(_computed("robomill, force from process data and Table 2", _process_setup()))
-        rows.append(_computed("robomill, force from process data and Table 3", _process_setup().replace(robot=third)))
+        rows.append(_computed("robomill, process data, Table 2", _process_setup()))
+        rows.append(_computed("robomill, process data, Table 3", _process_setup().replace(robot=third)))
     return rows
 
 
@@ -89,8 +89,8 @@ def panel(project: Project, dark: bool) -> None:
             "kind": [c.kind for c in shown],
             **{f"{k}_{unit}": [getattr(c, k) for c in shown] for k in lengths},
         },
-        caption="Dashed: measured. Bars: every coefficient of 7075 in the literature. The paper names neither alloy "
-        "nor helix; "
-        "7075-T6 and a right-hand helix are assumed, and nothing is tuned.",
+        caption="Dashed: measured on the part. Process data: the force follows from cutter, feed and material; its bar "
+        "is over every published coefficient of 7075. The paper names neither alloy nor helix: 7075-T6 and a "
+        "right-hand helix are assumed, and nothing is tuned.",
         alt="The paper's predictions and measurement beside the values computed from process data, with their band.",
     )

@@ -258,7 +258,7 @@ def project_from_toml(
         seen = from_table(own["maps"], MapView)
     if "view" not in own:
         looked = dataclasses.replace(view or View(), theta=None)
-        return Project(setup, looked, maps=seen, knowledge=known, bench=bench or Bench())
+        return Project(setup, looked, "", seen, known, bench or Bench())
     preset = own["view"].text("preset", "")
     bench = from_table(own["experiments"], Bench) if "experiments" in own else Bench()
     return Project(setup, from_table(own["view"], View), preset, seen, known, bench)

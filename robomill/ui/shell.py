@@ -111,10 +111,16 @@ def _preset(project: Project) -> None:
     titles = {name: preset_setup(name).name for name in names}
     if current not in titles:
         titles = {current: "Your file", **titles}
-    inputs.choice("Preset", "project.preset", titles, current, session.open_preset, inputs.LISTED)
+    inputs.choice("Started from example", "project.preset", titles, current, _start_from, inputs.LISTED)
     if current in names and project.setup.digest() != preset_setup(current).digest():
         again = (session.open_preset, current)
-        inputs.button("Back to preset", "back", "restart_alt", *again, width="stretch", type="tertiary")
+        inputs.button("Back to the example", "back", "restart_alt", *again, width="stretch", type="tertiary")
+
+
+def _start_from(name: str) -> None:
+    """A preset instead of the project; "Your file" is what is in force."""
+    if name in presets():
+        session.open_preset(name)
 
 
 def _files(held: session.Store) -> None:

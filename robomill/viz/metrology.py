@@ -92,7 +92,7 @@ def histogram_figure(
     p, label = palette(dark), unit_label(unit)
     walls, floors = map(float, tolerances)
     middle = 0.5 * (edges[1:] + edges[:-1])
-    margin = {"l": 8, "r": 16, "t": 30, "b": 8}
+    margin = {"l": 8, "r": 16, "t": 48, "b": 8}
     fig = figure(dark=dark, height=320, revision="histogram", margin=margin, bargap=0.04, barmode="stack")
     for (name, value), colour in zip(share.items(), (p.accent, p.muted), strict=True):
         fig.add(
@@ -109,11 +109,8 @@ def histogram_figure(
         say(fig, words, place, 1.0, p.muted, yref="paper", yanchor="bottom")
     reach = max(1.12 * walls, 1.12 * floors, float(np.abs(edges).max()) * 1.04)
     fig.lay_out(
-        xaxis=axis(
-            f"Error, {label} (walls: + to the left of the feed; floors: + material left)",
-            dark=dark,
-            range=[-reach, reach],
-        ),
+        legend={"y": 1.09},
+        xaxis=axis(f"Error, {label}", dark=dark, range=[-reach, reach]),
         yaxis=axis("Share of walls and floors, %", dark=dark, rangemode="tozero"),
     )
     return fig

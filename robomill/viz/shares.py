@@ -1,6 +1,5 @@
 """Joint shares as bars, what stiffer joints buy, and the deviation along the six lines of the paper's Fig. 8."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -77,27 +76,27 @@ def _marks(name: str, names: Sequence[str], values: FloatArray, colour: str, uni
     }
 
 
-def _amount(value: float, top: float, unit: str) -> str:
-    """With as many decimals as give the largest three digits, of a share whole per cent; what is a thousandth of the
-    largest or less is none."""
-    text = format_number(value, 0 if unit == "%" else max(0, 2 - math.floor(math.log10(top))))
-    return "0" if abs(value) <= 1e-3 * top or text == "0" else f"{text} {unit}"
+def _amount(value: float, top: float, unit: str, digits: int) -> str:
+    """With ``digits`` decimals; what is a thousandth of the largest or less is none."""
+    text = format_number(value, digits)
+    return "0" if abs(value) <= 1e-3 * top or not text.strip("−0.") else f"{text} {unit}"
 
 
-def gain_bars(title: str, gain: FloatArray, unit: str, joints: Sequence[int], *, dark: bool, height: int) -> Chart:
-    """What a stiffer joint buys, gain (n,) in ``unit``: one bar a joint in the joint's colour, the best on top."""
+def gain_bars(gain: FloatArray, unit: str, digits: int, joints: Sequence[int], *, dark: bool, height: int) -> Chart:
+    """What a stiffer joint buys, gain (n,) in ``unit`` with ``digits`` decimals: one bar a joint in the joint's colour,
+    the best on top."""
     p, colours = palette(dark), joint_colours(7, dark)
     order = np.argsort(-gain, kind="stable")
     top, low = float(np.nanmax(gain, initial=0.0)) or 1.0, float(np.nanmin(gain, initial=0.0))
     fig = figure(dark=dark, height=height, revision="gains", bargap=0.25, showlegend=False)
-    fig.layout["margin"] = {"l": 58, "r": 24, "t": 20, "b": 44, "autoexpand": False}
+    fig.layout["margin"] = {"l": 58, "r": 24, "t": 6, "b": 44, "autoexpand": False}
     fig.add(
         "bar",
         y=[f"joint {joints[i]}" for i in order],
         x=gain[order],
         orientation="h",
         marker={"color": [colours[i % 7] for i in order]},
-        text=[_amount(gain[i], top, unit) for i in order],
+        text=[_amount(gain[i], top, unit, digits) for i in order],
         textposition="outside",
         cliponaxis=False,
         textfont={"color": p.text, "size": 12.5},
@@ -107,8 +106,6 @@ def gain_bars(title: str, gain: FloatArray, unit: str, joints: Sequence[int], *,
     fig.layout["xaxis"] = axis(unit, dark=dark, nticks=6, range=span, automargin=False)
     fig.layout["xaxis"]["title"]["standoff"] = 6
     fig.layout["yaxis"] = axis("", dark=dark, autorange="reversed", ticks="", automargin=False) | {"title": None}
-    if title:
-        say(fig, f"<b>{title}</b>", 0.0, 1.0, p.text, size=13, yshift=2, align="left", **ABOVE)
     return fig
 
 

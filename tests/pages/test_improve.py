@@ -90,5 +90,5 @@ def test_a_joint_that_makes_it_worse_is_not_said_to_change_nothing() -> None:
     verdict = simulate(preset_setup("paper_flute")).verdict
     after = tuple(dataclasses.replace(verdict, share=share) for share in (0.5, 0.9, 0.7653))
     ranked = Stiffening(dataclasses.replace(verdict, share=0.7653), after, np.zeros(4))
-    fig = gain_bars("Saved", 100.0 * ranked.saved, "%", (1, 2, 3), dark=False, height=200)
+    fig = gain_bars(100.0 * ranked.saved, "%", 0, (1, 2, 3), dark=False, height=200)
     assert fig.traces[0]["text"] == ["27 %", "0", "−13 %"]

@@ -287,11 +287,11 @@ def test_what_a_stiffer_joint_saves_is_what_the_cut_simulated_anew_saves(app: Ap
     stiffer = np.array(setup.robot.C_theta)
     stiffer[2] /= 1.1
     after = rm.simulate(setup.replace(robot=setup.robot.replace(C_theta=stiffer))).max_deviation
-    saved = (rm.simulate(setup).max_deviation - after) * 1e6
+    saved = (rm.simulate(setup).max_deviation - after) * 1e3
     chart = next(c for c in charts(app) if c["data"][0].get("y", [""])[0] == "joint 3")  # type: ignore[index]
-    assert chart["data"][0]["text"][0] == f"{saved:.1f} µm"  # type: ignore[index]
+    assert chart["data"][0]["text"][0] == f"{saved:.3f} mm"  # type: ignore[index]
     assert "of the 0.251 mm of this cut at line 7" in words(app)
-    assert f"10 % stiffer saves {saved:.1f} µm of this cut at line 7" in words(app)
+    assert f"10 % stiffer saves {saved:.3f} mm of this cut at line 7" in words(app)
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+
+import pytest
 from conftest import errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
@@ -95,3 +98,19 @@ def test_a_carved_sample_opens_with_a_click(app: AppTest) -> None:
     assert not app.exception
     assert store(app).project.preset == "heart"
     assert "0.26 mm" in words(app)
+
+
+@pytest.mark.parametrize("picked", ["", None])
+def test_a_project_of_no_example_is_ones_own_file_until_an_example_is_picked(app: AppTest, picked: str | None) -> None:
+    kept = store(app)
+    kept.project = own = dataclasses.replace(kept.project, preset="")
+    examples = app.run().selectbox(key="project.preset")
+    assert examples.options[0] == "Your file"
+    examples.set_value(picked)
+    app.run()
+    assert errors(app) == []
+    assert store(app).project is own
+    assert app.selectbox(key="project.preset").value == ""
+    app.selectbox(key="project.preset").set_value("heart").run()
+    assert store(app).project.preset == "heart"
+    assert "Your file" not in app.selectbox(key="project.preset").options

@@ -13,7 +13,7 @@ from robomill.io.projects import setup_from_toml, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.kinematics.forward import tool_pose
 from robomill.simulation.run import simulate
-from robomill.simulation.tools import cutting_numbers, farther, held, tool_notes, tooling
+from robomill.simulation.tools import cutting_numbers, farther, feed_notes, held, tool_notes, tooling
 from robomill.toolpath.source import GCodeSource
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=5e-4, step=4e-3)
@@ -201,3 +201,20 @@ def test_only_what_cuts_over_the_part_meets_it_with_its_holder():
     assert warned("G0 Z5", f"G0 X-80 Y{beside}", "G0 Z-6", "G1 X0", "G1 X80") == []
     assert warned("G0 X0", "G0 Z-6", "G0 X10") == []
     assert warned("G0 Z5", "G0 X-80", "G0 Z-6", "G1 X0", "G1 X80") == [8]
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "count", "said"),
+    [
+        ("S12000 M3\nG1 X0 F4500000\nG1 X20 F1800", 3, 1, "375.0 mm a revolution"),
+        ("S12000 M3\nG1 X0 F144001\nG1 X20 F150000", 4, 2, "12.5 mm a revolution"),
+        ("S12000 M3\nG1 X0 F143999", 0, 0, ""),
+        ("\nG1 X0 F59000\nG1 X20 F61000", 4, 1, "check F"),
+    ],
+)
+def test_a_feed_that_no_cutter_takes_is_a_warning_with_its_line(words, line, count, said):
+    """Three teeth of 4 mm radius: 12 mm a revolution, 144 000 mm/min at 12 000 min^-1; without a speed 1 m/s."""
+    setup = SETUP.replace(source=GCodeSource(f"G21 G90\n{words}\nM2\n".replace("G90\n", "G90 G0 X-20 Y0 Z-2 ")))
+    found = feed_notes(setup, setup.toolpath)
+    assert [(f.line, f.count, f.level) for f in found] == ([(line - 1, count, "warning")] if count else [])
+    assert all(said in f.message for f in found)

@@ -57,6 +57,7 @@ def test_a_bare_set_up_opens_with_the_view_in_force(project: Project) -> None:
     opened = project_from_toml(setup_to_toml(project.setup), project.view)
     assert opened.setup.digest() == project.setup.digest()
     assert opened.view.units == "in"
+    assert opened.preset == ""
 
 
 @pytest.mark.parametrize(

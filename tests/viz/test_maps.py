@@ -136,7 +136,7 @@ def test_no_ghost_without_a_change() -> None:
 
 
 def test_gains_and_lines_are_drawn() -> None:
-    gains = gain_bars("saved", np.array([0.1, 2.0, -1.0]), "µm", (1, 3, 4), dark=False, height=200)
+    gains = gain_bars(np.array([0.1, 2.0, -1.0]), "mm", 3, (1, 3, 4), dark=False, height=200)
     assert list(gains.figure.data[0].y) == ["joint 3", "joint 1", "joint 4"], "the best on top"
     assert list(gains.figure.data[0].marker.color) == [JOINT_COLOURS[k] for k in (1, 0, 2)], "in the joint's colour"
     s = np.linspace(0, 1, 5)

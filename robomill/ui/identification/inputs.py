@@ -85,9 +85,9 @@ def _templates(robot: Robot) -> None:
 
 def robot_choice(bench: Bench) -> None:
     """Which robot was measured: the project's, or a preset."""
-    own = session.project().setup.robot
-    titles = {THE_PROJECTS: f"The project's: {own.title or own.name}", **robot_titles()}
-    now = bench.robot_name(own.name)
+    own = session.project().setup.robot.name
+    titles = {THE_PROJECTS: "The robot of this project", **robot_titles()}
+    now = bench.robot_name(own)
     inputs.choice("Robot measured", "identification.robot", titles, now, decided("robot"), inputs.LISTED)
 
 

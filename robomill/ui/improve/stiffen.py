@@ -149,14 +149,15 @@ def _levels(ranked: Stiffening) -> list[str]:
 
 def ranking(ranked: Stiffening, joints: tuple[int, ...], unit: str, dark: bool) -> None:
     """The bars with their table."""
+    pieces.strong("Saved of the tolerance")
     pieces.figure(
         gain_bars(
-            "Saved of the tolerance",
             from_si(ranked.saved, "%"),
             unit_label("%"),
+            0,
             joints,
             dark=dark,
-            height=100 + 34 * len(joints),
+            height=80 + 34 * len(joints),
         ),
         "improve-joints",
         name="stiffer-joints",

@@ -88,18 +88,21 @@ def _stretch(found: InHand, here: InHand, way: Ray) -> None:
     )
 
 
+def _large(value: float, unit: str) -> str:
+    number, label = split_unit(format_si(value, unit, 3))
+    return f'<div class="rm-det">{number} <small>{label}</small></div>'
+
+
 def _measure(pose: PoseReport, way: Ray, i: int) -> None:
     what = map_quantity(pose.robot, "det_J")
     det = float(way.det[i])
     softest_here = pose.principal[0][-1]
     view = session.project().view
     give, det_unit = view.of("um/N"), view.of(what.unit)
-    number, label = split_unit(format_si(det, det_unit, 3))
     near = "A singularity: one direction is lost." if near_singular(pose.robot, det) else "Far from a singularity."
     st.html(
-        f'<p class="rm-note">det(J)</p><div class="rm-det">{number} <small>{label}</small></div>'
-        f'<p class="rm-note">{near}</p>'
-        f'<p class="rm-note">largest compliance</p><div class="rm-det">{format_si(softest_here, give, 2)}</div>'
+        f'<p class="rm-note">Distance to singularity, det(J)</p>{_large(det, det_unit)}<p class="rm-note">{near}</p>'
+        f'<p class="rm-note">Largest compliance</p>{_large(float(softest_here), give)}'
     )
     unit = view.length
     softest = soft_direction(cartesian_compliance(pose.robot, way.theta))[0][:, -1]

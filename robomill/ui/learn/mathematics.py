@@ -51,7 +51,7 @@ def equations(pose: PoseReport, push: Push) -> None:
 
 
 def component(pose: PoseReport, row: int, column: int) -> str:
-    """C_ab as the sum of its joints with numbers, as TeX; joints that add nothing are left out."""
+    """C_ab as the sum of its joints with numbers, one below another as TeX; joints that add nothing are left out."""
     name = "xyz"[row] + "xyz"[column]
     shares = from_si(pose.shares(name), "um/N")
     top = float(np.abs(shares).max())
@@ -62,10 +62,9 @@ def component(pose: PoseReport, row: int, column: int) -> str:
         C = float(from_si(pose.robot.C_theta[i], "urad/(N m)"))
         a, b = (float(pose.J[k, i]) for k in (row, column))
         factors = rf"({a:.3f})^2" if row == column else rf"({a:.3f})({b:.3f})"
-        terms.append(rf"\underbrace{{{C:.3f}\cdot {factors}}}_{{\text{{joint {number}}}}}")
-    total = float(shares.sum())
-    sum_ = " + ".join(terms) if terms else "0"
-    return rf"C_{{{name}}} = {sum_} = {total:.3f}"
+        terms.append(rf"{C:.3f}\cdot {factors} && \small\text{{joint {number}}}")
+    sum_ = r" \\ &+ ".join(terms) if terms else "0"
+    return rf"\begin{{aligned}} C_{{{name}}} = {{}} & {sum_} \\ = {{}} & {shares.sum():.3f} \end{{aligned}}"
 
 
 def product(C: FloatArray, push: Push) -> str:

@@ -16,7 +16,7 @@ from robomill.ui.maps import plane
 from robomill.ui.point import InHand, place
 from robomill.ui.project import MapView
 from robomill.ui.push import Moved
-from robomill.units import format_many, format_si, from_si, unit_label
+from robomill.units import UNITS, format_many, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 from robomill.workspace.fields import ComplianceMap
 
@@ -102,7 +102,7 @@ def _best(saved: Saved | None, joints: tuple[int, ...]) -> pieces.Tile:
 
 
 def _in_words(saved: Saved, joint: int) -> str:
-    return format_si(float(saved.gain[joint]), session.project().view.of("um"))
+    return format_si(float(saved.gain[joint]), session.project().view.length)
 
 
 def _um(value: float) -> str:
@@ -161,16 +161,16 @@ def best_joint(joints: tuple[int, ...], saved: Saved | None) -> None:
     if saved is None:
         pieces.note("Neither the cut nor the selected point is reached, so no joint can be ranked.")
         return
-    unit = session.project().view.of("um")
+    unit = session.project().view.length
     gain = from_si(saved.gain, unit)
-    of = f"the {format_si(saved.before, session.project().view.length)} {saved.where}"
+    of = f"the {format_si(saved.before, unit)} {saved.where}"
     said = ", ".join(f"joint {joints[i]} {_in_words(saved, i)}" for i in np.argsort(-saved.gain, kind="stable"))
     pieces.strong(f"Each joint 10 % stiffer saves, of {of}")
     pieces.figure(
         gain_bars(
-            "",
             gain,
             unit_label(unit),
+            UNITS[unit].digits,
             joints,
             dark=shell.dark(),
             height=54 + 19 * len(joints),

@@ -96,14 +96,13 @@ def _arm(pose: PoseReport, moved: Moved, unit: str) -> None:
         f"displacement, shown {format_times(displacement_scale(delta, pose.frames))}."
     )
     alt = "The arm at this pose with the compliance ellipsoid at the tip."
-    arm(scene, "point-arm", (caption, alt), 430, 0.95, (pose.C, finish))
+    arm(scene, "point-arm", (caption, alt), 520, 0.95, (pose.C, finish))
 
 
 def bars(found: InHand, old: PoseReport, unit: str) -> None:
     """Which joint contributes how much to each component at the selected point."""
-    pieces.strong("At the selected point")
+    pieces.strong("Share of each joint at the selected point")
     where = place(found.point, unit)
-    pieces.note(where)
     colours = joint_colours(7, shell.dark())
     numbers = found.pose.robot.joint_numbers
     key = (
@@ -150,8 +149,8 @@ def _joints(pose: PoseReport) -> None:
         for i, number in enumerate(robot.joint_numbers)
     ]
     rows += [
-        ("det(J)", format_si(pose.det_J, session.project().view.of(pose.det_J_unit), 3), ""),
-        ("to the limits", format_percent(pose.limit_distance), ""),
+        ("Distance to singularity, det(J)", format_si(pose.det_J, session.project().view.of(pose.det_J_unit), 3), ""),
+        ("Room to joint limits", format_percent(pose.limit_distance), ""),
     ]
     pieces.facts(rows)
 

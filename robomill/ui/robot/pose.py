@@ -19,7 +19,7 @@ from robomill.units import format_percent, format_si, from_si, to_si
 from robomill.viz.arm import ArmScene
 from robomill.viz.theme import joint_colours
 
-ASPECT = 1.3  # of the picture
+ASPECT = 1.0  # of the arm's frame: it is whole in the narrowest column
 
 
 def configuration(project: Project, cut: Decided | None) -> FloatArray:

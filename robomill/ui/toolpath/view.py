@@ -4,8 +4,10 @@ import dataclasses
 
 import numpy as np
 
+from robomill.provenance import Finding
 from robomill.simulation.reach import PathReach
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.tools import feed_notes
 from robomill.simulation.verdict_words import said
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
@@ -101,15 +103,21 @@ def tiles(
         )
         pieces.tiles(found)
         return
-    alarming = sum(f.count for f in path.findings if f.level in ("error", "warning", "suspicious"))
-    count = sum(f.count for f in path.findings)
-    words = finding_words(worst_first(path.findings)[0]) if count else "every word understood"
+    noticed = findings(path, result)
+    alarming = sum(f.count for f in noticed if f.level in ("error", "warning", "suspicious"))
+    count = sum(f.count for f in noticed)
+    words = finding_words(worst_first(noticed)[0]) if count else "every word understood"
     crashes = () if result is None else (*result.rapids, *result.early_rapids)
     if crashes:
         count, words = count + len(crashes), f"a rapid runs through material (line {crashes[0]:,})"
     tone = "tight" if alarming or crashes else ""
     found.append(pieces.Tile("Program warnings", f"{count:,}", words, tone=tone))
     pieces.tiles(found)
+
+
+def findings(path: Toolpath, result: SimulationResult | None) -> tuple[Finding, ...]:
+    """What was noticed while the program was read, and feeds that no cutter takes once the cutter is known."""
+    return path.findings if result is None else (*path.findings, *feed_notes(result.setup, result.path))
 
 
 def _error_tile(result: SimulationResult | None, unit: str) -> pieces.Tile:

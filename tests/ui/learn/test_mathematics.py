@@ -13,10 +13,11 @@ from robomill.ui.learn.mathematics import component, product
 
 
 def test_the_equation_s_terms_add_up(found: PoseReport) -> None:
-    """The numbers printed under the braces, multiplied and added, are the number after the equals sign."""
+    """The numbers printed a joint a line, multiplied and added, are the number after the last equals sign."""
     tex = component(found, 1, 1)
-    terms = re.findall(r"\{(-?[\d.]+)\\cdot \((-?[\d.]+)\)\^2\}", tex)
-    total = float(tex.rpartition("=")[2])
+    terms = re.findall(r"(-?[\d.]+)\\cdot \((-?[\d.]+)\)\^2 &&", tex)
+    total = float(re.findall(r"= \{\} & (-?[\d.]+) \\end", tex)[-1])
+    assert len(terms) == tex.count("joint")
     assert sum(float(c) * float(j) ** 2 for c, j in terms) == pytest.approx(total, abs=0.01)
     assert total == pytest.approx(found.C[1, 1] * 1e6, abs=1e-3)
 
