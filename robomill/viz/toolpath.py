@@ -13,6 +13,7 @@ from robomill.viz.theme import SEQUENTIAL, axis, axis3d, colour_bar, figure, pal
 VECTOR_LINES = 5_000
 MAX_PICKS = 3_000
 CLASSES = 16
+MARGIN = 0.04  # of the stock, beyond it
 
 
 def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> Chart:
@@ -97,6 +98,8 @@ def _stock(fig: Chart, picture: PathPicture, dark: bool) -> None:
     (x0, y0), (x1, y1) = picture.stock[0][:2], picture.stock[1][:2]
     rim = {"mode": "lines", "line": {"color": p.line, "width": 1}}
     fig.area([x0, x1, x1, x0, x0], [y0, y0, y1, y1, y0], rgba(p.metal, 0.26), name="stock", **rim)
+    beyond = MARGIN * max(x1 - x0, y1 - y0)
+    fig.dots([x0 - beyond, x1 + beyond], [y0 - beyond, y1 + beyond], {"opacity": 0.0}, **QUIET)
 
 
 def _dots(fig: Chart, at: FloatArray, marker: dict[str, Any], name: str = "") -> None:

@@ -28,7 +28,7 @@ def test_it_says_what_was_read(app: AppTest) -> None:
         "All in reach; the groove is 0.23 mm off in Y and 0.10 mm too deep: within tolerance (77 % of it used)."
         in words(app)
     )
-    assert "1 cut within 100.0 × 0.0 × 0.0 mm." in words(app)
+    assert "mm (G21) · 1 cut, 100.0 mm along X." in words(app)
 
 
 def test_a_pasted_program_is_in_force_everywhere(app: AppTest) -> None:

@@ -87,7 +87,7 @@ def _picture(
     if use is not None:
         more = {
             "value": from_si(use.deviation, unit),
-            "title": "Deviation",
+            "title": "Deviation of the tip",
             "unit": unit_label(unit),
             "worst": use.worst,
             "limit": float(from_si(setup.tolerance, unit)),

@@ -101,7 +101,7 @@ def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
         with st.container(width=114):
             mode = inputs.pick("Program", MODE, MODES, look=inputs.HIDDEN)
         if mode == "code":
-            box = NumberBox("Line", hint="Go to a line; 0 points at none.", low=0, high=count, whole=True, hidden=True)
+            box = NumberBox("Go to line", hint="0 points at none.", low=0, high=count, whole=True)
             with st.container(width=130):
                 inputs.value("toolpath.go-to", box, min(selected_line(), count), select_line)
             st.caption(f"of {count:,} lines")

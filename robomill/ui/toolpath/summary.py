@@ -13,7 +13,7 @@ from robomill.toolpath.apt import is_apt
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
-from robomill.units import format_count, format_si, from_si
+from robomill.units import format_count, format_many, format_si, from_si
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +76,7 @@ def _range(values: FloatArray) -> tuple[float, float] | None:
     return (float(values.min()), float(values.max())) if len(values) else None
 
 
+FLAT = 1e-9  # m
 LONGEST_S = 1e8  # what takes longer is no time that a machine has
 
 
@@ -98,6 +99,17 @@ def finding_words(finding: Finding, most: int = 64) -> str:
     """A finding in one line of about ``most`` characters, cut between words."""
     said = (f"line {finding.line:,}: " if finding.line else "") + finding.message
     return said if len(said) <= most else said[:most].rpartition(" ")[0].rstrip(",;:") + " …"
+
+
+def size_words(size: FloatArray, unit: str) -> str:
+    """How large a path of ``size`` (3,) m is, without the axes along which it has none: ``100.0 mm along X``."""
+    along = [i for i in range(3) if size[i] > FLAT]
+    axes = ["XYZ"[i] for i in along]
+    if not along:
+        return "in one place"
+    if len(along) == 1:
+        return f"{format_si(float(size[along[0]]), unit, 1)} along {axes[0]}"
+    return f"{format_many(size[along], unit, 1, ' × ')} along {', '.join(axes[:-1])} and {axes[-1]}"
 
 
 def written_in(source: GCodeSource, path: Toolpath, long: bool = False) -> str:

@@ -18,13 +18,13 @@ from robomill.ui.toolpath.summary import (
     missed_blocks,
     move_words,
     path_summary,
+    size_words,
     worst_first,
     written_in,
 )
 from robomill.ui.verdict import reading_tile, tip_tile, tone
 from robomill.units import (
     format_count,
-    format_many,
     format_si,
     format_value,
 )
@@ -43,10 +43,9 @@ def headline(
         pieces.headline(f"Toolpath · {source.name}", "There is no path yet.", "Draw one, or take a ready-made sketch.")
         return
     summary = path_summary(path)
-    size = format_many(summary.high - summary.low, unit, 1, " × ")
-    lead = f"{format_count(summary.blocks, NOUNS[source.kind])} within {size}."
+    lead = f"{format_count(summary.blocks, NOUNS[source.kind])}, {size_words(summary.high - summary.low, unit)}."
     if source.kind == "program":
-        lead = f"{written_in(source, path)} · {move_words(path)} · {lead}"
+        lead = f"{written_in(source, path)} · {lead}"
     if reach is not None and result is not None and not missed_blocks(reach)[0]:
         lead = f"{lead} {said(result, result.verdict, unit)[1]}".rstrip()
     pieces.headline(f"Toolpath · {source.name}", verdict(reach, result, unit), lead)
@@ -70,7 +69,7 @@ def tiles(
 ) -> None:
     """The error that decides the verdict, reach, length and time, findings."""
     if path is None:
-        pieces.tiles([pieces.Tile(label, "–") for label in ("Wall error", "Reach", "At feed", "Shapes")])
+        pieces.tiles([pieces.Tile(label, "–") for label in ("Wall error", "Reach", "Length of the cut", "Shapes")])
         return
     summary = path_summary(path)
     rapids = summary.moves - summary.cuts if path.counts is None else path.counts[0]
@@ -89,7 +88,7 @@ def tiles(
         )
     found.append(
         pieces.Tile(
-            "At feed",
+            "Length of the cut",
             format_si(float(path.s[-1]), unit, 1),
             f"{duration(float(path.t[-1]))} · {move_words(path)}, {rapids:,} rapid",
         )

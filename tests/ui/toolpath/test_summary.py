@@ -13,6 +13,7 @@ from robomill.ui.toolpath.summary import (
     finding_words,
     move_words,
     path_summary,
+    size_words,
     worst_first,
     written_in,
 )
@@ -57,6 +58,19 @@ def test_an_arc_is_one_move() -> None:
     assert move_words(path) == "6 moves, 1 arc"
     straight = GCodeSource("G21 G90\nG0 X0 Y0 Z-1\nG1 X20 F300\nM2\n").read()
     assert move_words(straight).endswith(", no arcs")
+
+
+@pytest.mark.parametrize(
+    ("size", "said"),
+    [
+        ((0.1, 0.0, 0.0), "100.0 mm along X"),
+        ((0.06, 0.04, 0.0), "60.0 × 40.0 mm along X and Y"),
+        ((0.06, 0.04, 0.002), "60.0 × 40.0 × 2.0 mm along X, Y and Z"),
+        ((0.0, 0.0, 0.0), "in one place"),
+    ],
+)
+def test_a_path_is_as_large_as_along_the_axes_that_it_moves_along(size: tuple[float, float, float], said: str) -> None:
+    assert size_words(np.array(size), "mm") == said
 
 
 def test_a_finding_fits_its_tile_and_the_worst_is_first() -> None:
