@@ -53,7 +53,7 @@ def test_the_histogram_counts_in_the_unit_of_the_view():
     share = {"walls": np.full(8, 10.0), "floors": np.full(8, 2.5)}
     fig = histogram_figure(edges, share, limits, "in", dark=False)
     assert [trace["name"] for trace in fig.traces] == ["walls", "floors"]
-    assert "Error, in " in fig.layout["xaxis"]["title"]["text"]
+    assert fig.layout["xaxis"]["title"]["text"] == "Error, in"
     assert " in<br>" in fig.traces[0]["hovertemplate"]
     assert "mm" not in str(fig.layout) + fig.traces[0]["hovertemplate"]
 
