@@ -106,10 +106,13 @@ def read_apt(path_or_text: Source) -> Toolpath:
 def _statements(text: str) -> list[tuple[int, str]]:
     """Statements with the line where each starts: ``$$`` begins a comment, ``$`` at the end goes on below."""
     out: list[tuple[int, str]] = []
-    pending, start = "", 0
+    pending, start, in_comment = "", 0, False
     for number, raw in enumerate(text.split("\n"), 1):
-        code = raw.split("$$")[0].strip()
-        if not code:
+        whole = raw.strip()
+        code = whole.split("$$")[0].strip()
+        goes_on = whole.endswith("$") and not whole.endswith("$$")
+        if in_comment or not code:
+            in_comment = (in_comment or whole.startswith("$$->")) and goes_on
             continue
         start = start or number
         if code.endswith("$"):
@@ -127,8 +130,10 @@ def _statement(state: _State, findings: Findings, word: str, values: list[str], 
         _go(state, numbers_of(values, line, word), line, is_start=word == "FROM")
     elif word == "GODLTA":
         numbers = numbers_of(values, line, word)
+        if len(numbers) == 1:  # along the tool
+            numbers = [numbers[0] * part for part in state.axis]
         if len(numbers) != 3 or not state.rows:
-            raise GCodeError.at(line, "GODLTA needs three steps and a point before it.")
+            raise GCodeError.at(line, "GODLTA needs three steps, or one along the tool, and a point before it.")
         _go(state, [a + n for a, n in zip(state.here, numbers)], line)
     elif word == "RAPID":
         state.rapid = True

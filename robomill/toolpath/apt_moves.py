@@ -3,7 +3,7 @@
 Vendors write the words of a cycle in two ways (ISO 4343:1978 by place, ISO 4343:2000 and NX by name); both are read:
 
     CYCLE/DRILL, 20, MMPM, 100, 2                      CYCLE/DRILL, DEPTH, 20, MMPM, 100, CLEAR, 2
-    CYCLE/DEEP, FEDTO, -20, MMPM, 100, RAPTO, 2, STEP, 5
+    CYCLE/DRILL, 20, 100, MMPM, 2                      CYCLE/DEEP, FEDTO, -20, MMPM, 100, RAPTO, 2, STEP, 5
 """
 
 import math
@@ -18,7 +18,7 @@ from robomill.toolpath.gcode.arcs import CHORD_ERROR, chord_counts
 from robomill.units import format_si, to_si
 
 NUMBER = re.compile(r"[-+]?(?:\d++\.?+\d*+|\.\d++)(?:[eE][-+]?\d++)?+$")  # of any length at once: it never goes back
-_FEED_UNITS = ("MMPM", "IPM", "PERMIN", "MMPR", "IPR", "PERREV")
+_FEED_UNITS = ("MMPM", "IPM", "PERMIN", "MMPR", "IPR", "PERREV", "PITCH")
 _NAMED = frozenset(
     ("DEPTH", "FEDTO", "CLEAR", "RAPTO", "RTRCTO", "RETURN", "STEP", "DWELL", "ORIENT", "ORIANT", *_FEED_UNITS)
 )
@@ -133,15 +133,7 @@ def drilling_of(values: list[str], unit: str, speed: float, line: int) -> Drilli
     if not kinds or words[0] not in _KINDS:
         found = words[0] if words else "nothing"
         raise GCodeError.at(line, f"CYCLE/{found[:20]} is not read; expected DRILL, DEEP, FACE, REAM, BORE or TAP.")
-    named: dict[str, float] = {}
-    places: list[float] = []
-    rest = iter([word for word in words if word not in _KINDS])
-    for word in rest:
-        if word in _NAMED:
-            named[word] = _floats([next(rest, "")], line)[0]
-        else:
-            places += _floats([word], line)
-    places = [*places, math.nan, math.nan][:2]
+    named, places = _said_of([word for word in words if word not in _KINDS], words[0], line)
     depth = abs(named.get("DEPTH", named.get("FEDTO", places[0])))
     clear = named.get("CLEAR", places[0] if ("DEPTH" in named or "FEDTO" in named) else places[1])
     clear, rapid = (0.0 if math.isnan(clear) else clear), named.get("RAPTO", 0.0)
@@ -157,9 +149,31 @@ def drilling_of(values: list[str], unit: str, speed: float, line: int) -> Drilli
     return Drilling(lengths[0], feed, lengths[1], lengths[2], lengths[3], max(named.get("DWELL", 0.0), 0.0), leaves)
 
 
+def _said_of(words: list[str], kind: str, line: int) -> tuple[dict[str, float], list[float]]:
+    """The numbers of a cycle: those that stand behind their word, and two by place (depth, clearance; NaN for none)."""
+    named: dict[str, float] = {}
+    places: list[float] = []
+    rest = iter(words)
+    for word in rest:
+        if word in _FEED_UNITS and len(places) == 2 and not named:  # its rate stands before it
+            named[word] = places.pop()
+        elif word in _NAMED:
+            value = next(rest, "")
+            if value != "AUTO":
+                named[word] = numbers_of([value], line, f"CYCLE/{kind} {word}")[0]
+        elif NUMBER.match(word):
+            places.append(float(word))
+        else:
+            raise GCodeError.at(line, f"CYCLE/{kind} has {word[:20]!r}, which is not read; let the CAM system write GOTO.")
+    if len(places) > 2:
+        text = f"CYCLE/{kind} has {len(places)} numbers without a word; expected DEPTH, CLEAR and so on before them."
+        raise GCodeError.at(line, text)
+    return named, [*places, math.nan, math.nan][:2]
+
+
 def feed_of(rate: float, word: str, unit: str, speed: float) -> float:
-    """A feed rate in m/s; ``word`` is its unit (IPM, MMPM, IPR, MMPR; PERMIN and PERREV count in ``unit``)."""
-    if word in ("IPR", "MMPR", "PERREV"):
+    """A feed rate in m/s; ``word`` is its unit (IPM, MMPM, IPR, MMPR; PERMIN, PERREV and PITCH count in ``unit``)."""
+    if word in ("IPR", "MMPR", "PERREV", "PITCH"):
         return to_si(rate, {"IPR": "in", "MMPR": "mm"}.get(word, unit)) * speed
     return to_si(rate, {"IPM": "in/min", "MMPM": "mm/min"}.get(word, f"{unit}/min"))
 

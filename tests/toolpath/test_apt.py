@@ -269,3 +269,43 @@ def test_what_is_not_read_is_refused_by_name(lines: str, says: str) -> None:
     with pytest.raises(GCodeError) as caught:
         read_apt(f"{HEAD}FROM/10,0,0\n{lines}\nGOTO/1,0,0\nFINI\n")
     assert says in str(caught.value)
+
+
+CYCLES = [
+    ("CYCLE/DRILL,RAPTO,3.0,FEDTO,-33.0,RTRCTO,AUTO,MMPM,250.0", [3, -33, 3], 250),
+    ("CYCLE/DRILL,12.,200.,MMPM,2.", [2, -12, 2], 200),  # the rate before its unit
+    ("CYCLE/DRILL,12.,MMPM,200.,2.", [2, -12, 2], 200),
+    ("CYCLE/TAP,DEPTH,10,PITCH,1.5,CLEAR,2", [2, -10, 2], 1500),
+]
+
+
+@pytest.mark.parametrize(("cycle", "heights", "rate"), CYCLES)
+def test_numbers_of_a_cycle_by_word_and_by_place(cycle: str, heights: list[float], rate: float) -> None:
+    path = read_apt(f"UNITS/MM\nSPINDL/1000,RPM,CLW\nGOTO/0,0,2\n{cycle}\nGOTO/10,0,0\nFINI\n")
+    down = path.p[path.p[:, 0] > 5e-3, 2] * 1e3
+    assert down[-3:] == pytest.approx(heights)
+    assert path.v_f[path.p[:, 2] < 0.0] * 60e3 == pytest.approx([rate])
+
+
+@pytest.mark.parametrize(
+    ("cycle", "says"),
+    [
+        ("CYCLE/DRILL,126,85,1,MMPR,2", "CYCLE/DRILL has 3 numbers without a word"),
+        ("CYCLE/DEEP,20,INCR,5,MMPM,100,2", "CYCLE/DEEP has 'INCR', which is not read"),
+    ],
+)
+def test_a_cycle_that_can_mean_two_things_is_refused(cycle: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=f"Line 3: {says}"):
+        read_apt(f"UNITS/MM\nGOTO/0,0,2\n{cycle}\nGOTO/10,0,0\nFINI\n")
+
+
+def test_one_step_of_godlta_is_along_the_tool() -> None:
+    path = read_apt("UNITS/MM\nFEDRAT/100,MMPM\nGOTO/0,0,0,0,0.6,0.8\nGODLTA/10\nFINI\n")
+    np.testing.assert_allclose(path.p[-1] * 1e3, [0, 6, 8], atol=1e-9)
+
+
+def test_a_remark_that_goes_on_below_is_one() -> None:
+    rows = "$$-> CSYS / 1.0, 0.0, 0.0, 0.0, $\n  0.0, 1.0, 0.0, 0.0, $\n  0.0, 0.0, 1.0, 0.0\n"
+    path = read_apt(f"UNITS/MM\n{rows}$$ a remark $\nFEDRAT/100,MMPM\nGOTO/0,0,0\nGOTO/1,0,0\nFINI\n")
+    assert len(path) == 2
+    assert not path.findings

@@ -76,12 +76,14 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
 
 
 def _read_polar(machine: Machine, block: Block) -> None:
-    """With G16 X is the distance from part zero and Y the angle, in G17 and G90."""
+    """With G16 X is the distance from part zero and Y the angle, which G91 adds to the angle of where the tool is."""
     words = block.words
     if block.g.get(modal.NON_MODAL) is not None or not words.keys() & {"x", "y"}:
         return
-    if not machine.absolute or block.g.get(modal.DISTANCE) == 910 or machine.plane != 17:
-        raise block.refuse("G16 is read in G17 and G90 alone; write the moves out.")
+    if machine.plane != 17:
+        raise block.refuse("G16 is read in G17 alone; write the moves out.")
+    if "x" in words and block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 910:
+        raise block.refuse("G16 counts X from where the tool is in G91, which is not read; give the radius in G90.")
     for letter, polar in (("x", "@"), ("y", "^")):
         if letter in words:
             words[polar] = words.pop(letter)

@@ -1,6 +1,7 @@
 """Cutter radius compensation G41, G42: the path of the cutter's centre beside the programmed contour.
 
-Follows LinuxCNC: the entry move leads to the side of its end point; outside corners get an arc about the corner;
+Follows LinuxCNC: the entry move leads to the side of its end point (on other controls beside the start of the contour,
+square to it: Fanuc type A, Sinumerik NORM, Heidenhain RL and RR); outside corners get an arc about the corner;
 inside corners shorten both moves to where the offset contours meet, so a move is held back until the next one
 is known; a contour that the cutter cannot follow without gouging is refused. Coordinates u, v are those of the
 plane (G17: x, y; G18: z, x) in program units.
@@ -50,6 +51,7 @@ class Compensation:
         self.programmed: tuple[float, float, float] | None = None
         self.held: list[HeldMove] = []
         self.corner: tuple[float, float] | None = None
+        self.entering = False
 
     # --- frames
     def current(self, machine: Machine) -> tuple[float, float, float]:
@@ -175,8 +177,10 @@ class Compensation:
             self._hold(machine, block, (cu, cv, w), full)
             self._stand(machine, cu, cv, full, (u, v))
             return
-        theta = math.atan2(cv - pv, cu - pu)
         alpha = math.atan2(v - pv, u - pu)
+        if self.entering:
+            cu, cv = self._entered(machine, alpha)
+        theta = math.atan2(cv - pv, cu - pu)
         if self.left:
             theta += 2.0 * math.pi if theta < alpha else 0.0
             beta = theta - alpha - _HALF
@@ -204,7 +208,7 @@ class Compensation:
 
     def _enter_straight(self, machine: Machine, block: Block, full: list[float], u: float, v: float, w: float) -> None:
         cu, cv, _ = self.current(machine)
-        if math.hypot(u - cu, v - cv) <= self.radius:
+        if math.hypot(u - cu, v - cv) <= self.radius and not machine.enters_square:
             raise block.refuse(
                 "the first move with cutter compensation is not longer than the cutter's radius; start farther away."
             )
@@ -213,6 +217,18 @@ class Compensation:
         self.corner = (cu, cv)
         self._hold(machine, block, (*end, w), full, direction=(math.cos(alpha), math.sin(alpha)))
         self._stand(machine, *end, full, (u, v))
+        self.entering = machine.enters_square
+
+    def _entered(self, machine: Machine, direction: float) -> tuple[float, float]:
+        """End the entry move beside the start of the contour, whose ``direction`` there is now known (u, v)."""
+        assert self.programmed is not None
+        self.entering = False
+        side = direction + (_HALF if self.left else -_HALF)
+        u, v = self.programmed[0] + self.radius * math.cos(side), self.programmed[1] + self.radius * math.sin(side)
+        for move in self.held:
+            move.end = (u, v, move.end[2])
+        machine.p[self.axes[0]], machine.p[self.axes[1]] = u, v
+        return u, v
 
     def _round(
         self,
@@ -275,9 +291,11 @@ class Compensation:
         if inside and radius <= self.radius:
             raise self._too_small(block)
         quarter = -_HALF if self.left else _HALF
-        theta = math.atan2(cv - pv, cu - pu) + quarter
         delta = math.atan2(centre[1] - pv, centre[0] - pu)
         alpha = delta - _HALF if turn > 0 else delta + _HALF
+        if self.entering:
+            cu, cv = self._entered(machine, alpha)
+        theta = math.atan2(cv - pv, cu - pu) + quarter
         beta = theta - alpha if self.left else alpha - theta
         beta += -2.0 * math.pi if beta > 1.5 * math.pi else (2.0 * math.pi if beta < -_HALF else 0.0)
         away = (centre[0] - u, centre[1] - v) if inside else (u - centre[0], v - centre[1])

@@ -1,7 +1,9 @@
 """The rules of canned cycles G73, G74, G81 to G89: drilling, tapping and boring at one or many places.
 
 ``motion_rules`` says what rules are. ``m.cycle`` holds the words that stay in force from hole to hole, in the columns
-of ``codes``: R, P, Q, I, J, K, and in the column of Z the bottom along whatever axis is drilled.
+of ``codes``: R, P, Q, I, J, K, and in the column of Z the bottom along whatever axis is drilled. ``m.keeps_heights``
+says that a control (Fanuc, Haas) keeps R and the bottom as the heights that they are: G91 behind a hole in G90 counts
+places from hole to hole, and not how deep they are. It also makes no hole for L0, and keeps its words.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
@@ -72,18 +74,17 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
     if refusal != 0:
         return refusal
     third = axes(m.plane)[2]
-    for column in (R, P, Q, I, J, K):
-        if not math.isnan(w[column]):
-            m.cycle[column] = w[column]
-    if not math.isnan(w[X + third]):
-        m.cycle[Z] = w[X + third]
     current = m.p[third]
     if math.isnan(m.initial_level):
         m.initial_level = current
+    _keep(m, w, third)
     level, clearance, bottom = m.initial_level, m.cycle[R], m.cycle[Z]
-    if not m.absolute:
+    if not m.absolute and not m.keeps_heights:
         clearance += level
         bottom += clearance
+    if w[L] == 0.0:
+        m.motion = motion
+        return 0
     if clearance < bottom:
         return CLEARANCE_BELOW_BOTTOM
     steps = (clearance - bottom) / m.cycle[Q] if pecks(motion) else 0.0
@@ -113,6 +114,22 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
     return 0
 
 
+def _keep(m, w, third: int) -> None:
+    """Keep what a hole says for the next ones: as words, which G91 adds anew at each, or R and bottom as heights."""
+    for column in (R, P, Q, I, J, K):
+        if not math.isnan(w[column]):
+            m.cycle[column] = w[column]
+    if not math.isnan(w[X + third]):
+        m.cycle[Z] = w[X + third]
+    if not (math.isnan(w[R]) and math.isnan(w[X + third])):
+        m.kept_steps = not m.absolute
+    if m.keeps_heights and not m.absolute:
+        if not math.isnan(w[R]):
+            m.cycle[R] += m.initial_level
+        if not math.isnan(w[X + third]):
+            m.cycle[Z] += m.cycle[R]
+
+
 def _check(m, w, motion: int) -> int:
     """What a cycle needs: on its line, or kept from the line before if that was the same cycle."""
     same = m.motion == motion
@@ -124,7 +141,7 @@ def _check(m, w, motion: int) -> int:
         return NO_CLEARANCE
     if _missing(w[X + axes(m.plane)[2]], m.cycle[Z], same):
         return NO_BOTTOM
-    if w[L] < 1.0 or w[L] > MAX_REPEATS:
+    if w[L] < (0.0 if m.keeps_heights else 1.0) or w[L] > MAX_REPEATS:
         return REPEATS
     if takes_dwell(motion) and _missing(w[P], m.cycle[P], same):
         return NO_DWELL

@@ -90,10 +90,11 @@ def _shows(text: str, signs: tuple[tuple[str, str], ...]) -> bool:
 
 @dataclass(frozen=True)
 class Dialect:
-    """How a program is read; ``guessed`` says that nobody stated it."""
+    """How a program is read; ``guessed`` says that nobody stated it, ``marked`` that it shows in the text at least."""
 
     name: str
     guessed: bool = True
+    marked: bool = True
 
     @property
     def strict(self) -> bool:
@@ -104,6 +105,11 @@ class Dialect:
     def has_macros(self) -> bool:
         """Whether Macro B is read."""
         return self._is_fanuc_like
+
+    @property
+    def keeps_heights(self) -> bool:
+        """Whether R and Z of a drilling cycle stay the heights that they are when G91 comes behind them."""
+        return self.name == "fanuc" or not self.marked
 
     def keeps_motion(self, machine: Machine) -> bool:
         """Whether G80 leaves the last of G0 to G3 in force, and a program begins with G0.
@@ -261,7 +267,7 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
     for name, signs in (("grbl", _GRBL), ("sinumerik", _SINUMERIK), ("fanuc", _FANUC)):
         if _shows(text, signs):
             return Dialect(name)
-    return Dialect("linuxcnc")
+    return Dialect("linuxcnc", marked=False)
 
 
 _TIP = re.compile(r"\bG43\.[45]\b", re.IGNORECASE)

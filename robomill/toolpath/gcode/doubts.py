@@ -16,11 +16,11 @@ LIKELY = (0.008, 3.0)
 """m: parts smaller or larger than this are doubted."""
 MOST_SAID = 1000
 """Stretches of a program that one finding counts."""
-FEW, RARE = 20, 0.02
-"""So many coordinates show how a program writes its numbers, and of so small a share a whole number is a slip."""
+FEW, RARE = 3, 0.1
+"""So many whole numbers with a point (X10.) show how a program writes them; of so small a share none is a slip."""
 SAMPLE = 2_000_000
 """Bytes at the start of a program in which that is looked for."""
-_COORDINATE = re.compile(rb"(?<![A-Za-z_#\[(<\"=])[XYZIJKxyzijk](-?\d{1,9}(?:\.\d*)?)(?![\w.\[])")
+_COORDINATE = re.compile(rb"(?<![A-Za-z_#\[(<\"=])[XYZIJxyzij](-?\d{1,9}(?:\.\d*)?)(?![\w.\[])")
 QUARTER = 90.0 + 1e-6
 """degrees that a tool which leans is led through, or stands from upright, without a doubt."""
 LONG_DWELL = 60.0
@@ -28,16 +28,16 @@ LONG_DWELL = 60.0
 
 
 def doubt_points(findings: Findings, data: bytes) -> None:
-    """Note whole numbers among coordinates that have a decimal point: many controls count them in thousandths."""
-    words = _COORDINATE.findall(data[:SAMPLE])
-    whole = [number for number in words if b"." not in number and int(number) != 0]
-    if len(words) < FEW or not whole or len(whole) > RARE * len(words):
+    """Note whole numbers without a point where others have one (X10.): many controls count them in thousandths."""
+    words = [number for number in _COORDINATE.findall(data[:SAMPLE]) if not float(number) % 1.0 and float(number)]
+    whole = sum(b"." not in number for number in words)
+    if not whole or len(words) - whole < FEW or whole > max(RARE * len(words), 1.0):
         return
     for found in _COORDINATE.finditer(data):
         if b"." not in found[1] and int(found[1]) != 0:
             line = data.count(b"\n", 0, found.start()) + 1
             text = (
-                f"{found[0].decode('ascii', 'replace')} has no decimal point where nearly all others have one: it is "
+                f"{found[0].decode('ascii', 'replace')} has no decimal point where other whole numbers have one: it is "
                 "read as whole units; many controls (Fanuc) take it for thousandths: write the point"
             )
             findings.add("no-point", "suspicious", line, text)

@@ -18,7 +18,9 @@ from robomill.toolpath.gcode.parameters import ARGUMENTS, LEVELS
 from robomill.toolpath.gcode.records import OWORD, Flow
 from robomill.toolpath.gcode.words import normalise
 
-_MAYBE = re.compile(rb"^[/\dNn.\x00-\x09\x0b-\x20\x80-\xff]*[oO]", re.MULTILINE)
+_MAYBE = re.compile(rb"^(?:[/\dNn.\x00-\x09\x0b-\x20\x80-\xff]*[oO]|:\d)", re.MULTILINE)
+_COLON = re.compile(r":(\d{1,8})(?=$|[(;])")
+
 _LINE = re.compile(r"/?\d*(?:n[\d.]+)?o(<[^>]*>|\d+)(.*)", re.DOTALL)
 _CLOSES = {
     rules.ENDWHILE: rules.WHILE,
@@ -107,8 +109,11 @@ class Structure:
 
 
 def split(text: str) -> tuple[str, int, str] | None:
-    """Label, keyword and argument of a normalised line that starts with an O word; None if it has none."""
-    found = _LINE.match(text)
+    """Label, keyword and argument of a normalised line that starts with an O word; None if it has none.
+
+    Some controls write ``:1234`` for O1234.
+    """
+    found = _LINE.match(_COLON.sub(r"o\1", text, count=1))
     if found is None:
         return None
     label = found[1][1:-1] if found[1][0] == "<" else str(int(found[1][:18]))

@@ -90,10 +90,10 @@ class Interpreter(Klartext):
             self._percent(index, text)
             return
         reader = Reader(text, line, machine.store, raw)
-        if text[0] == "/":
-            machine.findings.add("block-delete", "info", line, "block delete (/) is off: these lines are executed")
         if text[0] in "/n":
             skip_number(reader)
+        if "/" in text[: reader.at]:
+            machine.findings.add("block-delete", "info", line, "block delete (/) is off: these lines are executed")
         if text[reader.at : reader.at + 1] == "o":
             self.o_word(reader, index)
             return
@@ -110,13 +110,13 @@ class Interpreter(Klartext):
                 return
             self.dialect.unknown(machine, block)
         self.dialect.meant_otherwise(block)
-        if machine.is_fanuc:
+        if self.dialect.has_macros:
             as_bored(machine, block)
         check.choose_motion(machine, block, self.dialect)
         said = block.motion
         scale_words(machine, block)
-        if machine.is_fanuc and repeats(machine, block):
-            return
+        if self.dialect.has_macros:
+            repeats(machine, block)
         for letter, use in check.check_words(block):
             self.dialect.unused_word(machine, block, letter, use)
         apply_settings(block, machine.store)
@@ -185,7 +185,7 @@ class Interpreter(Klartext):
         for index in range(self.pc, min(self.pc + _LOOK_BEYOND, len(self.main.lines))):
             text = self.main.lines[index].strip()
             if text and text[0] not in "%(;":
-                if self.is_klartext or self.o_words(self.main).words or self.names:
+                if self.is_klartext or self.calls_lines or self.o_words(self.main).words or self.names:
                     return
                 self.machine.findings.add(
                     "after-end", "warning", index + 1, "the program ended before; this is not read"

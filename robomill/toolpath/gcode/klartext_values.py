@@ -18,7 +18,15 @@ _Q = re.compile(r"(Q[LR]?)(\d+)")
 _SET = re.compile(r"(?:FN ?(\d+) ?: ?)?(Q[LR]?\d+) ?= ?(.+)")
 _JUMP = re.compile(r"FN ?(9|10|11|12) ?: ?IF (.+?) (EQU|NEQU|NEQ|GT|LT) (.+?) GOTO LBL ?(\"[^\"]+\"|\d+)")
 _SIGNS = {0: "", 1: "+", 2: "-", 3: "*", 4: "/"}
-_TWO = {0: r"(.+)", 1: r"(.+?) ?\+ (.+)", 2: r"(.+?) ?- (.+)", 3: r"(.+?) ?\* ?(.+)", 4: r"(.+?) (?:DIV|/) ?(.+)"}
+_TWO = {
+    0: r"(.+)",
+    1: r"(.+?) ?\+ (.+)",
+    2: r"(.+?) ?- (.+)",
+    3: r"(.+?) ?\* ?(.+)",
+    4: r"(.+?) (?:DIV|/) ?(.+)",
+    8: r"(.+?) LEN ?(.+)",
+    13: r"(.+?) ANG ?(.+)",
+}
 _ONE = {5: "SQRT", 6: "SIN", 7: "COS"}
 _FUNCTION = re.compile(r"\b(SQRT|SIN|COS|TAN|ASIN|ACOS|ABS|INT) ?([-+]?(?:#\d+|[\d.]+)|(?=\[))")
 _CYCLE = re.compile(r"CYCL DEF ?(\d+)(?: ?\.(\d+))?(.*)")
@@ -107,7 +115,11 @@ class KlartextValues(SinumerikFlow):
             return True
         terms = re.fullmatch(_TWO[kind], found[3]) if kind in _TWO else None
         if terms is None:
-            raise GCodeError.at(line, f"FN {kind} is not read; expected FN 0 to 7 or FN 9 to 12.")
+            raise GCodeError.at(line, f"FN {kind} is not read; expected FN 0 to 13.")
+        if kind in (8, 13):
+            a, b = (self.number(each, line) for each in terms.groups())
+            self.set_q(found[2], math.hypot(a, b) if kind == 8 else math.degrees(math.atan2(a, b)) % 360.0, line)
+            return True
         text = _SIGNS[kind].join(f"({each})" for each in terms.groups())
         self.set_q(found[2], self.number(text, line), line)
         return True

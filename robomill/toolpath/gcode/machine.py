@@ -63,7 +63,7 @@ class Machine:
     ``corner`` is what the line says of the corner at its end (size in program units), ``polar_words`` says that X and Y
     are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68, ``scale`` what G51 does to
     words. ``extended`` are the origins and rotations of G54.1 P1 and on (program units), ``is_fanuc`` says that G10 and
-    variables mean what they mean there, ``variable`` what those are that nobody has set, ``machine_word``
+    variables mean what they mean there, ``enters_square`` that G41 leads beside the contour, ``variable`` what those are that nobody has set, ``machine_word``
     which word leads to a place in the machine. ``modal`` is what MCALL or G66
     holds, ``r_set`` are the R parameters that a program has set.
     """
@@ -97,7 +97,7 @@ class Machine:
         self.away: tuple[bool, ...] = (False, False, False)
         self.aways: list[tuple[int, tuple[bool, ...]]] = []
         self.homes: set[int] = set()
-        self.is_fanuc, self.machine_word = False, "G53"
+        self.is_fanuc, self.enters_square, self.machine_word = False, False, "G53"
         self.variable: Callable[[int], float] | None = None
         self.extended: dict[int, tuple[list[float], float]] = {}
         self.systems: list[tuple[int, int]] = [(0, 1)]
@@ -106,7 +106,7 @@ class Machine:
         self.lifts: list[tuple[int, list[float]]] = []
         self.mist = self.flood = False
         self.cycle = [math.nan] * len(LETTERS)
-        self.initial_level = math.nan
+        self.initial_level, self.keeps_heights, self.kept_steps = math.nan, False, False
         self.compensation: Any = None
         self.arc_not_allowed = False
         self.figures = [0.0] * 3

@@ -77,7 +77,7 @@ def _takes(w, motion: int, has_axes: bool, has_centre: bool) -> bool:
     """True if a line has only words that its motion (-1: none) uses; cycles of which more is to be said are not."""
     if is_cycle(motion):
         turns = not (math.isnan(w[A]) and math.isnan(w[B]) and math.isnan(w[C]))
-        if turns or has_centre or motion in (740, 840, 870, 880):
+        if turns or has_centre or motion in (740, 840, 870, 880) or w[L] == 0.0:
             return False
         return has_axes and math.isnan(w[P]) and (pecks(motion) or math.isnan(w[Q]))  # controls count dwells otherwise
     if not (math.isnan(w[P]) and math.isnan(w[Q]) and math.isnan(w[L])):
@@ -102,6 +102,8 @@ def plain_line(m, w, end, rows, line: int) -> bool:
     motion = implied_motion(m, has_axes, has_centre) if math.isnan(w[MOTION]) else int(w[MOTION])
     if not _takes(w, motion, has_axes, has_centre):
         return False
+    if is_cycle(motion) and m.keeps_heights and not (m.absolute if math.isnan(w[DISTANCE]) else w[DISTANCE] == 900.0):
+        return False  # what it is read as may have to be said
     if not (math.isnan(w[UNITS]) or w[UNITS] == m.unit_code):
         return False
     if not (math.isnan(w[COORDINATES]) or w[COORDINATES] == system_code(m.system)):

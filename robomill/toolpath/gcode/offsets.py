@@ -328,7 +328,7 @@ def compensation_on(machine: Machine, block: Block) -> None:
         raise block.refuse(f"{name} while coordinates are mirrored is not read; end that first (G50.1).")
     if machine.plane not in (17, 18):
         raise block.refuse(f"{name} works in the planes G17 and G18 only.")
-    if machine.compensation is not None:
+    if machine.compensation is not None and not machine.enters_square:
         raise block.refuse(f"{name}: cutter compensation is on already; use G40 first.")
     orientation = 0
     if code in (411, 421):
@@ -360,4 +360,9 @@ def compensation_on(machine: Machine, block: Block) -> None:
     left = (code in (410, 411)) == (radius >= 0)
     if radius == 0:
         machine.note("zero-diameter", "warning", f"{name} with a diameter of 0: the contour is followed as it is")
+    before = machine.compensation
+    if before is not None:  # said once more
+        if (before.left, before.radius) != (left, abs(radius)):
+            raise block.refuse(f"{name} changes the side or the cutter without G40; use G40 first.")
+        return
     machine.compensation = Compensation(left, abs(radius), orientation, machine.plane)

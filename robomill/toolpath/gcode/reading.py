@@ -115,6 +115,8 @@ def interpret(
 
 def _machine(tools: Tools | None, dialect: Dialect) -> Machine:
     machine = Machine(tools)
+    machine.keeps_heights = dialect.keeps_heights
+    machine.enters_square = dialect.name in ("fanuc", "sinumerik", "heidenhain")
     if dialect.name == "fanuc":
         begin_empty(machine)
     return machine

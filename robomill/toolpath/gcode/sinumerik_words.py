@@ -32,7 +32,7 @@ _LABELS = re.compile(rb"^[/ \t]*(?:N\d+[ \t]*)?([A-Za-z_]{2}\w*)[ \t]*:(?!=)", r
 _JUMP = re.compile(r"(?:IF\b(.*?)[ \t]*)?\b(GOTO[FBC]?)[ \t]+(\w+)[ \t]*")
 _FRAME = re.compile(r"(A?TRANS|A?ROT)\b(.*)")
 _ALONE = re.compile(r"\bA?(?:TRANS|ROT)\b")
-_FRAME_WORD = re.compile(r"\b(X|Y|Z|RPL)[ \t]*=?[ \t]*([-+]?(?:\d+\.?\d*|\.\d+))")
+_FRAME_WORD = re.compile(r"\b(X|Y|Z|RPL)[ \t]*(?:=|(?=[-+.\d]))")
 _CYCLE = re.compile(r"(MCALL\b[ \t]*)?(?:CYCLE(8[1-6])[ \t]*\(([^()]*)\))?[ \t]*")
 _CORNER = re.compile(r"\b(RND|CHF|CHR)[ \t]*=[ \t]*(\d+\.?\d*|\.\d+)")
 _KINDS = {"RND": ROUND, "CHF": BEVEL, "CHR": LEGS}
@@ -215,8 +215,10 @@ class SinumerikWords(MacroCalls):
     # --- frames
     def _frame(self, name: str, text: str, line: int) -> None:
         """TRANS and ROT begin anew, ATRANS and AROT add; without words they end what was."""
-        said = {word: float(value) for word, value in _FRAME_WORD.findall(text)}
-        rest = _FRAME_WORD.sub("", text).strip()
+        words = list(_FRAME_WORD.finditer(text))
+        ends = [word.start() for word in words[1:]] + [len(text)]
+        said = {word[1]: self.value(text[word.end() : end].strip(), line) for word, end in zip(words, ends)}
+        rest = text[: words[0].start()].strip() if words else text.strip()
         turning = name.endswith("ROT")
         if rest or (turning and (said.keys() & {"X", "Y"} or len(said) > 1)) or (not turning and "RPL" in said):
             found = (rest or text).strip()[:20]

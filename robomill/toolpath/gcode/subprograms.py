@@ -27,6 +27,8 @@ LOCALS = 33
 class Subprograms(OWords):
     """Follows calls of subprograms in the same file; ``OWords`` follows those of O words."""
 
+    calls_lines = False
+
     def fanuc_call(self, block: Block) -> bool:
         """M97, M98 and M198 call a subprogram, M99 returns from it (in the main program: ends it)."""
         code = next((c for c in (*block.unknown_m, *block.m.values()) if c in (*CALLS, 99)), None)
@@ -43,6 +45,7 @@ class Subprograms(OWords):
         bare = self.o_words(self.main).bare
         number, repeats = self.dialect.subprogram(block, code, bare)
         if code == 97:
+            self.calls_lines = True
             start = self.line_numbered(number)
             if start is None:
                 raise block.refuse(f"M97 calls line N{number}, but no line has that number; add it, or mend P.")

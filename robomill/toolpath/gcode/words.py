@@ -62,10 +62,10 @@ def normalise(raw: str, line: int) -> str:
 
 
 def skip_number(reader: Reader) -> None:
-    """Pass the block delete slash and the N number at the start of a line."""
+    """Pass the block delete slash and the N number at the start of a line, in this order or the other."""
     text = reader.text
-    if text.startswith("/"):
-        reader.at = 1
+    if text.startswith("/", reader.at):
+        reader.at += 1
         while text[reader.at : reader.at + 1].isdigit():
             reader.at += 1
     if text[reader.at : reader.at + 1] == "n":
@@ -75,6 +75,8 @@ def skip_number(reader: Reader) -> None:
         if end == reader.at + 1:
             raise reader.refuse(f"N is followed by {text[end : end + 10] or 'nothing'!r}; expected a line number.")
         reader.at = end
+        if text.startswith("/", end):
+            skip_number(reader)
 
 
 def read_words(reader: Reader, diameter_mode: bool = False) -> Block:

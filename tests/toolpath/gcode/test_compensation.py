@@ -337,3 +337,39 @@ def test_the_cutter_is_named_by_the_number_of_a_tool(number):
         interpret("G21 G90 F100\nT1 M6\nG41 D7\nG1 X20\nM2\n", tools=tools)
     with pytest.raises(GCodeError, match=r"^Line 3: G41 needs the diameter of tool 1; give a tool table\.$"):
         interpret("G21 G90 F100\nT1 M6\nG41\nG1 X20\nM2\n")
+
+
+ENTRIES = {  # where the cutter of 10 mm stands as the cut of the wall x = 0 begins, and where it meets the next wall
+    "fanuc": "G21 G90 G17 T1 M6 F100\nG0 X{x} Y{y} Z0\nG41 D1 G1 X0 Y0\n{down}Y50\nX50\nG40 X80\nM30\n",
+    "sinumerik": "G71 G90 G17 T1 D1 F100\nM6\nG0 X{x} Y{y} Z0\nG41 G1 X0 Y0\n{down}Y50\nX50\nG40 X80\nM30\n",
+    "heidenhain": "BEGIN PGM A MM\nTOOL CALL 1 Z S99 F100\nL X{x} Y{y} Z0 FMAX\nL X0 Y0 RL\n{down}L Y50\nL X50\nL X80 R0\n",
+}
+
+
+@pytest.mark.parametrize("dialect", ENTRIES)
+@pytest.mark.parametrize("start", [(-20, 0), (-20, -20), (0, -20), (20, -20), (20, 0), (-2, -1)])
+@pytest.mark.parametrize("down", ["", "{L}Z-3\n"])
+def test_the_entry_ends_square_beside_the_start_of_the_contour(dialect: str, start, down: str) -> None:
+    """Fanuc type A, Sinumerik NORM and Heidenhain RL: wherever it comes from, and with a plunge in between."""
+    text = ENTRIES[dialect].format(x=start[0], y=start[1], down=down.format(L="L " if dialect == "heidenhain" else ""))
+    program = interpret(text, dialect=dialect, tools={1: Tool(1, 10e-3)})
+    places = [tuple(row) for row in (np.round(program.end[:, :2] * 1e3, 9) + 0.0).tolist()]
+    cuts = places[[tuple(p) for p in places].index((-5.0, 0.0)) :]
+    assert cuts[-4:] == [(-5, 50), (0, 55), (50, 55), (80, 50)]
+    assert cuts[:-4] == [(-5, 0)] * (2 if down else 1)
+
+
+def test_the_entry_before_an_arc_ends_square_to_its_start() -> None:
+    text = "G21 G90 G17 T1 M6 F100\nG0 X-20 Y-20 Z0\nG42 D1 G1 X0 Y0\nG3 X20 Y20 I0 J20\nG40 G1 X40\nM30\n"
+    program = interpret(text, dialect="fanuc", tools={1: Tool(1, 10e-3)})
+    np.testing.assert_allclose(program.end[1:3, :2] * 1e3, [[0, -5], [25, 20]], atol=1e-9)
+
+
+def test_compensation_said_once_more_changes_nothing() -> None:
+    text = "G21 G90 G17 T1 M6 F100\nG0 X0 Y-20 Z0\nG41 D1 G1 X0 Y0\nG41 Y50\n{}G40 X-30\nM30\n"
+    tools = {1: Tool(1, 10e-3), 2: Tool(2, 8e-3)}
+    program = interpret(text.format(""), dialect="fanuc", tools=tools)
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, [[-5, 0], [-5, 50], [-30, 50]], atol=1e-9)
+    for other in ("G42 Y60\n", "G41 D2 Y60\n"):
+        with pytest.raises(GCodeError, match="Line 5: G4[12] changes the side or the cutter without G40"):
+            interpret(text.format(other), dialect="fanuc", tools=tools)

@@ -53,7 +53,8 @@ def test_a_chamfer_takes_its_length_off_both_cuts_and_corners_may_follow_one_ano
         ("M8 ,C5\n", "Line 4: a corner is rounded or chamfered at the end of a straight cut"),
         ("G68 X0 Y0\n", "Line 4: G68 is read in G17 and G90, with R"),
         ("G68 X0 Y0 R30\nG55\n", "Line 5: G55 while coordinates are shifted or turned"),
-        ("G16\nG91 X5 Y10\n", "Line 5: G16 is read in G17 and G90 alone"),
+        ("G16\nG91 X5 Y10\n", "Line 5: G16 counts X from where the tool is in G91, which is not read"),
+        ("G16\nG18\nX5 Y10\n", "Line 6: G16 is read in G17 alone"),
         ("G51 X0 Y0\n", "Line 4: G51 needs P"),
         ("G68.2 X0 Y0 Z0 I0 J30 K0\n", "Line 4: G68.2 tilts the working plane"),
     ],
@@ -87,3 +88,12 @@ def test_g84_turns_the_spindle_by_itself() -> None:
     assert tapped.sum() == 2
     assert program.n_s[tapped] * 60 == pytest.approx([500, 500])
     assert [f.line for f in program.findings if f.code == "tap-turns"] == [5]
+
+
+def test_polar_angles_in_g91_go_on_from_hole_to_hole() -> None:
+    """The second example of Fanuc's manual (G16): three holes on a circle of 100 mm, 120 degrees apart, equally deep."""
+    text = "G17 G90 G16\nG99 G81 X100. Y30. Z-20. R-5. F200.\nG91 Y120.\nY120.\nG15 G80\n"
+    program = interpret(f"{HEAD}{text}M30\n%\n", dialect="fanuc")
+    angles = np.radians([30, 150, 270])
+    expected = np.column_stack([100 * np.cos(angles), 100 * np.sin(angles), np.full(3, -20)])
+    np.testing.assert_allclose(program.end[program.kind == 1] * 1e3, expected, atol=1e-9)

@@ -44,3 +44,14 @@ def test_a_second_table_is_asked_for() -> None:
     both = [f for f in read_gcode(text.format("C180"), table="A").findings if f.code == "rotary-asked"]
     assert [(f.line, f.message[:44]) for f in both] == [(4, "C turns by 180 degrees beside the rotary tab")]
     assert not [f for f in read_gcode(text.format("C45"), table="A").findings if f.code == "rotary-asked"]
+
+
+def test_a_few_whole_numbers_with_a_point_show_how_a_program_writes_them() -> None:
+    text = "G21 G90\nG0 X10. Y20.\nG1 Z-5. F100.\nX2000\nX30.5\nM30\n"
+    assert [f.line for f in interpret(text).findings if f.code == "no-point"] == [4]
+
+
+def test_numbers_without_needless_zeros_are_not_doubted() -> None:
+    """Posts that write 10 for 10.000 have hardly a whole number in a finished surface."""
+    text = "".join(f"X{k / 7:.3f} Y{k / 11:.3f} Z-{k / 13:.3f}\n" for k in range(1, 200) if k % 7 and k % 11 and k % 13)
+    assert not [f for f in interpret(f"G21 G90\nG1 F100 X1\n{text}X5\nM30\n").findings if f.code == "no-point"]

@@ -42,3 +42,44 @@ def test_fine_boring_goes_down_at_feed_and_out_at_rapid() -> None:
 def test_back_boring_is_refused_by_name() -> None:
     with pytest.raises(GCodeError, match="Line 3: G87 bores from below on a Fanuc control, which is not read"):
         read("G87 X10 Z-5 R-20 Q1\n")
+
+
+GRID = [(0, 0, -5), (10, 0, -5), (20, 0, -5), (20, 10, -5), (10, 10, -5)]
+
+
+@pytest.mark.parametrize("dialect", ["fanuc", "auto"])
+@pytest.mark.parametrize("back", ["G98", "G99"])
+def test_holes_in_g91_are_as_deep_as_was_said_in_g90(dialect: str, back: str) -> None:
+    """The grid of the control's manuals: one hole in G90, and from there by steps, at the same height and depth."""
+    body = f"{back} G81 Z-5. R2.\nG91 X10. L2\nG90 Y10.\nG91 X-10. K1\n"
+    program = interpret(f"G21 G90 S100 M3 F100\nG0 X0. Y0. Z10.\n{body}G80\nM30\n", dialect=dialect)
+    cuts = program.end[program.kind == 1] * 1e3
+    np.testing.assert_allclose(cuts, GRID, atol=1e-9)
+    assert program.end[-1, 2] * 1e3 == pytest.approx(10 if back == "G98" else 2)
+    said = [f.line for f in program.findings if f.code == "cycle-heights"]
+    assert said == ([4] if dialect == "auto" else [])
+
+
+def test_holes_given_in_g91_go_on_as_they_were_given() -> None:
+    """R counts from the initial level, Z from R; the height of the first hole is kept where G90 comes after it."""
+    assert holes("G91 G98 G81 X10 Z-8 R-6\nX10\nG90 X50\n") == [(10, 0, -4), (20, 0, -4), (50, 0, -4)]
+    program = interpret("G21 G90 S9 M3 F9\nG0 X0 Y0 Z10\nG91 G81 X10 Z-8 R-6\nX10\nM2\n")
+    assert not [f for f in program.findings if f.code == "cycle-heights"]
+
+
+def test_linuxcnc_adds_r_and_z_anew_where_it_is_stated() -> None:
+    program = interpret("G21 G90 S9 M3 F9\nG0 Z10\nG98 G81 X0 Z-5 R2\nG91 X10\nM2\n", dialect="linuxcnc")
+    np.testing.assert_allclose(program.end[program.kind == 1, 2] * 1e3, [-5, 7], atol=1e-9)
+
+
+def test_a_cycle_made_no_time_keeps_the_feed_and_modes_of_its_line() -> None:
+    program = read("G99 G81 X10 Z-5 R2 F250 L0\nX20\n")
+    np.testing.assert_allclose(program.end[1:] * 1e3, [[20, 0, 10], [20, 0, 2], [20, 0, -5], [20, 0, 2]], atol=1e-9)
+    assert program.v_f[program.kind == 1] * 60e3 == pytest.approx([250])
+
+
+def test_words_of_fanuc_cycles_are_read_where_nothing_says_the_control() -> None:
+    head = "G21 G90 S100 M3 F100\nG0 X0 Y0 Z10\n"
+    for cycle in ("G99 G82 X10 Z-5 R2\n", "G91 G99 G81 X10 Z-7 R-8 K1\n", "G99 G76 X10 Z-5 R2 Q0.2\n"):
+        program = interpret(f"{head}{cycle}G80\nM30\n")
+        np.testing.assert_allclose(program.end[program.kind == 1] * 1e3, [[10, 0, -5]], atol=1e-9)

@@ -12,7 +12,7 @@ from robomill.toolpath.gcode import interpret, read_gcode
 
 FILES = sorted((Path(__file__).parent / "data" / "refused").glob("*.ngc"))
 SLOW = {"o_endless"}
-STATED = {"motion_after_g80", "motion_missing"}
+STATED = {"motion_after_g80", "motion_missing", "cycle_without_dwell", "cycle_zero_repeats"}
 """What other controls take; LinuxCNC, where it is stated, does not."""
 
 

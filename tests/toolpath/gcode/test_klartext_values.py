@@ -28,6 +28,9 @@ def ends(body: str) -> list[list[float]]:
         ("FN 3: Q1 = +2 * +3\nFN 4: Q2 = +Q1 DIV +4\nL XQ2\n", 1.5),
         ("FN 5: Q1 = +16\nL X+Q1\n", 4),
         ("FN 6: Q1 = +30\nFN 7: Q2 = +60\nQ3 = Q1 + Q2\nL X+Q3\n", 1),
+        ("FN 8: Q1 = +3 LEN +4\nL X+Q1\n", 5),
+        ("FN 13: Q1 = +10 ANG +10\nL X+Q1\n", 45),
+        ("FN 13: Q1 = +10 ANG -10\nFN13:Q2=-1 ANG 0\nL X+Q2\n", 270),
         ("Q1 = 2 * ( 3 + 1 ) - SQRT 4 + 2 ^ 3\nL X+Q1\n", 14),
         ("QL1 = SIN 30 + COS ( 60 ) + INT 2.7 + ABS -2\nL X+QL1\n", 5),
         ("Q1 = 0\nLBL 1\nQ1 = Q1 + 1\nFN 12: IF +Q1 LT +4 GOTO LBL 1\nL X+Q1\n", 4),
@@ -104,7 +107,7 @@ def test_dwells_are_waited() -> None:
         ("CYCL DEF 200 ~\nQ206=FAUTO\n", "Q206=FAUTO, which is not read"),
         ("CYCL CALL PAT FMAX\n", "CYCL CALL PAT"),
         ("FN 18: SYSREAD Q1 = ID270 NR1\n", "FN 18: SYSREAD is of Heidenhain's"),
-        ("FN 8: Q1 = +3 LEN +4\n", "FN 8 is not read"),
+        ("FN 14: Q1 = +3\n", "FN 14 is not read; expected FN 0 to 13"),
         ("QL500 = 1\n", "QL500 does not exist"),
     ],
 )

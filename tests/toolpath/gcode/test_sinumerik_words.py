@@ -168,3 +168,8 @@ def test_what_moves_nothing_is_left_out() -> None:
 def test_lines_too_long_to_be_looked_through_are_refused() -> None:
     with pytest.raises(GCodeError, match="Line 1: 9000 characters long; at most 3000"):
         interpret("X=AC(" * 1800 + "\nM30\n", dialect="sinumerik")
+
+
+def test_shifts_and_turns_may_be_computed() -> None:
+    body = "R1=5\nTRANS X=R1*2 Y5 Z=-R1\nG1 X1 Y0 Z0\nROT RPL=45+R1*9\nX1 Y0\n"
+    assert places(body) == [(11, 5, -5), (0, 1, -5)]

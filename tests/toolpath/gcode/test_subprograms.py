@@ -84,3 +84,14 @@ def test_subprograms_that_call_themselves_are_refused() -> None:
 def test_repeats_cut_as_often_as_they_are_said() -> None:
     program = interpret(HEAD + "M97 P3 L4\nM30\nN3 G91 X1.\nG90 M99\n%\n", dialect="fanuc")
     np.testing.assert_allclose(program.end[:, 0] * 1e3, [1, 2, 3, 4, 5])
+
+
+def test_lines_behind_the_end_that_are_called_are_not_called_unread() -> None:
+    text = "%\nG21 G90 G1 F100 X1.\nM97 P1000\nM30\nN1000 X2.\nM99\n%\n"
+    assert not [f for f in interpret(text, dialect="fanuc").findings if f.code == "after-end"]
+
+
+@pytest.mark.parametrize("dialect", ["auto", "fanuc"])
+def test_a_colon_begins_a_program_as_an_o_does(dialect: str) -> None:
+    text = "%\n:0123\nG21 G90 G1 F100 X1.\nM98 P456\nM30\n:0456 (SUB)\nX2.\nM99\n%\n"
+    assert xs(text, dialect) == [1, 2]
