@@ -6,6 +6,7 @@ from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import P
 from robomill.toolpath.gcode.cycle_rules import is_cycle, takes_dwell
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.words import Block
 
 _FINE_BORING, _BORING, _BACK_BORING = 760, 860, 870
@@ -32,7 +33,11 @@ def repeats(machine: Machine, block: Block) -> None:
     if takes_dwell(motion) and "p" not in words and (machine.motion != motion or math.isnan(machine.cycle[P])):
         words["p"] = 0.0
     steps = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 910
-    kept = machine.motion == motion and not {"r", "z"} <= words.keys() and not machine.kept_steps
-    if steps and kept and machine.keeps_heights and not machine.is_fanuc:
+    given = {"r", "xyz"[axes(machine.plane)[2]]} & words.keys()
+    if not steps or machine.is_fanuc or not machine.keeps_heights or machine.motion != motion or machine.kept_steps:
+        return
+    if len(given) == 1:  # who gives one of them anew counts on the other's being added, too
+        machine.keeps_heights = False
+    elif not given:
         text = "holes in G91 are as deep as was said in G90, as on Fanuc and Haas; LinuxCNC adds R and Z at each anew"
         machine.note("cycle-heights", "suspicious", text)

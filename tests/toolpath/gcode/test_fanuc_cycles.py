@@ -83,3 +83,11 @@ def test_words_of_fanuc_cycles_are_read_where_nothing_says_the_control() -> None
     for cycle in ("G99 G82 X10 Z-5 R2\n", "G91 G99 G81 X10 Z-7 R-8 K1\n", "G99 G76 X10 Z-5 R2 Q0.2\n"):
         program = interpret(f"{head}{cycle}G80\nM30\n")
         np.testing.assert_allclose(program.end[program.kind == 1] * 1e3, [[10, 0, -5]], atol=1e-9)
+
+
+def test_who_gives_r_anew_in_g91_counts_as_linuxcnc_does() -> None:
+    """The test of cycles in the report on RS274/NGC: bottoms are added to each R, where nobody says another control."""
+    text = "G21 G90 S9 M3 F9\nG0 Z10\nG81 X0 Y0 R2 Z-5\nX1 R0 G91 L2\nX1 R1\nM2\n"
+    stated, guessed = (interpret(text, dialect=dialect) for dialect in ("linuxcnc", "auto"))
+    np.testing.assert_allclose(guessed.end, stated.end, atol=1e-12)
+    np.testing.assert_allclose(guessed.end[guessed.kind == 1, 2] * 1e3, [-5, 5, 5, 6], atol=1e-9)
