@@ -164,7 +164,9 @@ def _said_of(words: list[str], kind: str, line: int) -> tuple[dict[str, float], 
         elif NUMBER.match(word):
             places.append(float(word))
         else:
-            raise GCodeError.at(line, f"CYCLE/{kind} has {word[:20]!r}, which is not read; let the CAM system write GOTO.")
+            raise GCodeError.at(
+                line, f"CYCLE/{kind} has {word[:20]!r}, which is not read; let the CAM system write GOTO."
+            )
     if len(places) > 2:
         text = f"CYCLE/{kind} has {len(places)} numbers without a word; expected DEPTH, CLEAR and so on before them."
         raise GCodeError.at(line, text)

@@ -62,7 +62,7 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
                 raise block.refuse("axis words without a motion; give G0, G1, G2 or G3 first.")
             machine.motion = machine.straight
             text = f"axis words without a motion are read as {g_name(machine.straight)}, {dialect.kept(machine)}"
-            machine.note("motion-kept", "suspicious" if dialect.guessed else "info", text)
+            machine.note("motion-kept", "info", text)
         block.motion = implied_motion(machine, axes or polar, any(letter in words for letter in "ijk"))
     if not dialect.strict:
         _read_tool_axis(machine, block)

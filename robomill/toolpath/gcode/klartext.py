@@ -62,7 +62,7 @@ class Klartext(KlartextValues):
         code, self.pc, skipped = self._joined(index)
         if skipped:
             self.machine.findings.add("block-delete", "info", line, "block delete (/) is off: these lines are executed")
-        if not code or code[0] == "*":
+        if not code or code[0] == "*" or (code[0] == "(" and code[-1] == ")"):
             return None
         first = code.split(" ", 1)[0]
         if first in ("L", "LN", "LP", "C", "CR", "CP", "CT") or _FEED.match(code) or _M.match(code):
@@ -95,6 +95,9 @@ class Klartext(KlartextValues):
             return None
         if self.values_line(code, line):
             return None
+        if code.startswith("CALL PGM"):
+            text = f'{code[:40]} calls another program; paste it in behind M30 as LBL "NAME" ... LBL 0, and call that.'
+            raise GCodeError.at(line, text)
         raise GCodeError.at(line, f"{' '.join(code.split(' ')[:3])} is of Heidenhain's and is not read; {_LET}.")
 
     def _joined(self, index: int) -> tuple[str, int, bool]:

@@ -140,6 +140,9 @@ class KlartextValues(SinumerikFlow):
         if number in _DRILLS:
             self.drill = number
             for name, value in re.findall(r"(Q\d+) ?= ?(\S+)", rest):
+                if name == "Q208" and value in ("MAX", "FMAX"):
+                    self.set_q(name, 0.0, line)
+                    continue
                 if not re.fullmatch(NUMBER, value):
                     raise GCodeError.at(line, f"CYCL DEF {number} has {name}={value}, which is not read.")
                 self.set_q(name, self.number(value, line), line)

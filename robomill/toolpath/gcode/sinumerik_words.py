@@ -33,7 +33,7 @@ _JUMP = re.compile(r"(?:IF\b(.*?)[ \t]*)?\b(GOTO[FBC]?)[ \t]+(\w+)[ \t]*")
 _FRAME = re.compile(r"(A?TRANS|A?ROT)\b(.*)")
 _ALONE = re.compile(r"\bA?(?:TRANS|ROT)\b")
 _FRAME_WORD = re.compile(r"\b(X|Y|Z|RPL)[ \t]*(?:=|(?=[-+.\d]))")
-_CYCLE = re.compile(r"(MCALL\b[ \t]*)?(?:CYCLE(8[1-6])[ \t]*\(([^()]*)\))?[ \t]*")
+_CYCLE = re.compile(r"(MCALL\b[ \t]*)?(?:CYCLE(8[1-9])[ \t]*\(([^()]*)\))?[ \t]*")
 _CORNER = re.compile(r"\b(RND|CHF|CHR)[ \t]*=[ \t]*(\d+\.?\d*|\.\d+)")
 _KINDS = {"RND": ROUND, "CHF": BEVEL, "CHR": LEGS}
 _IDENTIFIER = re.compile(r"\b[A-Z_]{1,2}\w+\b")
@@ -44,7 +44,8 @@ _COMPARES = (("==", " EQ "), ("<>", " NE "), (">=", " GE "), ("<=", " LE "), (">
 
 @dataclass(frozen=True)
 class Hole:
-    """A drilling cycle: heights along Z in program units, dwell in s, feeds (0: the one in force)."""
+    """A drilling cycle: heights along Z in program units, dwell in s, feeds (0: the one in force; ``out`` 0: rapid, inf:
+    the one in force)."""
 
     retract: float
     clear: float
@@ -257,12 +258,13 @@ class SinumerikWords(MacroCalls):
         clear = reference + (0.0 if math.isnan(safety) else abs(safety))
         if bottom >= clear or retract < clear:
             raise GCodeError.at(line, f"CYCLE{kind}: expected RTP above RFP + SDIS, and the depth below; mend them.")
-        wait = given[8] if kind == "83" else given[5] if kind != "81" else math.nan
+        wait = given[8] if kind == "83" else given[5] if kind not in ("81", "87") else math.nan
         pitch = abs(given[8]) if kind == "84" else 0.0
         if kind == "84" and not pitch > 0.0:
             raise GCodeError.at(line, "CYCLE84 needs PIT, its pitch, which MPIT does not say here; give it.")
         pecks = self._pecks(given, reference, bottom, line) if kind == "83" else ()
         feeds = [0.0 if math.isnan(v) else abs(v) for v in (given[6], given[7])] if kind == "85" else [0.0, 0.0]
+        feeds[1] = math.inf if kind == "89" else feeds[1]
         to_clear = kind == "83" and given[11] == 1.0
         seconds = 0.0 if math.isnan(wait) else max(wait, 0.0)
         return Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], pecks, to_clear, pitch)
@@ -293,7 +295,7 @@ class SinumerikWords(MacroCalls):
         if machine.feed == 0.0 and hole.feed == 0.0 and hole.pitch == 0.0:
             raise block.refuse("a drilling cycle needs a feed rate; give an F word above 0 first.")
         down = hole.feed * machine.factor / 60.0 if hole.feed else None
-        out = hole.out * machine.factor / 60.0 if hole.out else None
+        out = hole.out * machine.factor / 60.0 if 0.0 < hole.out < math.inf else None
         if hole.pitch:
             if machine.speed == 0.0:
                 raise block.refuse("CYCLE84 needs a spindle speed; give an S word first.")

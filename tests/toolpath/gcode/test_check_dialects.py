@@ -27,7 +27,7 @@ def test_g80_leaves_the_motion_before_the_cycle_in_force(dialect: str, between: 
     assert ends(program, dialect)[-1][1:] == (kind, 20, 0, 15)
     line = 6 + bool(between)
     said = [(f.line, f.level) for f in interpret(program, dialect=dialect).findings if f.code == "motion-kept"]
-    assert said == [(line, "suspicious" if dialect == "auto" else "info")]
+    assert said == [(line, "info")]
 
 
 def test_a_long_program_keeps_it_in_compiled_code_too() -> None:

@@ -180,3 +180,15 @@ def test_blocks_too_long_to_be_looked_through_are_refused() -> None:
     for text in ("L " + "X+1 " * 400, "CYCL DEF 200 ~\n" + "Q200=1 ~\n" * 200):
         with pytest.raises(GCodeError, match="a block is over 1000 characters or 100 lines; split it"):
             read(f"{text}\n")
+
+
+def test_lines_in_brackets_are_remarks() -> None:
+    program = interpret(
+        '($Message("for a simulator") )\nBEGIN PGM  MM\nL Z+5,5 R0 F9999 M13\n(x)\nL IZ-2,000\nEND PGM\n'
+    )
+    assert (program.end[:, 2] * 1e3).tolist() == pytest.approx([5.5, 3.5])
+
+
+def test_another_program_is_asked_for_as_a_label() -> None:
+    with pytest.raises(GCodeError, match=r"Line 2: CALL PGM TNC:\\PLAN.H calls another program; paste it in"):
+        interpret("BEGIN PGM A MM\nCALL PGM TNC:\\Plan.h\nEND PGM A MM\n")

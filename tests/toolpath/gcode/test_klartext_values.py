@@ -114,3 +114,11 @@ def test_dwells_are_waited() -> None:
 def test_what_is_not_read_is_named(body: str, says: str) -> None:
     with pytest.raises(GCodeError, match=rf"Line [4-8]: .*{says}"):
         read(body)
+
+
+def test_a_drill_that_leaves_at_rapid_says_so_by_max() -> None:
+    """Q208= MAX, as posts write it, is the default: out of the hole at rapid."""
+    cycle = "CYCL DEF 203 ~\nQ200=2 ~\nQ201=-4 ~\nQ206=150 ~\nQ202=0 ~\nQ203=0 ~\nQ204=5 ~\nQ208= {}\nL X+1 FMAX M99\n"
+    for value, height in (("MAX ;RETRACTION", -4.0), ("500", 2.0)):
+        program = read(cycle.format(value))
+        assert program.end[program.kind == 1, 2][-1] * 1e3 == pytest.approx(height)

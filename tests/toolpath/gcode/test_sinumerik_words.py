@@ -173,3 +173,17 @@ def test_lines_too_long_to_be_looked_through_are_refused() -> None:
 def test_shifts_and_turns_may_be_computed() -> None:
     body = "R1=5\nTRANS X=R1*2 Y5 Z=-R1\nG1 X1 Y0 Z0\nROT RPL=45+R1*9\nX1 Y0\n"
     assert places(body) == [(11, 5, -5), (0, 1, -5)]
+
+
+@pytest.mark.parametrize(
+    ("cycle", "last", "waits"),
+    [
+        ("CYCLE87(20,0,2,-6,,3)", [("R", 20.0)], 0.0),
+        ("CYCLE88(20,0,2,-6,,0.5,3)", [("R", 20.0)], 0.5),
+        ("CYCLE89(20,0,2,,6,0.5)", [("F", 2.0), ("R", 20.0)], 0.5),
+    ],
+)
+def test_boring_with_a_stop_and_at_feed_both_ways(cycle: str, last: list[tuple[str, float]], waits: float) -> None:
+    """840D sl, Cycles: 87 stops and leaves at rapid, 88 waits before, 89 leaves at the feed that it went in with."""
+    assert heights(f"G0 Z20\n{cycle}\n")[-2 - len(last) :] == [("R", 2.0), ("F", -6.0), *last]
+    assert interpret(f"{HEAD}{cycle}\nM30\n", dialect="sinumerik").dwell_time == pytest.approx(waits)
