@@ -8,7 +8,8 @@ from robomill.toolpath.gcode.tool_axis import angles_of
 
 _SILENT = re.compile(
     r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|COMPCURV|COMPSURF|STOPRE|CFTCP|CFIN|CFC|ORIWKS|"
-    r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|KONT|DIAMOF)\b(?:[ \t]*\([^()]*\))?|"
+    r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|KONT|DIAMOF|FNORM|FLIN|FGROUP|SETMS|CUT2D|CDOF|WALIMOF|WALIMON|"
+    r"STOPFIFO|STARTFIFO)\b(?:[ \t]*\([^()]*\))?|"
     r"\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|\bGROUP_(?:BEGIN|END)[ \t]*\([^()]*\)|"
     r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)|\bCYCLE800[ \t]*\([ \t]*\)",
     re.IGNORECASE,

@@ -8,7 +8,7 @@ import re
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode.sinumerik_words import SinumerikWords
+from robomill.toolpath.gcode.sinumerik_words import SinumerikWords, value_end
 from robomill.toolpath.gcode.words import Block
 
 FIRST_VARIABLE, MOST_VARIABLES = 2000, 1000
@@ -22,7 +22,7 @@ _CLOSES = {"ENDIF": "IF", "ENDWHILE": "WHILE", "ENDFOR": "FOR", "UNTIL": "REPEAT
 _COUNTS = re.compile(r"[ \t]*(R\d+|[A-Z_]\w*)[ \t]*=(.+?)\bTO\b(.+)")
 _DEF = re.compile(r"DEF[ \t]+(?:REAL|INT|BOOL)[ \t]+(.+)")
 _NAME = re.compile(r"([A-Z_]{1,2}\w+)[ \t]*(?:=[ \t]*(.+))?")
-_SETS = re.compile(r"([A-Z_]{2}\w*)[ \t]*=(?!=)(.+)")
+_SETS = re.compile(r"[ \t]*([A-Z_]{2}\w*)[ \t]*=(?!=)")
 _MODAL = re.compile(r"MCALL[ \t]+(L\d{1,7}|[A-Z_]{2}\w*)[ \t]*(?:\([ \t]*\))?")
 
 
@@ -45,11 +45,21 @@ class SinumerikFlow(SinumerikWords):
             return self._modal_call(plain, line)
         if plain == "MCALL":
             self.modal_sub = None
-        found = _SETS.fullmatch(plain) if plain[:1].isalpha() else None
+        found = _SETS.match(plain) if "=" in plain else None
         if found is not None and found[1] in self.variables:
-            self.machine.store.set(self.variables[found[1]], self.value(found[2], line))
+            self._set_variables(plain, line)
             return True
         return False
+
+    def _set_variables(self, plain: str, line: int) -> None:
+        """One or several on a line."""
+        at = 0
+        while plain[at:].strip():
+            found = _SETS.match(plain, at)
+            if found is None or found[1] not in self.variables:
+                raise GCodeError.at(line, f"found {plain[at:].strip()[:20]!r} where a variable is set; expected ABC=1.")
+            at = value_end(plain, found.end())
+            self.machine.store.set(self.variables[found[1]], self.value(plain[found.end() : at], line))
 
     def _branch(self, found: re.Match[str], index: int) -> None:
         word, line = found[1] or found[3] or found[4], index + 1

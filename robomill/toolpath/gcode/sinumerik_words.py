@@ -44,8 +44,10 @@ _COMPARES = (("==", " EQ "), ("<>", " NE "), (">=", " GE "), ("<=", " LE "), (">
 
 @dataclass(frozen=True)
 class Hole:
-    """A drilling cycle: heights along Z in program units, dwell in s, feeds (0: the one in force; ``out`` 0: rapid, inf:
-    the one in force)."""
+    """A drilling cycle: heights along Z in program units, dwell in s, feeds.
+
+    A ``feed`` of 0 is the one in force, so is an ``out`` of infinity; an ``out`` of 0 is a rapid.
+    """
 
     retract: float
     clear: float
@@ -169,7 +171,7 @@ class SinumerikWords(MacroCalls):
         for found in _WORD.finditer(code):
             if found.start() < at:
                 continue
-            end = _value_end(code, found.end())
+            end = value_end(code, found.end())
             value = code[found.end() : end]
             if (
                 "R" in value
@@ -323,7 +325,7 @@ class SinumerikWords(MacroCalls):
         machine.p = end
 
 
-def _value_end(code: str, at: int) -> int:
+def value_end(code: str, at: int) -> int:
     """Where an expression ends that begins at ``at``: at a blank outside of brackets that no operator stands beside, or
     at a sign of another value."""
     depth, last = 0, "="

@@ -342,7 +342,7 @@ def test_the_cutter_is_named_by_the_number_of_a_tool(number):
 ENTRIES = {  # where the cutter of 10 mm stands as the cut of the wall x = 0 begins, and where it meets the next wall
     "fanuc": "G21 G90 G17 T1 M6 F100\nG0 X{x} Y{y} Z0\nG41 D1 G1 X0 Y0\n{down}Y50\nX50\nG40 X80\nM30\n",
     "sinumerik": "G71 G90 G17 T1 D1 F100\nM6\nG0 X{x} Y{y} Z0\nG41 G1 X0 Y0\n{down}Y50\nX50\nG40 X80\nM30\n",
-    "heidenhain": "BEGIN PGM A MM\nTOOL CALL 1 Z S99 F100\nL X{x} Y{y} Z0 FMAX\nL X0 Y0 RL\n{down}L Y50\nL X50\nL X80 R0\n",
+    "heidenhain": "BEGIN PGM A MM\nTOOL CALL 1 Z\nF9\nL X{x} Y{y} Z0 FMAX\nL X0 Y0 RL\n{down}L Y50\nL X50\nL X80 R0\n",
 }
 
 

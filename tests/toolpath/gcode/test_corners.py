@@ -91,7 +91,7 @@ def test_g84_turns_the_spindle_by_itself() -> None:
 
 
 def test_polar_angles_in_g91_go_on_from_hole_to_hole() -> None:
-    """The second example of Fanuc's manual (G16): three holes on a circle of 100 mm, 120 degrees apart, equally deep."""
+    """The second example of Fanuc's manual (G16): three holes at 100 mm, 120 degrees apart, equally deep."""
     text = "G17 G90 G16\nG99 G81 X100. Y30. Z-20. R-5. F200.\nG91 Y120.\nY120.\nG15 G80\n"
     program = interpret(f"{HEAD}{text}M30\n%\n", dialect="fanuc")
     angles = np.radians([30, 150, 270])

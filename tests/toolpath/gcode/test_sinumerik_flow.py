@@ -88,3 +88,12 @@ def test_dwells_in_turns_of_the_spindle() -> None:
 def test_what_cannot_be_followed_is_refused(body: str, says: str) -> None:
     with pytest.raises(GCodeError, match=says):
         xs(body)
+
+
+def test_a_line_sets_several_variables_as_posts_write_their_homes() -> None:
+    head = "DEF REAL _X_HOME, _Z_HOME\nG71 G90 FNORM F100\nSETMS(1)\n"
+    text = f"{head}_X_HOME=2*(3 - 1) _Z_HOME=-1.5\nG1 X=_X_HOME Z=_Z_HOME\nM30\n"
+    program = interpret(text)
+    assert (program.end[-1] * 1e3).tolist() == pytest.approx([4, 0, -1.5])
+    with pytest.raises(GCodeError, match="Line 4: found 'G0' where a variable is set"):
+        interpret(text.replace("_Z_HOME=-1.5\n", "G0\n"))
