@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
+from weakref import WeakMethod
 
 from robomill.errors import GCodeError
 from robomill.provenance import Level
@@ -70,7 +71,8 @@ class Machine:
     """
 
     def __init__(self, tools: Tools | None) -> None:
-        self.store = Parameters(self.provided, (*_AXES, *_PROVIDED))
+        asked = WeakMethod(self.provided)  # no ring that only the garbage collector would undo
+        self.store = Parameters(lambda name: asked()(name), (*_AXES, *_PROVIDED))  # type: ignore[misc]
         self.findings = Findings()
         self.recorder = Recorder(joined)
         self.corner: tuple[str, float] | None = None
@@ -99,7 +101,7 @@ class Machine:
         self.aways: list[tuple[int, tuple[bool, ...]]] = []
         self.homes: set[int] = set()
         self.is_fanuc, self.enters_square, self.machine_word = False, False, "G53"
-        self.variable: Callable[[int], float] | None = None
+        self.variable: Callable[[Machine, int], float] | None = None
         self.extended: dict[int, tuple[list[float], float]] = {}
         self.systems: list[tuple[int, int]] = [(0, 1)]
         self.placed: dict[int, int] = {}
@@ -244,7 +246,7 @@ class Machine:
 
     def _provided_number(self, index: int) -> float:
         if self.variable is not None and index < 5400:
-            return self.variable(index)
+            return self.variable(self, index)
         if index >= 5420:
             if self.compensation is not None:
                 raise GCodeError("the position cannot be read with cutter compensation on; use G40 first.")

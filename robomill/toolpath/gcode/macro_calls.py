@@ -6,7 +6,6 @@ and in sums it counts as 0. G65 gives a subprogram its own #1 to #33 (Fanuc, Cus
 
 import math
 import re
-from functools import partial
 from typing import Any
 
 from robomill.errors import GCodeError
@@ -35,7 +34,7 @@ _SAYS = re.compile(r"\(([^()]*)\)")
 
 def begin_empty(machine: Machine) -> None:
     """Variables are empty as a Fanuc control begins; those of the control itself are asked for."""
-    machine.is_fanuc, machine.variable = True, partial(system_variable, machine)
+    machine.is_fanuc, machine.variable = True, system_variable
     machine.store.vacate((*EMPTY, SYSTEM))
 
 

@@ -100,10 +100,11 @@ def interpret(
     try:
         Interpreter(machine, file, chosen).run()
     except GCodeError as refused:
-        exc = _offered(refused, machine, tools, file, chosen)
-        if not partial:
-            raise exc from None
-        machine.findings.add("refused", "error", exc.line, str(exc))
+        if not partial:  # held by no name: what was read would live until the garbage collector runs
+            raise _offered(refused, machine, tools, file, chosen) from None
+        said = _offered(refused, machine, tools, file, chosen)
+        machine.findings.add("refused", "error", said.line, str(said))
+        del said
     if chosen.guessed and chosen.name != "linuxcnc":
         machine.findings.add(
             "dialect-guessed", "info", 0, f"read as {chosen.name} code; this is a guess from how it looks"

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import math
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -262,3 +264,30 @@ def test_a_file_beside_the_program_is_read_by_its_plain_name_and_has_to_define_i
         program = interpret(main)
         assert program.end[-1] * 1e3 == pytest.approx((7, 0, 0))
         assert [f.code for f in program.findings if f.code == "sub-file"] == ["sub-file"]
+
+
+RINGS = [
+    ("linuxcnc", "G21 G90 F100\n#1=3\nG1 X#1 Y#<_x>\n"),
+    ("fanuc", "G21 G90 F100\n#1=3\nWHILE[#1LT5]DO1\n#1=#1+1\nG1 X#1\nEND1\n"),
+    ("sinumerik", "G71 G90 F100\nR1=2\nG1 X=R1\n"),
+    ("heidenhain", "BEGIN PGM A MM\nTOOL CALL 1 Z S1 F9\nL X+1 F9\n"),
+]
+
+
+@pytest.mark.parametrize("slip", ["", "Q\n"])
+@pytest.mark.parametrize(("dialect", "text"), RINGS)
+def test_what_was_read_is_given_back_at_once(dialect: str, text: str, slip: str) -> None:
+    """Without rings that only the garbage collector undoes: a server reads many programs between two of its rounds."""
+
+    def read() -> None:
+        with suppress(GCodeError):
+            read_gcode(f"{text}{slip}", dialect=dialect)
+
+    read()
+    gc.collect()
+    gc.disable()
+    try:
+        read()
+        assert gc.collect() == 0
+    finally:
+        gc.enable()
