@@ -1,5 +1,7 @@
 """From program text to canonical moves: runs the lines, follows O words, and keeps the budgets."""
 
+from time import thread_time
+
 from robomill.errors import GCodeError
 from robomill.progress import checkpoint
 from robomill.toolpath.gcode import check
@@ -27,6 +29,9 @@ MAX_READ = 25_000
 MAX_CODE = 3000
 """Characters of a Sinumerik line that can be read, without its comment."""
 
+LOOPING = 1.7
+"""s of computing: longer no loop is followed, once as many lines were executed as the program has."""
+
 _CHECK_EVERY = 256
 _LOOK_BEYOND = 20
 
@@ -38,6 +43,7 @@ class Interpreter(Klartext):
         super().__init__(machine, file, dialect)
         self.steps, self.read = 0, 0
         self.budget, self.reads = len(file.lines) + MAX_STEPS, len(file.lines) + MAX_READ
+        self.looping_since: float | None = None
         self.percent, self.is_klartext = False, dialect.name == "heidenhain"
         self.stretches = Stretches(machine)
 
@@ -153,8 +159,19 @@ class Interpreter(Klartext):
         if most:
             raise GCodeError.at(index + 1, f"more than {most} lines were executed in loops; the program may not end.")
         if self.steps // _CHECK_EVERY != before // _CHECK_EVERY:
+            self._check_time(index)
             share = min(max(index / max(len(self.main.lines), 1), self.steps / self.budget), 1.0)
             checkpoint(share, "Reading the program")
+
+    def _check_time(self, index: int) -> None:
+        if self.steps <= len(self.main.lines):
+            return
+        now = thread_time()
+        if self.looping_since is None:
+            self.looping_since = now
+        elif now - self.looping_since > LOOPING:
+            text = f"loops took longer than {LOOPING:g} s after {self.steps} lines; the program may not end."
+            raise GCodeError.at(index + 1, text)
 
     def _skip_percent(self) -> None:
         for index, raw in enumerate(self.main.lines):

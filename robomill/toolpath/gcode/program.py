@@ -22,9 +22,16 @@ __all__ = ["ARC", "FEED", "KINDS", "PLANES", "PROBE", "TAP", "TRAVERSE", "Move",
 KINDS = ("traverse", "feed", "arc", "tap", "probe")
 PLANES = {17: "XY", 18: "XZ", 19: "YZ"}
 MAX_MOVES = 6_000_000
+LOOPED_MOVES, MOVES_A_LINE = 400_000, 20
+"""So many moves a program may make, and so many more for each of its lines: what makes more has a loop without end."""
 FLUSH = 16_384
 
 _COLUMNS: tuple[str, ...] = MOVE.names or ()
+
+
+def most_moves(lines: int) -> int:
+    """How many moves a program of so many lines may make."""
+    return min(MAX_MOVES, LOOPED_MOVES + MOVES_A_LINE * lines)
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +190,7 @@ class Recorder:
     def __init__(self, join: Callable[[Move, Move, tuple[str, float]], list[Move]] | None = None) -> None:
         self.join = join
         self.held: tuple[Move, tuple[str, float]] | None = None
-        self.count = 0
+        self.count, self.most = 0, MAX_MOVES
         self._rows = np.zeros(FLUSH, MOVE)
         self._taken = 0
         self._columns: dict[str, np.ndarray] = {}
@@ -224,9 +231,9 @@ class Recorder:
     def _keep(self, rows: np.ndarray) -> None:
         """Copy ``rows`` into the columns; one that is 0 throughout takes no room."""
         after = self.count + len(rows)
-        if after > MAX_MOVES:
+        if after > self.most:
             line = int(rows["line"][-1])
-            raise GCodeError.at(line, f"the program makes more than {MAX_MOVES} moves; split it.")
+            raise GCodeError.at(line, f"the program makes more than {self.most} moves; end its loops, or split it.")
         for name in _COLUMNS:
             if name in self._columns or rows[name].any():
                 self._with_room(name, after)[self.count : after] = rows[name]

@@ -20,7 +20,7 @@ from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.macro_calls import begin_empty
 from robomill.toolpath.gcode.owords import File
-from robomill.toolpath.gcode.program import Program
+from robomill.toolpath.gcode.program import Program, most_moves
 from robomill.toolpath.path import TABLES, Toolpath
 from robomill.toolpath.text import Source, read_source
 from robomill.toolpath.tools import Tools
@@ -93,7 +93,7 @@ def interpret(
     chosen = choose_dialect(data[:SAMPLE].decode("utf-8", "replace"), dialect)
     if chosen.guessed and (foreign := language_of(data[:SAMPLE].decode("utf-8", "replace"))):
         raise GCodeError.at(*foreign)
-    machine = _machine(tools, chosen)
+    machine = _machine(tools, chosen, len(lines))
     is_file = isinstance(source, Path) or (isinstance(source, str) and name != "program")
     folder = Path(source).parent if isinstance(source, str | Path) and is_file else None
     file = File(name, lines, folder)
@@ -114,8 +114,9 @@ def interpret(
     return _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
 
 
-def _machine(tools: Tools | None, dialect: Dialect) -> Machine:
+def _machine(tools: Tools | None, dialect: Dialect, lines: int) -> Machine:
     machine = Machine(tools)
+    machine.recorder.most = most_moves(lines)
     machine.keeps_heights = dialect.keeps_heights
     machine.enters_square = dialect.name in ("fanuc", "sinumerik", "heidenhain")
     if dialect.name == "fanuc":
@@ -127,7 +128,7 @@ def _offered(refused: GCodeError, machine: Machine, tools: Tools | None, file: F
     """What a program is refused with; of an arc off its circle also whether all arcs fit with absolute centres."""
     if not machine.arc_refused:
         return refused
-    again = _machine(tools, dialect)
+    again = _machine(tools, dialect, len(file.lines))
     again.arc_absolute = True
     try:
         Interpreter(again, File(file.name, file.lines, file.folder), dialect).run()

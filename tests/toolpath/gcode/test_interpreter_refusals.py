@@ -40,6 +40,30 @@ def test_a_loop_of_lines_that_are_read_anew_is_refused_sooner(monkeypatch: pytes
         read_gcode(text.format(320).encode())
 
 
+@pytest.mark.parametrize("dialect", ["linuxcnc", "fanuc", "sinumerik", "heidenhain"])
+def test_loops_end_by_time(monkeypatch: pytest.MonkeyPatch, dialect: str) -> None:
+    """The clock counts what is computed once all lines were executed; straight reading has no limit."""
+    monkeypatch.setattr("robomill.toolpath.gcode.interpreter.LOOPING", 0.0)
+    loop = {
+        "linuxcnc": "G21 F9\nO1 while [1]\nG1 X[#<_x>+1]\nM62 P1\nO1 endwhile\nM2\n",
+        "fanuc": "G21 F9\nN1 G91 G1 X#1\n#1=1\nGOTO1\nM30\n",
+        "sinumerik": "G71 F9\nLOOP\nG91 G1 X=1+1\nENDLOOP\nM30\n",
+        "heidenhain": "BEGIN PGM A MM\nTOOL CALL 1 Z F9\nLBL 1\nL IX+1\nFN 9: IF 1 EQU 1 GOTO LBL 1\nEND PGM A MM\n",
+    }[dialect]
+    with pytest.raises(GCodeError, match=r"Line [2-5]: loops took longer than 0 s after 51\d lines"):
+        interpret(loop, dialect=dialect)
+    straight = {"heidenhain": "BEGIN PGM A MM\nTOOL CALL 1 Z F9\n" + "L IX+1\n" * 900}
+    assert len(interpret(straight.get(dialect, "G21 G91 F9\n" + "G1 X1\n" * 900), dialect=dialect)) == 900
+
+
+def test_repeats_of_cycles_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Moves are counted, not lines: six lines make few of them, or have a loop without end."""
+    monkeypatch.setattr("robomill.toolpath.gcode.program.LOOPED_MOVES", 50_000)
+    text = "G21 G90 F100\nO1 while [1]\nG81 X1 Y1 Z-5 R2 L1000\nO1 endwhile\nM2\n"
+    with pytest.raises(GCodeError, match="Line 3: the program makes more than 50120 moves; end its loops, or split it"):
+        interpret(text)
+
+
 def test_there_are_many() -> None:
     assert len(FILES) > 140
 
