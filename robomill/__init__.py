@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from robomill.identification.load_test import JointTests as JointTests
     from robomill.identification.load_test import LoadTests as LoadTests
     from robomill.identification.result import IdentificationResult as IdentificationResult
+    from robomill.improve.design import Design as Design
+    from robomill.improve.design import design as design
     from robomill.io.drawings import read_drawing as read_drawing
     from robomill.io.force_models import process_force as process_force
     from robomill.io.forces import read_forces as read_forces
@@ -124,6 +126,8 @@ _PUBLIC = {
     "JointTests": "robomill.identification.load_test",
     "LoadTests": "robomill.identification.load_test",
     "IdentificationResult": "robomill.identification.result",
+    "Design": "robomill.improve.design",
+    "design": "robomill.improve.design",
     "read_drawing": "robomill.io.drawings",
     "process_force": "robomill.io.force_models",
     "read_forces": "robomill.io.forces",

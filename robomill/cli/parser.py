@@ -25,6 +25,7 @@ EXAMPLES = {
     "map": "robomill map slavkovic_5r --quantity C_yy --z 0 --x -600:600:100 --y -1600:-1000:100 --out map.csv",
     "identify": "robomill identify slavkovic_5r nine_points --out identified.toml",
     "simulate": "robomill simulate paper_flute --out result",
+    "design": "robomill design paper_flute --tolerance-mm 0.1",
     "samples": "robomill samples --copy samples",
     "reproduce": "robomill reproduce",
     "completion": "robomill completion bash",
@@ -36,10 +37,12 @@ NOTES = {
     "pass.",
     "simulate": "Exits 1 where the verdict is red, and where nothing or not all can be judged: never 0 on a number "
     "that is not known.",
+    "design": "Exits 1 where the tolerance cannot be met.",
     "reproduce": "Exits 1 where a claim of the paper that should hold does not.",
     "completion": "For bash, write it to ~/.local/share/bash-completion/completions/robomill; for zsh, to a file "
     "_robomill in a folder of $fpath; for fish, to ~/.config/fish/completions/robomill.fish.",
 }
+MODULES = {"simulate", "identify", "serve", "drawing", "design"}  # verbs with one of their own
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
 
@@ -79,6 +82,7 @@ def make_parser() -> argparse.ArgumentParser:
     _map_options(told("map", "A quantity over a plane or a box, NaN where the robot cannot reach."))
     _identify_options(told("identify", "Joint compliances from load tests, with their intervals."))
     _simulate_options(told("simulate", "Run a set-up: deviation, groove, verdict."))
+    _design_options(told("design", "The joints to stiffen so that a cut keeps a tolerance, at the least cost."))
     given = told("samples", "List the samples, or copy them to work on.")
     _named(given, "names", "samples to list or copy (all)", "any", nargs="*")
     given.add_argument("--copy", metavar="DIR", help="copy them there; what is there and differs is never replaced")
@@ -93,7 +97,7 @@ def make_parser() -> argparse.ArgumentParser:
 
 def _run(name: str, arguments: Any) -> int:
     """Load the verb's own module and run it."""
-    module = name if name in ("simulate", "identify", "serve", "drawing") else "verbs"
+    module = name if name in MODULES else "verbs"
     run: Callable[[Any], int] = getattr(import_module(f"robomill.cli.{module}"), f"run_{name}")
     return run(arguments)
 
@@ -205,8 +209,27 @@ def _identify_options(fit: argparse.ArgumentParser) -> None:
     )
 
 
+def _setup(sub: argparse.ArgumentParser) -> None:
+    _named(sub, "setup", "a set-up (.toml), its folder, a sample's name, or - for standard input", "set-up")
+    sub.add_argument(
+        "--allow-outside", action="store_true", help="let the set-up name files that are not in its own folder or below"
+    )
+
+
+def _design_options(sub: argparse.ArgumentParser) -> None:
+    _setup(sub)
+    sub.add_argument("--tolerance-mm", type=float, metavar="MM", help="of walls and floors, mm (that of the set-up)")
+    sub.add_argument(
+        "--measure",
+        default="verdict",
+        choices=("verdict", "wall", "floor", "tip"),
+        help="what has to keep it: what the verdict judges (default), one of its parts, or the tip's deviation",
+    )
+    sub.add_argument("--most", type=float, metavar="TIMES", help="how many times as stiff a joint may be made (10)")
+
+
 def _simulate_options(run: argparse.ArgumentParser) -> None:
-    _named(run, "setup", "a set-up (.toml), its folder, a sample's name, or - for standard input", "set-up")
+    _setup(run)
     _named(run, "--program", "another program than the set-up's, or points (.csv, .parquet)", "program")
     _points_options(run)
     _named(run, "--robot", "another robot than the set-up's: a name or a file", "robot")
@@ -219,6 +242,3 @@ def _simulate_options(run: argparse.ArgumentParser) -> None:
         "runs again from there; what an earlier run wrote is replaced, other files stay",
     )
     run.add_argument("--full-stl", action="store_true", help="with --out: an STL of every cell, however large")
-    run.add_argument(
-        "--allow-outside", action="store_true", help="let the set-up name files that are not in its own folder or below"
-    )

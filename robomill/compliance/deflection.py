@@ -50,12 +50,15 @@ def displacement(C: FloatArray, F: ArrayLike) -> FloatArray:
 
 
 def shares_along(delta_joint: FloatArray, delta: FloatArray) -> FloatArray:
-    """(n,) share of each part delta_joint (n, 3) in the displacement delta (3,): its component along it, over its size.
+    """(..., n) share of each part delta_joint (..., n, 3) in the displacement delta (..., 3): its component along it,
+    over its size.
 
     They sum to 1 where the parts are all that gives; zero where nothing is displaced.
     """
-    size = float(np.linalg.norm(delta)) or 1.0
-    return np.asarray(delta_joint @ delta / size**2)
+    square = np.einsum("...k,...k->...", delta, delta)
+    return np.asarray(
+        np.einsum("...nk,...k->...n", delta_joint, delta) / np.where(square > 0.0, square, 1.0)[..., None]
+    )
 
 
 def soft_direction(C: ArrayLike) -> tuple[FloatArray, FloatArray]:

@@ -40,6 +40,7 @@ class Readings(ReadOnly):
     """Places on the part: samples (q,) of the path that made them, signed errors (q,) m, lengths (q,) m along the path
     and heights (q,) m that they stand for. Walls: left of the feed +; floors: up +; ends: along the feed +. ``own``
     (q,) m is the deviation of the sample itself: where several passes come by, one of them has made the surface.
+    ``way`` (q, 3) is how far the error goes with the tip there, by feed, feed-normal and axial deviation.
     """
 
     sample: IntArray
@@ -47,6 +48,7 @@ class Readings(ReadOnly):
     length: FloatArray
     height: FloatArray
     own: FloatArray
+    way: FloatArray
 
     @property
     def worst(self) -> int:
@@ -94,7 +96,8 @@ class Gauge(ReadOnly):
 def gauge(result: Run) -> Gauge:
     """Everything that can be measured on the part that a run leaves."""
     if not (result.judged.any() and result.removes.any()):
-        nothing = Readings(np.zeros(0, dtype=np.int64), *(np.zeros(0) for _ in range(4)))
+        none = np.zeros(0)
+        nothing = Readings(none.astype(np.int64), none, none, none, none, np.zeros((0, 3)))
         return Gauge(nothing, nothing, nothing)
     at = places(result)
     walls, gone, thin = _walls(at)
@@ -154,18 +157,21 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
     keep = (told <= same) & (at.d[rims.q, 2] < rims.height) & (one | np.isnan(left))
     rims, told, left, carried = rims.only(keep), told[keep], left[keep], carried[keep]
     q = rims.q
-    own = at.d[q, 0] * _dot(rims.u, at.feed[q]) + at.d[q, 1] * _dot(rims.u, at.left_of[q])
+    ahead, aside = _dot(rims.u, at.feed[q]), _dot(rims.u, at.left_of[q])
+    own = at.d[q, 0] * ahead + at.d[q, 1] * aside
     # Beside a corner one looks along the wall of another pass: it is off by what that one has carried it, no more.
     carried = np.where(left > told, np.maximum(np.maximum(carried, own), 0.0), carried)
     error = np.where(np.abs(carried) < np.abs(left - told), carried, left - told)
     error = np.where(np.isnan(left) | steep[q] | begin[q] | end[q], own, error)
     upright = _upright(at, q, rims.height)
-    aside, up = np.hypot(at.d[:, 0], at.d[:, 1]).max(), np.abs(at.d[:, 2]).max()
-    most = aside * upright + up * np.sqrt(1.0 - upright**2)  # no wall moves further
+    level, up = np.hypot(at.d[:, 0], at.d[:, 1]).max(), np.abs(at.d[:, 2]).max()
+    slanting = np.sqrt(1.0 - upright**2)
+    most = level * upright + up * slanting  # no wall moves further
     error = np.clip(error * upright, -most, most)
     reached = at.c[q] + (rims.radius + np.nan_to_num(left) + BESIDE)[:, None] * rims.u
     lost = _nothing_stands(at, rims, (left - told > most + SAME) | ~at.stands(q, reached, rims.height))
-    readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * rims.sign)
+    way = rims.sign[:, None] * np.column_stack([ahead * upright, aside * upright, -slanting])
+    readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * rims.sign, way)
     along = rims.only(rims.length > 0.0)
     return readings, np.unique(at.i[q[lost]]), np.unique(at.i[along.q[_thin(at, along)]])
 
@@ -238,7 +244,9 @@ def _floors(at: Places) -> Readings:
     error[deepest] = np.fmin(error, at.d[q, 2])[deepest]
     q, error = q[found], error[found]
     length = at.length[q] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]
-    return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q], at.d[q, 2])
+    return Readings(
+        at.i[q], error, length, 2.0 * at.number("radius")[q], at.d[q, 2], np.tile([0.0, 0.0, 1.0], (len(q), 1))
+    )
 
 
 def _under(at: Places, flat: FloatArray, aside: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -268,7 +276,8 @@ def _ends(at: Places) -> Readings:
     way = np.concatenate([-np.ones(len(begin)), np.ones(len(end))])
     rims = _rims(at, q, way[:, None] * at.feed[q], way, np.zeros(len(q)))
     rims = rims.only(_standing(at, rims).told <= SAME)
-    return Readings(at.i[rims.q], at.d[rims.q, 0], rims.length, rims.deep, at.d[rims.q, 0])
+    way = np.tile([1.0, 0.0, 0.0], (len(rims.q), 1))
+    return Readings(at.i[rims.q], at.d[rims.q, 0], rims.length, rims.deep, at.d[rims.q, 0], way)
 
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:

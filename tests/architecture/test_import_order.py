@@ -103,7 +103,7 @@ def test_modules_can_be_read_at_a_sitting(path: Path) -> None:
 
 
 def test_import_robomill_loads_no_screen_and_no_compiler() -> None:
-    heavy = sorted({*SCREEN, "numba", "trimesh", "scipy"})
+    heavy = sorted({*SCREEN, "numba", "trimesh", "scipy", "clarabel"})
     code = f"import sys, robomill; print([m for m in {heavy!r} if m in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert found.strip() == "[]", f"import robomill also imports {found}"

@@ -52,6 +52,7 @@ UNUSED = {
     "parallel_projection": "pyvista's",
     "parallel_scale": "pyvista's",
     "clipping_range": "pyvista's",
+    "verbose": "clarabel's",
 }
 
 

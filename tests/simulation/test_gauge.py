@@ -296,17 +296,22 @@ def test_a_slot_has_as_much_wall_whatever_the_corner_of_its_cutter(corner):
 
 def test_an_area_is_lengths_times_heights_and_a_share_is_of_the_length():
     error = np.array([0.1, -0.3, 0.2, -0.2])
-    found = Readings(np.arange(4), error, np.array([1.0, 2, 4, 8]), np.array([0.5, 3, 0.25, 0.1]), error)
+    found = Readings(
+        np.arange(4), error, np.array([1.0, 2, 4, 8]), np.array([0.5, 3, 0.25, 0.1]), error, np.ones((4, 3))
+    )
     assert found.area_out(0.3) == pytest.approx((0.0, 0.5 + 6.0 + 1.0 + 0.8))
     assert found.area_out(0.15)[0] == pytest.approx(6.0 + 1.0 + 0.8)
     assert found.area_out(0.25)[0] == pytest.approx(6.0)
     assert found.share_out(0.15) == pytest.approx(14 / 15)
     assert found.share_out(0.3) == 0.0
     # A single place that stands for no length of its own is still out: a ten-thousandth, and all where nothing else is.
-    single = Readings(np.arange(2), np.array([0.1, 0.4]), np.array([5.0, 0.0]), np.ones(2), error[:2])
+    single = Readings(np.arange(2), np.array([0.1, 0.4]), np.array([5.0, 0.0]), np.ones(2), error[:2], np.ones((2, 3)))
     assert single.share_out(0.3) == pytest.approx(1e-4)
     assert single.area_out(0.3) == pytest.approx((5e-4, 5.0))
-    assert Readings(np.arange(1), np.array([0.4]), np.zeros(1), np.ones(1), error[:1]).share_out(0.3) == 1.0
+    assert (
+        Readings(np.arange(1), np.array([0.4]), np.zeros(1), np.ones(1), error[:1], np.ones((1, 3))).share_out(0.3)
+        == 1.0
+    )
     assert found.worst == 1
 
 

@@ -1,0 +1,79 @@
+"""What a remedy is to make small: the errors that the verdict judges, and how far each goes with the tip."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from robomill.arrays import FloatArray, IntArray
+from robomill.errors import SetupError
+from robomill.simulation.gauge import Readings
+from robomill.simulation.result import SimulationResult
+from robomill.values import ReadOnly
+
+Measure = Literal["verdict", "wall", "floor", "tip"]
+MEASURES: tuple[Measure, ...] = get_args(Measure)
+
+
+@dataclass(frozen=True, eq=False)
+class Judged(ReadOnly):
+    """Errors (q,) m of a run at samples (q,) of its path, each with its tolerance (q,) m. A signed error goes by
+    ``way`` (q, 3) with the feed, feed-normal and axial deviation of its sample: (q, d, 3) where it is the size of a
+    vector of d components (``error`` is (q, d) then)."""
+
+    sample: IntArray
+    error: FloatArray
+    way: FloatArray
+    tolerance: FloatArray
+
+    @property
+    def share(self) -> float:
+        """The largest of the tolerance; NaN where nothing is judged."""
+        return float(self.shares(self.error).max(initial=0.0)) if len(self.sample) else float("nan")
+
+    def shares(self, error: FloatArray) -> FloatArray:
+        """(q,) of the tolerance, of errors (q, d) m."""
+        return np.asarray(np.linalg.norm(error, axis=1) / self.tolerance)
+
+    def along(self, vectors: FloatArray) -> FloatArray:
+        """(q, d, ...) m: how far the errors go by ``vectors`` (m, 3, ...) m along feed, feed-normal and axis, one a
+        sample."""
+        return np.asarray(np.einsum("qdk,qk...->qd...", self.way, vectors[self.sample]))
+
+
+def judged(result: SimulationResult, measure: Measure = "verdict", tolerance: float | None = None) -> Judged:
+    """What ``measure`` judges of a run: "verdict" what its verdict does (walls and floors, ends and the way along the
+    feed where they have a tolerance; the tip where no wall and no floor is left), "wall", "floor", or "tip", the size
+    of the tip's deviation. ``tolerance`` (m) stands for those of the set-up. Raises SetupError for another name.
+    """
+    if measure not in MEASURES:
+        raise SetupError(f"Measure: found {measure!r:.40}, expected {', '.join(MEASURES)}.", where="measure")
+    setup, gauge = result.setup, result.gauge
+    wall = setup.tolerance if tolerance is None else tolerance
+    floor = wall if tolerance is not None or setup.floor_tolerance is None else setup.floor_tolerance
+    parts = []
+    if measure in ("verdict", "wall"):
+        parts.append(_of(gauge.walls, wall))
+    if measure in ("verdict", "floor"):
+        parts.append(_of(gauge.floors, floor))
+    if measure == "verdict" and setup.feed_tolerance is not None:
+        parts += [_of(gauge.ends, setup.feed_tolerance), _along(result, setup.feed_tolerance)]
+    if any(len(part.sample) for part in parts):
+        columns = ("sample", "error", "way", "tolerance")
+        return Judged(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))
+    i = np.flatnonzero(result.judged)
+    if measure in ("wall", "floor"):
+        i = i[:0]
+    return Judged(i, result.delta_in_cut[i], np.tile(np.eye(3), (len(i), 1, 1)), np.full(len(i), wall))
+
+
+def _of(found: Readings, tolerance: float) -> Judged:
+    return Judged(found.sample, found.error[:, None], found.way[:, None], np.full(len(found.sample), tolerance))
+
+
+def _along(result: SimulationResult, tolerance: float) -> Judged:
+    i = np.flatnonzero(result.judged)
+    way = np.tile([[1.0, 0.0, 0.0]], (len(i), 1, 1))
+    return Judged(i, result.delta_in_cut[i, :1], way, np.full(len(i), tolerance))

@@ -1,0 +1,66 @@
+"""A design of stiffer joints as a JSON-ready record in display units, and as lines for a person."""
+
+from typing import Any
+
+from robomill import __version__
+from robomill.improve.design import Design
+from robomill.report.assumed import assumed_of_setup
+from robomill.report.records import shown
+from robomill.simulation.result import SimulationResult
+
+
+def design_record(found: Design) -> dict[str, Any]:
+    """Joints and what the cut is like before and with them."""
+    robot = found.setup.robot
+    return {
+        "robomill": __version__,
+        "name": found.setup.name,
+        "robot": robot.name,
+        "compliance_set": found.before.setup.robot.compliance_set,
+        "joints": list(robot.joint_numbers),
+        "measure": found.measure,
+        "tolerance_mm": shown(found.setup.tolerance, "mm"),
+        "feasible": found.feasible,
+        "reason": found.reason or None,
+        "sentence": found.sentence,
+        "stiffness_ratio": shown(found.stiffness_ratio, "1"),
+        "C_theta": shown(found.C_theta, "1"),
+        "cost": shown(found.cost, "1"),
+        "share": shown(found.share, "1"),
+        "residual": shown(found.residual, "1"),
+        "before": deviations(found.before),
+        **deviations(found.after),
+        "verdict": found.after.verdict.level,
+        "verdict_sentence": found.after.verdict.sentence,
+        "assumed": [each.record() for each in assumed_of_setup(found.before.setup)],
+        "digest": found.digest(),
+    }
+
+
+def deviations(result: SimulationResult) -> dict[str, Any]:
+    """The largest of a run: of the tip, and of walls and floors as a gauge reads them (null where there are none)."""
+    return {
+        "max_deviation_mm": shown(result.max_deviation, "mm"),
+        "wall_mm": shown(abs(result.verdict.wall.value), "mm"),
+        "floor_mm": shown(abs(result.verdict.floor.value), "mm"),
+    }
+
+
+def design_lines(record: dict[str, Any]) -> list[str]:
+    """The answer first, then joint by joint."""
+    lines = [record["sentence"]]
+    for number, ratio, C in zip(record["joints"], record["stiffness_ratio"], record["C_theta"], strict=True):
+        lines.append(f"joint {number}   {ratio:8.3f} times as stiff   {C:.3e} rad/(N m)")
+    lines.append(f"cost      {record['cost']:.3f} (1 is one joint made twice as stiff)")
+    for name, values in (("before", record["before"]), ("then", record)):
+        told = [f"{what} {_mm(values[key])}" for what, key in NAMES]
+        lines.append(f"{name:9} {', '.join(told)}")
+    lines.append(f"verdict   {record['verdict_sentence']}")
+    return lines
+
+
+NAMES = (("tip", "max_deviation_mm"), ("wall", "wall_mm"), ("floor", "floor_mm"))
+
+
+def _mm(value: float | None) -> str:
+    return "none" if value is None else f"{value:.4f} mm"

@@ -1,0 +1,56 @@
+"""``robomill design``: its answer for people and programs, and its exit codes."""
+
+import json
+
+import pytest
+
+import robomill as rm
+from robomill.cli import main
+
+
+def asked(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, dict]:
+    code = main(["design", *words, "--json"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_the_record_tells_joints_cost_and_the_cut_before_and_then(capsys: pytest.CaptureFixture[str]) -> None:
+    code, record = asked(capsys, "paper_flute", "--tolerance-mm", "0.1")
+    assert code == 0
+    assert record["feasible"] is True
+    assert record["reason"] is None
+    robot = rm.load_robot("slavkovic_5r")
+    C_theta = [c / ratio for c, ratio in zip(robot.C_theta, record["stiffness_ratio"], strict=True)]
+    assert record["C_theta"] == pytest.approx(C_theta)
+    setup = rm.load_setup("paper_flute")
+    run = rm.simulate(setup.replace(robot=robot.replace(C_theta=record["C_theta"])))
+    assert record["max_deviation_mm"] == pytest.approx(run.max_deviation * 1e3)
+    assert max(record["wall_mm"], record["floor_mm"]) <= 0.1
+    assert record["before"]["max_deviation_mm"] == pytest.approx(rm.simulate(setup).max_deviation * 1e3)
+    assert any("lengths" in each["what"] for each in record["assumed"])
+
+
+def test_what_cannot_be_met_exits_1_and_says_which_joint(capsys: pytest.CaptureFixture[str]) -> None:
+    code, record = asked(capsys, "paper_flute", "--tolerance-mm", "0.01")
+    assert (code, record["feasible"]) == (1, False)
+    assert record["reason"].startswith("joint 3 alone leaves")
+    assert main(["design", "paper_flute", "--tolerance-mm", "0.01"]) == 1
+    assert capsys.readouterr().out.startswith("Cannot be met: joint 3 alone leaves")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("paper_flute", "--tolerance-mm", "0"),
+        ("paper_flute", "--tolerance-mm", "nan"),
+        ("paper_flute", "--most", "0.5"),
+        ("paper_flute/setup_measured_map",),
+        ("nobody",),
+    ],
+)
+def test_what_cannot_be_asked_exits_2_with_a_sentence(
+    words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["design", *words]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert len(said.err.strip().splitlines()) == 1

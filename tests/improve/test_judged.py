@@ -1,0 +1,39 @@
+"""How far the judged errors go with the tip, against runs in which it goes there."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.improve.judged import judged
+from robomill.improve.sensitivity import stiffened
+
+
+@pytest.mark.parametrize("cutter", ["flat", "ball", "chamfer"])
+def test_errors_go_with_the_tip_as_told(cutter: str) -> None:
+    """A slot, its arm 3 % stiffer in one joint: what a run finds then is what was told, but for the ends of the cut."""
+    setup = rm.load_setup("paper_flute").replace(step=2e-3)
+    if cutter != "flat":
+        angle = {"tip_angle_deg": 90.0, "tip_diameter_mm": 3.0} if cutter == "chamfer" else {}
+        setup = setup.replace(cutter=rm.Cutter(cutter, diameter_mm=8, flutes=3, **angle))
+    before = rm.simulate(setup)
+    told = judged(before)
+    for joint in range(5):
+        after = rm.simulate(setup.replace(robot=stiffened(setup.robot, np.where(np.arange(5) == joint, 1.03, 1.0))))
+        found = judged(after)
+        np.testing.assert_array_equal(found.sample, told.sample)
+        change = told.along(after.delta_in_cut - before.delta_in_cut)
+        inside = (found.sample > found.sample.min()) & (found.sample < found.sample.max())
+        some = 0.05 * np.abs(change).max()  # a nose is met at another height as it goes aside
+        np.testing.assert_allclose((found.error - told.error)[inside], change[inside], atol=max(5e-7, some))
+
+
+def test_the_verdict_judges_walls_floors_and_what_has_a_tolerance_along_the_feed() -> None:
+    setup = rm.load_setup("paper_flute").replace(step=5e-3)
+    result = rm.simulate(setup)
+    both = judged(result)
+    assert both.share == pytest.approx(result.verdict.share, rel=0.02)  # among equals the verdict names another
+    assert len(judged(result, "wall").sample) + len(judged(result, "floor").sample) == len(both.sample)
+    along = judged(rm.simulate(setup.replace(feed_tolerance=1e-6)))
+    assert along.share == pytest.approx(np.abs(result.delta_in_cut[result.judged, 0]).max() / 1e-6)
+    assert judged(result, "tip").share == pytest.approx(result.max_deviation / setup.tolerance)
+    assert judged(result, tolerance=1e-3).share == pytest.approx(both.share * 0.3)
