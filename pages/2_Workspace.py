@@ -35,7 +35,7 @@ else:
     )
 
 left, right = ui.split([1, 2.7], "page")
-with left:
+with left, st.container(key="inputs-workspace"):
     workspace.controls(robot, view)
 if known is not None:
     with right:

@@ -40,7 +40,7 @@ saved = compliance.saved_by(cut.moved.stiffer(factors), cut.line) if cut and of_
 ui.tiles(compliance.tiles(found, old, now, known, saved, view))
 
 left, right = ui.split([1, 2.7], "page")
-with left:
+with left, st.container(key="inputs-compliance"):
     compliance.controls(robot, view, found)
     compliance.what_if(robot, view)
 with right, st.container(border=True):

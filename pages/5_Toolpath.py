@@ -47,12 +47,12 @@ with left:
 
 with right:
     if source.kind == "sketch":
-        with st.container(border=True, key="toolpath.drawing"):
+        with st.container(border=True, key="toolpath-board"):
             board = ui.attempt(board_reach, setup, -source.sketch.depth, unit)
             sketch_pad(source.sketch, setup.cutter.diameter, board)
     if path is None or reach is None:
         st.stop()
-    with st.container(border=True):
+    with st.container(border=True, key="toolpath-picture"):
         path_figure(setup, reach, result, dark)
         words = details.line_words(setup, reach, result, unit)
         if words:
@@ -60,10 +60,11 @@ with right:
         stock_note(setup)
         if result is not None:
             st.page_link("pages/6_Milling.py", label="See the part that comes out", icon=":material/arrow_forward:")
-    with st.container(border=True):
-        st.markdown("**The path in figures**")
-        details.path_facts(setup, unit)
-    if source.kind == "program":
+    with st.container(key="toolpath-figures"):
         with st.container(border=True):
-            details.findings_list(view.findings(path, result))
-            details.support_table()
+            st.markdown("**The path in figures**")
+            details.path_facts(setup, unit)
+        if source.kind == "program":
+            with st.container(border=True):
+                details.findings_list(view.findings(path, result))
+                details.support_table()

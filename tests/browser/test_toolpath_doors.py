@@ -27,7 +27,7 @@ def test_a_bracket_with_slots_from_its_file_to_its_grooves(page: Any, name: str)
     page.get_by_text("5 lines within 120.0 × 80.0 mm, drawn in mm.").wait_for(timeout=30_000)
     page.locator("[class*=toolpath-drawing] img").wait_for(timeout=20_000)
     page.get_by_role("button", name="Cut along it").click()
-    page.wait_for_selector(".rm-lead:has-text('5 shapes within 120.0 × 80.0')", timeout=30_000)
+    page.wait_for_selector(".rm-lead:has-text('5 shapes, 120.0 × 80.0')", timeout=30_000)
     idle(page)
     page.get_by_text(f"{LINES + PLUNGES:.1f} mm at feed").wait_for(timeout=30_000)
 

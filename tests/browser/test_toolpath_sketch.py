@@ -97,7 +97,7 @@ def test_a_slot_is_sketched_seen_in_the_table_and_simulated(toolpath: Any, board
     page = toolpath
     page.locator(f"{PAD} [data-name=line]").click()
     drag(page, board, (-40, 10), (40, 10))
-    page.wait_for_selector(".rm-lead:has-text('1 shape within 80.0 × 0.0')", timeout=20_000)
+    page.wait_for_selector(".rm-lead:has-text('1 shape, 80.0 ')", timeout=20_000)
     see(page, ["-40, 10; 40, 10"])
     tile = page.locator(".rm-tile", has_text="Wall error").locator(".rm-value")
     slot = Sketch((Element("line", np.array([[-0.04, 0.01], [0.04, 0.01]]), 2e-3, 30e-3),))

@@ -114,8 +114,8 @@ def controls(robot: Robot, view: MapView, found: InHand) -> None:
     push.choice()
     plane.controls(robot, view)
     declared.seen("maps.component", inputs.LISTED)
-    st.markdown("**Selected point**")
     with st.container(key="maps-place"):
+        st.markdown("**Selected point**")
         declared.draw(quantities(MapView)["point"], "maps.point", found.point, lambda point: session.see(point=point))
     declared.seen("maps.common")
 
