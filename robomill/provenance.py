@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 from robomill.arguments import asking
+from robomill.arrays import of_kind
 from robomill.errors import RobomillError
 
 Kind = Literal["paper", "measured", "assumed", "user", "computed", "synthetic"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
+MADE_UP: tuple[Kind, ...] = ("assumed", "synthetic")  # what nobody has measured or stated
 Level = Literal["error", "warning", "suspicious", "ignored", "info"]
 LEVELS: tuple[Level, ...] = get_args(Level)  # the grave ones first
 MANY = 3  # numbers that a sentence names
@@ -52,6 +54,16 @@ class Provenance:
 
 # What a block counts as until someone says more.
 UNSTATED = Provenance("user", "not stated")
+# What numbers are that were given in code.
+GIVEN = Provenance("user", "given in code")
+
+
+def stated_blocks(said: Any, error: type[RobomillError]) -> dict[str, Provenance]:
+    """Where blocks of numbers come from, as a person gives it; ``error`` for what says nothing of a source."""
+    of_kind(said, Mapping, "provenance", "a mapping of blocks to rm.Provenance", error)
+    for each in said.values():
+        of_kind(each, Provenance, "provenance", 'rm.Provenance("measured", "where from")', error)
+    return dict(said)
 
 
 @asking

@@ -1,7 +1,6 @@
 """``robomill simulate``: run a set-up, say the verdict, and write the result to a folder from which it runs again."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,6 @@ SETUP, RECORD, SOLID = "setup.toml", "result.json", "machined.stl"
 TABLES = ("deviation.csv", "sections.csv")
 PICTURES = ("deviation.png", "section.png")
 NAMES = (SETUP, RECORD, *TABLES, SOLID, *PICTURES)
-OF_ROBOT = ("geometry", "lengths", "limits", "base", "tool", "compliance")
 
 
 def run_simulate(arguments: Any) -> int:
@@ -42,19 +40,15 @@ def _asked(arguments: Any) -> Any:
     from robomill.provenance import Provenance
 
     setup = given.setup(arguments.setup, arguments.allow_outside)
-    said = dict(setup.provenance)
     changes: dict[str, Any] = {}
+    said = {}
     if arguments.program:
         changes["source"] = given.source(arguments.program, arguments.unit, arguments.feed)
         said["path"] = Provenance("user", f"{changes['source'].kind} {changes['source'].name}")
-        force = said.get("force", setup.force.provenance)
-        if force.kind in ("paper", "measured"):  # on one cut; on another it is an assumption
-            said["force"] = replace(force.carried(setup.name), carried_from="")
     if arguments.robot:
         if setup.measured_map is not None:
             raise SetupError("--robot: the set-up's compliances were measured on its own robot ([measured_map]).")
         changes["robot"] = given.robot(arguments.robot)
-        said = {block: each for block, each in said.items() if block.partition(".")[0] not in OF_ROBOT}
     if arguments.tol is not None:
         changes |= {"tolerance_mm": arguments.tol, "floor_tolerance": None}
         said["tolerance"] = Provenance("user", "--tol")

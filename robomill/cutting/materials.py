@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 from robomill.cutting.edge import EdgeTerm
 from robomill.errors import CuttingError
-from robomill.provenance import Provenance
+from robomill.provenance import GIVEN, Provenance
 from robomill.quantities import quantities, quantity, settle
 from robomill.spelled import Replaceable
 from robomill.units import to_si
@@ -109,7 +109,14 @@ class Material(Replaceable):
         """The row with the coefficients that its source does not give as those of another one: so it widens no range of
         a force that it does not know. Itself where it gives them all."""
         missing = {name: getattr(other, name) for name in self.missing if getattr(other, name) is not None}
-        return self.replace(**missing) if missing else self
+        return self.replace(**missing, provenance=self.provenance) if missing else self
+
+    def _taken(self, changes: dict[str, Any]) -> dict[str, Any]:
+        """Coefficients that were changed are of who changed them."""
+        numbers = [name for name in quantities(type(self)) if name in changes]
+        if "provenance" not in changes and any(changes[name] != getattr(self, name) for name in numbers):
+            changes["provenance"] = GIVEN
+        return changes
 
 
 def alternatives(material: Material, materials: Iterable[Material]) -> tuple[Material, ...]:

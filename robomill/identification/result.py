@@ -271,10 +271,13 @@ class IdentificationResult(Tabled):
         source = f"identified from {len(self.row)} load tests, model {self.model}"
         if kept:
             source += f"; joint {', '.join(kept)} not seen, value kept from {robot.compliance_set}"
-        provenance = {**robot.provenance, IDENTIFIED: Provenance(self.kind, source)}
-        changed = robot.replace(C_theta=np.where(seen, self.C_theta, robot.C_theta))
-        sets = {**robot.compliance_sets, "identified": changed.C_theta_all}
-        return changed.replace(compliance_sets=sets, compliance_set="identified", provenance=provenance)
+        C_theta = robot.replace(C_theta=np.where(seen, self.C_theta, robot.C_theta)).C_theta_all
+        return robot.replace(
+            C_theta_all=C_theta,
+            compliance_sets={**robot.compliance_sets, "identified": C_theta},
+            compliance_set="identified",
+            provenance={IDENTIFIED: Provenance(self.kind, source)},
+        )
 
 
 def _place(spring: Spring) -> tuple[str, int]:

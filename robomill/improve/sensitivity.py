@@ -11,9 +11,12 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, IntArray, as_floats
 from robomill.errors import KinematicsError
+from robomill.provenance import GIVEN, MADE_UP, Provenance
 from robomill.robot.model import Robot
+from robomill.robot.sources import COMPLIANCE, block_in_force
 
 STIFFER = 1.1  # the usual question: 10 % stiffer
+MADE_STIFFER = "; joints made stiffer"
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +47,15 @@ def mean_known(gain: FloatArray) -> FloatArray:
 
 
 def stiffened(robot: Robot, factors: ArrayLike) -> Robot:
-    """The robot with each free joint's stiffness multiplied by ``factors`` (n,) > 0; one number serves all joints."""
-    return robot.replace(C_theta=robot.C_theta / np.broadcast_to(_above_zero(factors, ()), (robot.n,)))
+    """The robot with each free joint's stiffness multiplied by ``factors`` (n,) > 0; one number serves all.
+
+    What was assumed stays so.
+    """
+    C_theta = robot.C_theta / np.broadcast_to(_above_zero(factors, ()), (robot.n,))
+    found = robot.provenance.get(block_in_force(robot), GIVEN)
+    source = f"{found.source.removesuffix(MADE_STIFFER)}{MADE_STIFFER}"
+    said = Provenance(found.kind if found.kind in MADE_UP else "user", source)
+    return robot.replace(C_theta=C_theta, provenance={COMPLIANCE: said})
 
 
 def scaled_shares(shares: ArrayLike, factors: ArrayLike, axis: int) -> FloatArray:

@@ -6,7 +6,7 @@ from typing import Any
 
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ToolTable
-from robomill.provenance import Finding, Provenance
+from robomill.provenance import MADE_UP, Finding, Provenance
 from robomill.quantities import quantities
 from robomill.report.sources import MODEL, Source, robot_lengths, robot_sources, sources
 from robomill.robot.model import Robot
@@ -14,7 +14,6 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.units import format_many
 
-MADE_UP = ("assumed", "synthetic")
 MANY = 4  # lengths that are called by their symbols
 
 

@@ -30,6 +30,23 @@ def column(value: Any, declared: Quantity, rows: int | None, where: str, slides:
     return array
 
 
+def flags(value: Any, rows: int, where: str) -> BoolArray:
+    """(rows,) True where a joint slides; one word serves all."""
+    found = np.asarray(value, dtype=object)
+    if found.shape not in ((), (rows,)):
+        raise RobotError(
+            f"{where}: prismatic: expected True or False for each of {rows} joints, found {value!r:.60}; "
+            "True where the joint slides."
+        )
+    for i, each in enumerate(found.ravel()):
+        if not isinstance(each, bool | np.bool_) and each not in (0, 1):
+            joint = f", joint {i + 1}" if found.ndim else ""
+            raise RobotError(
+                f"{where}: prismatic{joint}: expected True where it slides or False where it turns, found {each!r:.40}."
+            )
+    return np.array(np.broadcast_to(found.astype(bool), (rows,)))
+
+
 def _first_non_number(value: Any) -> str:
     for item in value if isinstance(value, list | tuple | np.ndarray) else [value]:
         try:

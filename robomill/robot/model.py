@@ -16,15 +16,15 @@ from robomill.arrays import Arrays, BoolArray, FloatArray, Numbers, Rows, frozen
 from robomill.errors import RobotError
 from robomill.frames import Columns
 from robomill.lazy import cached_property
-from robomill.provenance import UNSTATED, Provenance
+from robomill.provenance import UNSTATED, Provenance, stated_blocks
 from robomill.quantities import Quantity, quantities, quantity
 from robomill.robot import checks
 from robomill.robot.dh import Chain, build_chain
+from robomill.robot.sources import COMPLIANCE, USER_SET, changed_sources, of_set
 from robomill.spelled import in_si, refuse_slip
 from robomill.units import format_count, from_si
 from robomill.values import Tabled
 
-USER_SET = "user"
 SOFTEST = 1e-2  # rad/(N m), m/N: no joint gives more: was it meant in 1e-7 of it?
 LONGEST = 100.0  # m: no link is longer: was it meant in mm?
 Limits = Arrays | Sequence[float | Sequence[float] | Arrays | None]
@@ -92,17 +92,16 @@ class Robot(Tabled):
         for key in ("alpha", "a", "d", "theta_offset", "sign"):
             put(key, frozen(checks.column(getattr(self, key), declared[key], rows, where)))
         checks.signs(self.sign, where)
-        prismatic = np.zeros(rows, bool) if self.prismatic is None else np.asarray(self.prismatic, dtype=bool)
-        if prismatic.shape != (rows,):
-            raise RobotError(f"{where}: prismatic: expected {rows} flags, one a joint, found shape {prismatic.shape}.")
-        put("prismatic", frozen(prismatic, bool))
+        put("prismatic", frozen(checks.flags(False if self.prismatic is None else self.prismatic, rows, where), bool))
         put("T_base", frozen(np.eye(4) if self.T_base is None else checks.frame(self.T_base, "the base frame", where)))
         put("T_tool", frozen(np.eye(4) if self.T_tool is None else checks.frame(self.T_tool, "the tool frame", where)))
         self._check_limits(rows, where)
         self._check_blocked(rows, where)
         self._check_compliance(rows, where)
-        blocks = ["geometry", "limits", "base", "tool", *(f"compliance.{key}" for key in self.compliance_sets)]
-        put("provenance", MappingProxyType(dict.fromkeys(blocks, UNSTATED) | dict(self.provenance)))
+        blocks = ["geometry", "limits", "base", "tool", *map(of_set, self.compliance_sets)]
+        put(
+            "provenance", MappingProxyType(dict.fromkeys(blocks, UNSTATED) | stated_blocks(self.provenance, RobotError))
+        )
 
     def _check_limits(self, rows: int, where: str) -> None:
         try:
@@ -139,6 +138,11 @@ class Robot(Tabled):
         if self.compliance_set != USER_SET and self.compliance_set not in sets:
             known = ", ".join(sets) or "none"
             raise RobotError(f"{where}: compliance set {self.compliance_set!r} is not among its sets ({known}).")
+        if not np.array_equal(C_theta, sets.get(self.compliance_set, C_theta)):
+            raise RobotError(
+                f"{where}: compliance set {self.compliance_set!r} has other numbers than are given; leave "
+                "compliance_set out, or give these numbers in compliance_sets by a name of their own."
+            )
 
     @classmethod
     @asked
@@ -315,7 +319,7 @@ class Robot(Tabled):
     @property
     def assumes_compliances(self) -> bool:
         """Whether nobody has given the compliances in force: those of a URDF, or of a table without any."""
-        said = self.provenance.get("compliance")
+        said = self.provenance.get(COMPLIANCE)
         return self.compliance_set == USER_SET and said is not None and said.kind == "assumed"
 
     # ---- change is replacement ------------------------------------------------------------------------------------
@@ -325,6 +329,9 @@ class Robot(Tabled):
         Compliances (``C_theta``, ``k_theta_kNm_per_rad`` ...) and limits are accepted with n entries (free joints) or
         with all rows. New compliances that are not given with a ``compliance_set`` are the user's: the set in force
         becomes "user". ``tool_xyz_mm`` moves the tip and keeps the axes of the tool.
+
+        Where changed numbers come from is that they were given in code, unless ``provenance`` says more of their block:
+        geometry, lengths, limits, base, tool, compliance, or compliance. and the name of a set.
         """
         from robomill.robot.table import COLUMN_UNITS, OTHERS, changed_fields
 
@@ -339,9 +346,13 @@ class Robot(Tabled):
                 changes[full] = self._filled(changes.pop(short), getattr(self, full))
         if "C_theta_all" in changes and "compliance_set" not in changes:
             changes["compliance_set"] = USER_SET
-            if self.assumes_compliances and "provenance" not in changes:
-                changes["provenance"] = {**self.provenance, "compliance": Provenance("user", "given by hand")}
-        return Robot(**{**{key: getattr(self, key) for key in known}, **changes})
+        said = stated_blocks(changes.get("provenance", {}), RobotError)
+        other = Robot(**{**{key: getattr(self, key) for key in known}, **changes, "provenance": self.provenance})
+        found = {**other.provenance, **changed_sources(self, other), **said}
+        if other.compliance_set != USER_SET:
+            found.pop(COMPLIANCE, None)  # of numbers that are in force no more
+        object.__setattr__(other, "provenance", MappingProxyType(found))
+        return other
 
     def _filled(self, value: Any, current: FloatArray) -> Any:
         if np.ndim(value) == 0 and not isinstance(value, str) and value is not None:

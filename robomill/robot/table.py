@@ -8,14 +8,14 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import RobotError
-from robomill.provenance import Provenance
+from robomill.provenance import GIVEN, Provenance
 from robomill.quantities import Quantity
+from robomill.robot import checks
 from robomill.spelled import one_of, refuse_slip
 from robomill.units import format_plain, from_si, to_si
 
 COLUMN_UNITS = {"alpha": "_deg", "a": "_mm", "d": "_mm", "theta_offset": "_deg"}
 COLUMNS = tuple(COLUMN_UNITS)
-HERE = Provenance("user", "given in code")
 ASSUMED_C = 1e-6  # rad/(N m), m/N: where nobody has given one
 SOFTEST, STIFFEST = 1e-3, 1e-9  # rad/(N m): no joint of a machine gives more, or less without being called rigid
 # How compliances may be given: by their names, in which unit, and whether the number is a stiffness.
@@ -64,9 +64,7 @@ def robot_fields(given: Mapping[str, Any], declared: Mapping[str, Quantity]) -> 
     columns = {keys[name]: value for name, value in table.items()}
     rows = _rows(columns | {key: given[key] for key in ("prismatic", "sign", *GIVES)}, who)
     table = {name: np.array(np.broadcast_to(0.0 if value is None else value, (rows,))) for name, value in table.items()}
-    slides = np.zeros(rows, dtype=bool)
-    if given["prismatic"] is not None:
-        slides = np.array(np.broadcast_to(np.asarray(given["prismatic"], dtype=bool), (rows,)))
+    slides = checks.flags(False if given["prismatic"] is None else given["prismatic"], rows, who)
     limits, limits_said = _limits(given, slides, who)
     C_theta, C_said = _compliances(given, slides, who)
     frames = {part: _frame(given, part, who) for part in FRAME}
@@ -83,7 +81,7 @@ def robot_fields(given: Mapping[str, Any], declared: Mapping[str, Quantity]) -> 
         "T_base": frames["base"],
         "T_tool": frames["tool"],
         "provenance": {
-            **dict.fromkeys(("geometry", "base", "tool"), HERE),
+            **dict.fromkeys(("geometry", "base", "tool"), GIVEN),
             "limits": limits_said,
             "compliance": C_said,
         },
@@ -210,7 +208,7 @@ def _limits(
 ) -> tuple[FloatArray, Provenance]:
     """(rows, 2) in SI, and where they come from; what is left out is as ``before``."""
     by_unit = {"1": given["limits"], "deg": given["limits_deg"], "mm": given["limits_mm"]}
-    found, said = np.full((len(slides), 2), np.nan), HERE
+    found, said = np.full((len(slides), 2), np.nan), GIVEN
     for unit, value in by_unit.items():
         for i, pair in enumerate(_pairs(value, len(slides), who)):
             if pair is None or (unit == "deg" and slides[i]) or (unit == "mm" and not slides[i]):
@@ -227,7 +225,9 @@ def _limits(
         return np.where(missing[:, None], before, found), said
     if (missing & slides).any():
         joint = int(np.argmax(missing & slides)) + 1
-        raise RobotError(f"{who}: joint {joint} slides and has no limits; give limits_mm=[..., [lower, upper], ...].")
+        mine = ", ".join("[lower, upper]" if slide else "None" for slide in slides)
+        beside = "" if slides.all() else ", and limits_deg of those that turn"
+        raise RobotError(f"{who}: joint {joint} slides and has no limits in mm; give limits_mm=[{mine}]{beside}.")
     if missing.any():
         found[missing] = (-np.pi, np.pi)
         said = Provenance("assumed", "joints without limits turn by 180 degrees either way")
@@ -310,7 +310,7 @@ def _compliances(given: Mapping[str, Any], slides: BoolArray, who: str) -> tuple
             f"another unit? Compliances go by C_theta (SI) or C_theta_1e_7_rad_per_Nm, stiffnesses by "
             f"k_theta_Nm_per_rad or k_theta_kNm_per_rad; a rigid joint has compliance 0, stiffness inf."
         )
-    return C_theta, HERE
+    return C_theta, GIVEN
 
 
 def _frame(given: Mapping[str, Any], part: str, who: str) -> Any:

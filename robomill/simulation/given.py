@@ -15,9 +15,10 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
-from robomill.provenance import Provenance
-from robomill.quantities import Quantity, quantities
+from robomill.provenance import Provenance, stated_blocks
+from robomill.quantities import Quantity
 from robomill.robot.model import Robot, check_robot
+from robomill.simulation.sources import AROUND, unstated
 from robomill.spelled import one_of
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
@@ -109,9 +110,7 @@ def check_kinds(setup: Any) -> None:
     of_kind(setup.measured_map, (MeasuredField, NoneType), "measured_map", "one that was read, or None", SetupError)
     for name in ("name", "description"):
         of_kind(getattr(setup, name), str, name, "a text", SetupError)
-    of_kind(setup.provenance, Mapping, "provenance", "a mapping of blocks to rm.Provenance", SetupError)
-    for said in setup.provenance.values():
-        of_kind(said, Provenance, "provenance", 'rm.Provenance("measured", "where from")', SetupError)
+    stated_blocks(setup.provenance, SetupError)
     if isinstance(setup.springs, Spring):
         object.__setattr__(setup, "springs", (setup.springs,))
     of_kind(setup.springs, (tuple, list), "springs", "a list of rm.ToolBending and the like", SetupError)
@@ -135,11 +134,9 @@ def stated(given: Mapping[str, Any]) -> dict[str, Any]:
     if "tolerance" not in found:
         said["tolerance"] = Provenance("assumed", "nobody has stated one")
     if found.get("stock") is None:
-        said["stock"] = Provenance("computed", "a block around what the path cuts")
-    cutter = found.get("cutter")
-    if isinstance(cutter, Cutter) and cutter.unstated:
-        unstated = (quantities(Cutter)[name] for name in cutter.unstated)
-        numbers = [f"{each.label.lower()} {each.short(getattr(cutter, each.name))}" for each in unstated]
-        said["cutter"] = Provenance("assumed", f"nobody has stated {' and '.join(numbers)}")
+        said["stock"] = AROUND
+    cutter = unstated(found.get("cutter"))
+    if cutter is not None:
+        said["cutter"] = cutter
     found["provenance"] = {**said, **(found.get("provenance") or {})}
     return found

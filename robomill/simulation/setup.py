@@ -19,10 +19,11 @@ from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
 from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.lazy import cached_property
-from robomill.provenance import Provenance
+from robomill.provenance import Provenance, stated_blocks
 from robomill.quantities import quantity, settle, switch, told
 from robomill.robot.model import Robot
 from robomill.simulation import given
+from robomill.simulation.sources import changed_sources
 from robomill.spelled import Replaceable, in_units
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
@@ -61,7 +62,8 @@ class SimulationSetup(Replaceable, Value):
     measured_map  compliance measured on a grid, used instead of joints and springs (whose shares are still shown)
     links       link masses for the sag under gravity (None: not computed); ``add_sag`` True adds it to the
                 deviation, False only shows it, since parts are zeroed with the arm sagged
-    provenance  block name -> where its numbers come from
+    provenance  block name -> where its numbers come from: path, part, cutter, force, stock, tools, tolerance. Of what
+                ``replace`` changes it says that it was given in code, unless more is said there of that block
 
     Raises
     ------
@@ -213,7 +215,9 @@ class SimulationSetup(Replaceable, Value):
             raise SetupError("Coupling: the force must follow the engagement; switch engagement on or coupling off.")
 
     def _taken(self, changes: dict[str, Any]) -> dict[str, Any]:
-        return given.taken(changes, self.T_MW, self.robot)
+        found = given.taken(changes, self.T_MW, self.robot)
+        said = stated_blocks(found.get("provenance", {}), SetupError)
+        return {**found, "provenance": {**changed_sources(self, found), **said}}
 
     def _take_spin(self) -> None:
         """An angle, or one of the rules."""

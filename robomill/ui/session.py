@@ -14,14 +14,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, cast
 
-import numpy as np
 import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.identification.knowledge import Knowledge
-from robomill.provenance import Provenance
+from robomill.provenance import GIVEN, Provenance
 from robomill.robot.model import Robot
+from robomill.robot.sources import changed_blocks
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.sources import changed_sources
 from robomill.ui.bench import Bench
 from robomill.ui.closing import while_open
 from robomill.ui.commons import weight
@@ -29,23 +30,6 @@ from robomill.ui.project import DEFAULT_PRESET, MapView, Project, preset_setup, 
 
 KEY = "robomill"
 EDITED = Provenance("user", "entered in the app")
-# Blocks of a set-up whose numbers become the user's own when their field is changed.
-BLOCKS = {
-    "source": "path",
-    "T_MW": "part",
-    "cutter": "cutter",
-    "force": "force",
-    "stock": "stock",
-    "tools": "tools",
-    **dict.fromkeys(("tolerance", "floor_tolerance", "feed_tolerance"), "tolerance"),
-}
-ROBOT_BLOCKS = {
-    "geometry": ("alpha", "a", "d", "theta_offset", "sign"),
-    "lengths": ("a", "d"),
-    "limits": ("limits_all",),
-    "tool": ("T_tool",),
-    "base": ("T_base",),
-}
 MAX_HISTORY = 60
 MAX_HISTORY_BYTES = 32 * 2**20  # of a session; the project before the last change stays, however heavy
 HEAVY = 2**20  # bytes of a project whose history is weighed: weighing takes as long as a history is deep
@@ -164,24 +148,20 @@ def change(*, label: str = "", from_editor: bool = False, **fields: Any) -> None
     """
     held = store()
     given = held.project.setup
-    marked = dict(given.provenance) | {BLOCKS[name]: EDITED for name in fields if name in BLOCKS}
     if isinstance(fields.get("robot"), Robot):
         fields["robot"] = _marked(given.robot, fields["robot"])
-    new = held.project.replace(setup=given.replace(**{"provenance": marked, **fields}))
+    said = changed_sources(given, fields, EDITED) | fields.get("provenance", {})
+    new = held.project.replace(setup=given.replace(**{**fields, "provenance": said}))
     if new.digest() != held.project.digest():
         replace(new, label, from_editor)
 
 
 def _marked(old: Robot, new: Robot) -> Robot:
-    """``new`` with the blocks that were changed by hand said to be the user's own."""
-    if old.name != new.name or dict(old.provenance) != dict(new.provenance):
+    """``new`` with what was changed in ``old`` said to be entered here, where nothing more is known of it."""
+    if old.name != new.name:
         return new
-    changed = {
-        block: EDITED
-        for block, names in ROBOT_BLOCKS.items()
-        if block in new.provenance and not all(np.array_equal(getattr(old, n), getattr(new, n)) for n in names)
-    }
-    return new.replace(provenance={**new.provenance, **changed}) if changed else new
+    here = {block: EDITED for block in changed_blocks(old, new) if new.provenance.get(block) == GIVEN}
+    return new.replace(provenance=here) if here else new
 
 
 def replace(new: Project, label: str = "", from_editor: bool = False) -> None:

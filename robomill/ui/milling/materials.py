@@ -150,7 +150,7 @@ def with_coefficients(material: Material, frame: pd.DataFrame) -> Material:
         for name, value in zip(frame["coefficient"], frame["value"], strict=True)
     }
     if material.provenance.kind == "user":
-        return material.replace(**values)
+        return material.replace(**values, provenance=material.provenance)
     return material.replace(
         **values,
         name=f"{material.name}_edited",

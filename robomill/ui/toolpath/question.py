@@ -15,6 +15,7 @@ from robomill.io.materials import sample_materials
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.sources import changed_sources
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import declared, inputs, pieces, session, typed
@@ -108,11 +109,13 @@ def _answer(path: Toolpath | None) -> None:
     changed |= {"tolerance": found["tolerance"], "floor_tolerance": None, "feed_tolerance": None}
     if "n_s" in found and setup.source.kind == "program":
         changed["source"] = replace(setup.source, n_s=found["n_s"])
-    _accept(setup.replace(**changed))
+    _accept(setup, **changed)
 
 
-def _accept(setup: SimulationSetup) -> None:
-    """``setup`` with its numbers said by a person to be those of this program."""
+def _accept(setup: SimulationSetup, **changed: Any) -> None:
+    """``setup``, with what was ``changed``, and its numbers said by a person to be those of this program."""
+    numbers = {name: value for name, value in changed.items() if name != "source"}
     said = {name: SAID if each.carried_from else each for name, each in setup.provenance.items()}
-    session.replace(session.project().replace(setup=setup.replace(provenance=said)))
+    said = changed_sources(setup, numbers, SAID) | {name: each for name, each in said.items() if each is SAID}
+    session.replace(session.project().replace(setup=setup.replace(**{**changed, "provenance": said})))
     forget()

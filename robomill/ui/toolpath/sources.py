@@ -10,7 +10,7 @@ import numpy as np
 from robomill.arrays import digest
 from robomill.cutting.tool_table import ToolTable
 from robomill.errors import GCodeError, RobomillError, ToolpathError
-from robomill.provenance import Provenance
+from robomill.provenance import UNSTATED, Provenance
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
@@ -41,12 +41,7 @@ def kind_switch() -> None:
 
 def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) -> None:
     """Make ``source`` the project's path; ``words`` say where it comes from. Raises its refusal."""
-    setup = session.project().setup
-    provenance = {**setup.provenance, **more.pop("provenance", {}), "path": Provenance("user", words)}
-    force = provenance.get("force")
-    if force is not None and force.kind in ("paper", "measured"):
-        # What was measured on one cut is an assumption on another.
-        provenance["force"] = replace(force.carried(setup.name), carried_from="")
+    provenance = {"path": Provenance("user", words), **more.pop("provenance", {})}
     named = source.kind in ("program", "points") or source.name != "sketch"
     more.setdefault("name", PurePath(source.name).stem if named and source.kind != "lines" else "Drawn here")
     session.change(source=source, provenance=provenance, from_editor=from_editor, **more)
@@ -120,9 +115,9 @@ def _put_back(earlier: SimulationSetup, became: SimulationSetup) -> None:
     """The path of ``earlier``, with what went with it where that is still as ``became`` had it."""
     setup = session.project().setup
     blocks = ["path", *(name for name in ("force", "stock") if _same(name, setup, became))]
-    said = {name: earlier.provenance[name] for name in blocks if name in earlier.provenance}
+    said = {name: earlier.provenance.get(name, UNSTATED) for name in blocks}
     stock: dict[str, Any] = {"stock": earlier.stock} if "stock" in blocks else {}
-    session.change(source=earlier.source, name=earlier.name, provenance={**setup.provenance, **said}, **stock)
+    session.change(source=earlier.source, name=earlier.name, provenance=said, **stock)
     program_view.select_line(0)
 
 
