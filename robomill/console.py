@@ -77,7 +77,9 @@ def shows_all(stream: Any) -> bool:
 
 
 def harmless(text: str) -> str:
-    """``text`` without what would steer a terminal."""
+    """``text`` without what would steer a terminal, and with the letters of names that the system gave as bytes."""
+    with suppress(UnicodeEncodeError):
+        text = text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
     return text.translate(STEERING)
 
 

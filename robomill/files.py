@@ -20,6 +20,7 @@ class FileKind:
     expected: str
     most_MB: int
     any_code: bool = False  # text may be in the code page of western Windows, as Excel saves it
+    smaller: str = ""  # what makes one smaller
 
     @property
     def most(self) -> int:
@@ -27,15 +28,15 @@ class FileKind:
         return self.most_MB * 1_000_000
 
 
-PROGRAM = FileKind("a program in text (G-code or APT)", 200)
+PROGRAM = FileKind("a program in text (G-code or APT)", 200, smaller="; split the program")
 SETUP = FileKind("a set-up (.toml)", 25)
 ROBOT = FileKind("a robot (.toml or .urdf)", 5)
 MATERIAL = FileKind("a material row (.toml)", 1)
 TOOLS = FileKind("a tool table (.tbl, .csv or .toml)", 2, any_code=True)
-TABLE = FileKind("a CSV table", 60, any_code=True)
-POINTS = FileKind("points of a path (.csv or .parquet)", 60, any_code=True)
+TABLE = FileKind("a CSV table", 60, any_code=True, smaller="; split the table")
+POINTS = FileKind("points of a path (.csv or .parquet)", 60, any_code=True, smaller="; split the table")
 DRAWING = FileKind("a drawing (.dxf or .svg)", 10)
-STL = FileKind("a stock as STL, OBJ, PLY or 3MF", 80)
+STL = FileKind("a stock as STL, OBJ, PLY or 3MF", 80, smaller="; coarsen its mesh")
 
 
 def read_file(
@@ -80,9 +81,7 @@ def check_size(size: int, kind: FileKind, error: type[RobomillError], place: str
     """Refuse what is larger than its kind may be."""
     if size > kind.most:
         found = f"{size / 1e6:,.1f}" if size > kind.most + 1 else f"more than {kind.most_MB}"
-        raise error(
-            f"{place}: found {found} MB, expected {kind.expected} of at most {kind.most_MB} MB; split the file."
-        )
+        raise error(f"{place}: found {found} MB, expected {kind.expected} of at most {kind.most_MB} MB{kind.smaller}.")
 
 
 def shown_place(path: str | Path) -> str:

@@ -7,6 +7,7 @@ that no record has, stop the build. ``*`` stands for any name.
 from __future__ import annotations
 
 COMMON = {
+    "robomill": "The version that computed it.",
     "robot": "The name of the robot.",
     "compliance_set": "The set of joint compliances in force.",
     "joints": "The numbers of its free joints, as its table counts them; lists by joint are in this order.",
@@ -125,7 +126,6 @@ WORDS: dict[str, dict[str, str]] = {
         "next[].*": "With `--sheet`: what the tests to do next would narrow, and by which share (`gain`).",
     },
     "simulate": {
-        "robomill": "The version that computed it.",
         "name": "What the set-up is called.",
         "program": "Its program.",
         "max_deviation_mm": "The largest distance of the tip from its path.",

@@ -16,13 +16,14 @@ def run_identify(arguments: Any) -> int:
     from robomill.io.load_test_sheets import measuring_sheet
     from robomill.io.results import write_file
     from robomill.io.robots import robot_to_toml
-    from robomill.report.assumed import assumed_of_robot, assumed_of_tests
     from robomill.report.plain import identification_lines
+    from robomill.simulation.assumptions import assumed_of_robot, assumed_of_tests
 
     robot = given.robot(arguments.robot)
     tests, called = given.load_tests(arguments.tests, robot)
     result = identify(robot, tests, *_asked(arguments))
     record, findings = identification_record(robot, tests, result)
+    record = {"robot": robot.name, **record}
     record["findings"] = [finding.record() for finding in findings]
     record["springs"] = [kind_to_table(spring) for spring in result.springs(robot)]
     found = [*assumed_of_robot(robot, compliances=False), *assumed_of_tests(tests)]

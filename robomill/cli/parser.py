@@ -5,9 +5,12 @@ import textwrap
 from collections.abc import Callable
 from functools import partial
 from importlib import import_module
+from shutil import get_terminal_size
 from typing import Any
 
 from robomill import __version__
+from robomill.cli import completers
+from robomill.cli.completers import offered
 from robomill.cli.options import whole
 from robomill.cli.serve import serve_options
 
@@ -56,7 +59,7 @@ def make_parser() -> argparse.ArgumentParser:
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
 
     def verb(name: str, text: str, **more: Any) -> argparse.ArgumentParser:
-        said = textwrap.fill(f"{text} {NOTES.get(name, '')}", 79)
+        said = textwrap.fill(f"{text} {NOTES.get(name, '')}", max(11, min(79, get_terminal_size().columns - 2)))
         sub = verbs.add_parser(
             name,
             help=text,
@@ -104,19 +107,17 @@ def _run(name: str, arguments: Any) -> int:
 
 def _named(sub: argparse.ArgumentParser, name: str, text: str, kind: str, **more: Any) -> None:
     """An argument that takes a file, a sample's name, or - for standard input."""
-    action = sub.add_argument(name, help=text, **more)
-    action.completer = partial(_completed, kind)  # type: ignore[attr-defined]
+    offered(sub.add_argument(name, help=text, **more), completers.samples, kind)
 
 
-def _completed(kind: str, prefix: str, **_: Any) -> list[str]:
-    """Names of samples of a ``kind`` and files that begin with ``prefix``."""
-    from argcomplete.completers import FilesCompleter
+def _worded(sub: argparse.ArgumentParser, name: str, where: str, *more: str, **given: Any) -> None:
+    """An option that takes one of the words ``where`` ("module.NAME") and ``more``; what reads it refuses others."""
+    module, _, words = where.rpartition(".")
+    offered(sub.add_argument(name, **given), completers.words, module, words, more)
 
-    from robomill.io.samples import samples
 
-    names = [sample.name for sample in samples() if kind in (sample.kind, "any")]
-    files = [] if kind == "any" else FilesCompleter()(prefix)
-    return [*(name for name in dict.fromkeys(names) if name.startswith(prefix)), *files]
+def _compliance_set(sub: argparse.ArgumentParser, text: str = "one of the robot's compliance sets") -> None:
+    offered(sub.add_argument("--compliance-set", help=text), completers.compliance_sets)
 
 
 def _robot(sub: argparse.ArgumentParser, name: str = "robot") -> None:
@@ -126,7 +127,7 @@ def _robot(sub: argparse.ArgumentParser, name: str = "robot") -> None:
 def _pose_options(pose: argparse.ArgumentParser) -> None:
     _robot(pose)
     pose.add_argument("--theta-deg", required=True, help="joint coordinates, comma separated (mm for sliding joints)")
-    pose.add_argument("--compliance-set", help="one of the robot's compliance sets")
+    _compliance_set(pose)
 
 
 def _gcode_options(gcode: argparse.ArgumentParser) -> None:
@@ -135,7 +136,8 @@ def _gcode_options(gcode: argparse.ArgumentParser) -> None:
     gcode.add_argument("--tools", help="tool table: LinuxCNC's .tbl, CSV tool,diameter_mm,length_mm,..., TOML")
     gcode.add_argument("--tools-unit", default="mm", choices=("mm", "in"), help="unit of a .tbl, which does not say it")
     gcode.add_argument("--moves", metavar="OUT.jsonl", help="write the canonical moves, one a line")
-    gcode.add_argument("--dialect", default="auto", help="auto, linuxcnc, fanuc, grbl, sinumerik or heidenhain")
+    told = "auto, linuxcnc, fanuc, grbl, sinumerik or heidenhain"
+    _worded(gcode, "--dialect", "toolpath.gcode.dialects.NAMES", "auto", default="auto", help=told)
 
 
 def _points_options(sub: argparse.ArgumentParser) -> None:
@@ -173,21 +175,23 @@ def _drawing_options(sub: argparse.ArgumentParser) -> None:
 
 def _map_options(grid: argparse.ArgumentParser) -> None:
     _robot(grid)
-    grid.add_argument("--quantity", action="append", required=True, help="C_yy, det_J, ...; several with commas")
+    wanted = grid.add_argument(
+        "--quantity", action="append", required=True, help="C_yy, det_J, ...; several with commas"
+    )
+    offered(wanted, completers.quantities)
     for axis in "xyz":
         grid.add_argument(f"--{axis}", required=True, metavar="LOW:HIGH:STEP", help="mm, or one number")
     grid.add_argument("--a-deg", type=float, default=0.0, help="tool tilt A")
     grid.add_argument("--b-deg", type=float, default=0.0, help="tool tilt B")
-    grid.add_argument("--compliance-set", help="one of the robot's compliance sets")
+    _compliance_set(grid)
     grid.add_argument("--out", help="write the map there: .csv, .parquet or .vti; an older file is replaced")
 
 
 def _identify_options(fit: argparse.ArgumentParser) -> None:
     _robot(fit)
     _named(fit, "tests", "load tests (.csv), a sample's name, or - for standard input", "load tests")
-    fit.add_argument(
-        "--model", default="joints", help="joints, joints+bending, joints+tool, joints+bending+tool or constant"
-    )
+    models = "joints, joints+bending, joints+tool, joints+bending+tool or constant"
+    _worded(fit, "--model", "identification.models.MODELS", default="joints", help=models)
     fit.add_argument(
         "--bending",
         "--bending-joints",
@@ -195,10 +199,13 @@ def _identify_options(fit: argparse.ArgumentParser) -> None:
         help="joints with bending springs (2,3 in models with bending), or auto: none or those that cross-validation "
         "chooses",
     )
-    fit.add_argument("--fit-points", default="none", help="points to fit too: none (default), force, gauge or both")
+    points = "points to fit too: none (default), force, gauge or both"
+    _worded(fit, "--fit-points", "identification.points.FREED", default="none", help=points)
     fit.add_argument("--robust", action="store_true", help="weigh down tests that do not fit")
-    fit.add_argument("--weights", default="equal", help="equal (default), or size: every test by its relative error")
-    fit.add_argument("--leave-out", default="pose", help="cross-validation by pose (default) or by neighbours")
+    weights = "equal (default), or size: every test by its relative error"
+    _worded(fit, "--weights", "identification.treatment.WEIGHTS", default="equal", help=weights)
+    folds = "cross-validation by pose (default) or by neighbours"
+    _worded(fit, "--leave-out", "identification.folds.LEAVE_OUT", default="pose", help=folds)
     fit.add_argument("--exclude", default="", metavar="ROWS", help="rows of the file to leave out, with commas")
     fit.add_argument(
         "--out", metavar="ROBOT.toml", help="write the robot with these compliances there; an older file is replaced"
@@ -234,7 +241,7 @@ def _simulate_options(run: argparse.ArgumentParser) -> None:
     _points_options(run)
     _named(run, "--robot", "another robot than the set-up's: a name or a file", "robot")
     run.add_argument("--tol", type=float, metavar="MM", help="another tolerance of walls and floors, mm")
-    run.add_argument("--compliance-set", help="another of the robot's compliance sets")
+    _compliance_set(run, "another of the robot's compliance sets")
     run.add_argument(
         "--out",
         metavar="DIR",

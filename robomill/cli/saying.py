@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from robomill import __version__
 from robomill.console import harmless, put, shows_all
 
 
@@ -51,7 +52,9 @@ def say(
     from robomill.report.records import jsonable
 
     if arguments.json:
-        whole = record if files is None else {**record, "files": [file.record() for file in files]}
+        whole = {"robomill": __version__, **record}
+        if files is not None:
+            whole["files"] = [file.record() for file in files]
         text = json_text(jsonable(whole), ascii_only=not shows_all(sys.stdout))
     else:
         said = [*lines, *assumed_lines(record.get("assumed", ())), *(file.line() for file in files or ())]

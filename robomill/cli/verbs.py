@@ -48,9 +48,9 @@ def run_ik(arguments: Any) -> int:
 
 
 def run_gcode(arguments: Any) -> int:
-    from robomill.report.assumed import assumed_of_program, assumed_of_tools
     from robomill.report.plain import gcode_lines
     from robomill.report.records import path_record
+    from robomill.simulation.assumptions import assumed_of_program, assumed_of_tools
     from robomill.toolpath.apt import read_apt
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 

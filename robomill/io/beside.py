@@ -11,7 +11,7 @@ from pathlib import Path
 from robomill.errors import RobomillError
 from robomill.files import FileKind, read_file
 from robomill.io.samples import samples_dir
-from robomill.io.tables import Table
+from robomill.io.tables import PATHS, Table
 
 ALLOW = "--allow-outside"
 
@@ -32,6 +32,8 @@ class Beside:
                 f"{named!r:.60} is the name of a file, expected what is in it ({kind.expected}): what is opened here "
                 "names no files. Open that file on its own page, or save the project in the app, which puts it in.",
             )
+        if not named.isprintable():
+            raise table.refuse(key, f"{named!r:.80} is no name of a file. {PATHS}")
         place = self._place(self.folder, named)
         if place is None:
             raise table.refuse(
@@ -48,9 +50,13 @@ class Beside:
         """Where the file is, links followed; None where it may not be."""
         if "\0" in named or Path(named).drive not in ("", folder.drive):  # another machine is not even asked
             return None
-        place = Path(os.path.realpath(folder / named))
         roots = [Path(os.path.realpath(root)) for root in (folder, samples_dir())]
-        return place if self.outside or any(place.is_relative_to(root) for root in roots) else None
+        for name in dict.fromkeys((named.replace("\\", "/"), named)):  # as Windows writes it, and as it stands
+            place = Path(os.path.realpath(folder / name))
+            allowed = self.outside or any(place.is_relative_to(root) for root in roots)
+            if allowed and (name == named or os.path.exists(place)):
+                return place
+        return None
 
 
 ALONE = Beside()

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from robomill.frames import DataFrame, Series
 
 MOST_COLUMNS = 300
+_SEPARATOR = re.compile(r"\"?sep=([,;\t])\"?", re.IGNORECASE)  # Excel's first line, which names what separates cells
 LONGEST_NAME = 100  # characters of a column's name; a longer one is none that is known
 
 
@@ -214,11 +215,13 @@ def _body(text: str, layout: Layout, name: str) -> tuple[_Body, str]:
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     remarks = "\n".join(line.strip().lstrip("# ") for line in lines if line.lstrip().startswith("#"))
     kept = [(k, line) for k, line in enumerate(lines, 1) if line.strip(" \t,;") and not line.lstrip().startswith("#")]
+    said = _SEPARATOR.fullmatch(kept[0][1].strip(" ")) if kept else None
+    kept = kept[1:] if said else kept
     if not kept:
         subject = name or layout.subject
         raise layout.error(f"{subject}: the file is empty; give a header ({layout.example}) and the numbers below it.")
     (head, header), below = kept[0], kept[1:]
-    mark = next((mark for mark in "\t;" if mark in header), ",")
+    mark = said[1] if said else next((mark for mark in "\t;" if mark in header), ",")
     names = [cell.strip()[: LONGEST_NAME + 1] for cell in _cells(header, mark)]
     if len(names) > MOST_COLUMNS:
         raise Place(name, head, layout.error).refuse(f"found {len(names):,} columns, expected {MOST_COLUMNS} at most.")

@@ -152,6 +152,9 @@ def _cutter(top: Table, tools: ToolTable) -> Cutter:
 
 
 def _robot(table: Table, beside: Beside) -> Robot:
+    table.asked.update(("name", "definition", "compliance_set"))
+    if not table.has("name"):
+        table.finish()  # another key may be meant, and says more than that one is missing
     if table.has("definition"):
         robot = robot_from_toml(table.text("definition"), f"{table.where}, definition")
     elif (name := table.text("name")) in robot_names():
@@ -161,7 +164,6 @@ def _robot(table: Table, beside: Beside) -> Robot:
     else:
         robot = read_robot(*beside.read(table, "name", ROBOT))
     chosen = table.text("compliance_set", "")
-    table.asked.update(("name", "definition"))
     table.finish()
     return robot.with_compliance_set(chosen) if chosen and chosen != robot.compliance_set else robot
 

@@ -82,7 +82,7 @@ def written(slides: bool) -> list[tuple[str, str, Mapping[str, str]]]:
 
 
 def _compliance(table: Table, rows: int) -> dict[str, Any]:
-    """The sets, the one in force and its numbers. ``use`` names a set; numbers beside it are the user's own."""
+    """The sets, the one in force and its numbers. ``use`` names a set; numbers beside the sets are the user's own."""
     sets = {}
     for key, value in table.data.items():
         if isinstance(value, dict):

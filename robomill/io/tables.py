@@ -17,6 +17,8 @@ from robomill.provenance import KINDS, Provenance
 from robomill.units import from_si, to_si
 
 MISSING: Any = object()  # a key without a default has to be there
+# Of a path of Windows in double quotes, whose \U begins a character.
+PATHS = "A path is written with / or in single quotes, as 'C:\\Users\\...'."
 DEEPEST = 12  # tables and lists within one another; what is written here has six
 LARGEST = 2**63  # TOML's own bound of whole numbers
 _DOTTED = re.compile(r"""(?<![\w-])(?>(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){64}""")
@@ -29,7 +31,8 @@ def parse_toml(text: str, where: str, error: type[RobomillError] = ProjectError)
             raise ValueError
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as exc:
-        raise error(f"{where}: this is not a readable TOML file: {exc}.", where=where) from None
+        path = f" {PATHS}" if "hex value" in str(exc) or "\\" in str(exc) else ""
+        raise error(f"{where}: this is not a readable TOML file: {exc}.{path}", where=where) from None
     except (RecursionError, ValueError):
         raise error(
             f"{where}: this is not a readable TOML file: a number is too long, or lists stand too deep in one another.",

@@ -6,10 +6,10 @@ import numpy as np
 
 from robomill import __version__
 from robomill.arrays import FloatArray
-from robomill.report.assumed import assumed_of_setup
 from robomill.report.paper_lengths import TRIED, over_lengths
 from robomill.report.records import shown
-from robomill.report.sources import sources
+from robomill.simulation.assumptions import assumed_of_setup
+from robomill.simulation.origins import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.simulation.stations import largest_deviations, nearest_feed

@@ -18,6 +18,7 @@ from robomill.frames import Columns
 from robomill.kinematics.inverse import IKResult
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
+from robomill.simulation.assumptions import Assumed, assumed_of_setup
 from robomill.simulation.columns import path_columns
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
@@ -313,6 +314,11 @@ class SimulationResult(Tabled):
         return judge(self, self.gauge)
 
     @cached_property
+    def assumed(self) -> tuple[Assumed, ...]:
+        """What the run rests on that nobody measured or stated: ``what`` it is, its ``value`` in short, and ``why``."""
+        return tuple(assumed_of_setup(self.setup))
+
+    @cached_property
     def _digest(self) -> str:
         return digest((self.setup.digest(), self.ik.theta, self.F, self.delta))
 
@@ -335,4 +341,5 @@ class SimulationResult(Tabled):
             *((name, format_si(value, "mm")) for name, value in shown),
             (f"{self.path.block_name.capitalize()} of the largest", str(self.worst_block)),
             ("Samples reached", f"{int(self.reached.sum())} of {len(self.path)}"),
+            ("Assumed", "; ".join(each.what for each in self.assumed) or "nothing"),
         ]

@@ -160,6 +160,8 @@ class Toolpath(Tabled):
         """
         points = _points(one_of(POINTS, p, p_mm, ToolpathError, "Toolpath"), p is None)
         m = len(points)
+        if m < 2:
+            raise ToolpathError(f"Points: found {format_count(m, 'point')}, expected two at least: a start and an end.")
         feed = _each(FEED, one_of(FEED, v_f, feed_mm_min, ToolpathError, "Toolpath"), m)
         speed = one_of(SPINDLE, n_s, spindle_1_min, ToolpathError, "Toolpath", 0.0)
         axis = as_floats(k, "Tool axis", (3,), error=ToolpathError)

@@ -44,7 +44,6 @@ UNUSED = {
     "__signature__": "what completion and help ask a function for",
     "to_dataframe": "public name",
     "run_*": "the parser of the command line finds what a verb runs by its name",
-    "completer": "argcomplete's",
     "wall_left_*": "the metrology panel asks for the walls by their side",
     "wall_right_*": "the same",
     "error_*": "records and panels ask for a section's measures by their names",

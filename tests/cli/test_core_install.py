@@ -1,6 +1,6 @@
 """What ``pip install robomill`` brings is enough for every verb, or the verb names the extra that it needs.
 
-Where the extras are installed they are hidden; where they are not (``.ci/lowest.py``) there is nothing to hide.
+Where the extras are installed they are hidden; where they are not (``.ci/core.py``) there is nothing to hide.
 """
 
 from __future__ import annotations

@@ -81,6 +81,28 @@ def test_shells_complete_verbs_options_samples_and_robots(tmp_path: Path, monkey
     assert "--program" in completed("robomill simulate --pr")
 
 
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("identify slavkovic_5r nine_points --model joints+b", {"joints+bending", "joints+bending+tool"}),
+        ("identify slavkovic_5r nine_points --fit-points ", {"none", "force", "gauge", "both"}),
+        ("identify slavkovic_5r nine_points --weights ", {"equal", "size"}),
+        ("identify slavkovic_5r nine_points --leave-out ", {"pose", "neighbours"}),
+        ("gcode heart --dialect s", {"sinumerik"}),
+        ("gcode heart --dialect ", {"auto", "linuxcnc", "fanuc", "grbl", "sinumerik", "heidenhain"}),
+        ("pose slavkovic_5r --compliance-set ", {"table_2", "table_3"}),
+        ("simulate paper_flute --compliance-set table_3", {"table_3"}),
+        ("map slavkovic_5r --quantity det", {"det_J"}),
+        ("map slavkovic_5r --quantity C_yy,det", {"C_yy,det_J"}),
+        ("pose not_a_robot --compliance-set ", set()),
+    ],
+)
+def test_shells_complete_the_words_of_an_option_and_no_files(line, words, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "some_file.nc").write_text("")
+    assert completed(f"robomill {line}") == words
+
+
 @pytest.mark.parametrize("shell", SHELLS)
 def test_each_shell_gets_a_script_that_asks_robomill(shell: str, capsys) -> None:
     assert main(["completion", shell]) == 0

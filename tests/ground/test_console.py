@@ -100,3 +100,9 @@ def test_a_full_disk_is_said() -> None:
 def test_no_stream_shows_nothing() -> None:
     """As under pythonw, and where standard output is closed."""
     assert not shows_all(None)
+
+
+def test_names_that_the_system_gave_as_bytes_are_shown_in_letters() -> None:
+    assert harmless("größe".encode().decode("ascii", "surrogateescape")) == "größe"
+    assert harmless(b"\xff.nc".decode("utf-8", "surrogateescape")) == "\\xff.nc"
+    assert harmless("\ud800") == "\ud800"

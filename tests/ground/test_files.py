@@ -13,7 +13,7 @@ import pytest
 from robomill.errors import ProjectError
 from robomill.files import FileKind, check_size, read_file, shown_place, written
 
-SMALL = FileKind("a few words", 1)
+SMALL = FileKind("a few words", 1, smaller="; say less")
 MB = 1_000_000
 
 
@@ -24,7 +24,7 @@ def test_a_file_is_read_up_to_its_limit(tmp_path: Path) -> None:
     with file.open("ab") as more:
         more.truncate(3 * MB)
     with pytest.raises(
-        ProjectError, match=r"words: found 3[.]0 MB, expected a few words of at most 1 MB; split the file"
+        ProjectError, match=r"words: found 3[.]0 MB, expected a few words of at most 1 MB; say less[.]$"
     ):
         read_file(file, SMALL, ProjectError)
     with pytest.raises(ProjectError, match="^mine: found more than 1 MB"):

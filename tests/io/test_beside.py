@@ -129,6 +129,16 @@ def test_hostile_names_are_refused_on_the_command_line(key: str, name: str, fold
 
 
 @pytest.mark.parametrize("key", KEYS)
+def test_a_name_as_windows_writes_it_is_read_everywhere(key: str, folder: Path) -> None:
+    end, here = KEYS[key][2], Beside(folder)
+    assert read(key, rf"below\\{key}{end}", here).name
+    with pytest.raises(ProjectError, match="not in the folder of the set-up|cannot be opened"):
+        read(key, rf"..\\{key}{end}", here)
+    with pytest.raises(ProjectError, match=r"is no name of a file\. A path is written with / or in single quotes"):
+        read(key, rf"below\table{end}", here)  # a tab, as TOML reads it
+
+
+@pytest.mark.parametrize("key", KEYS)
 def test_a_pipe_a_device_and_a_folder_are_no_files(key: str, folder: Path) -> None:
     end = KEYS[key][2]
     os.mkfifo(folder / f"pipe{end}")

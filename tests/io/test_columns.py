@@ -311,3 +311,11 @@ def test_a_name_longer_than_any_is_none(length: int) -> None:
     else:
         with pytest.raises(SurfaceError, match="no column is known"):
             read_columns(given, LAYOUT, "mine.csv")
+
+
+@pytest.mark.parametrize("first", ["sep=;", "SEP=;", '"sep=;"'])
+def test_excels_first_line_names_the_separator_and_no_column(first: str) -> None:
+    layout = Layout("a table", SurfaceError, {"x": ("mm",), "z": ("mm",)}, "x_mm, z_mm")
+    found, _ = read_columns(f"{first}\nx_mm;z_mm\n1,5;2,25\n3;4\n", layout)
+    np.testing.assert_allclose([found.values["x"], found.values["z"]], [[1.5e-3, 3e-3], [2.25e-3, 4e-3]])
+    assert found.row.tolist() == [3, 4]

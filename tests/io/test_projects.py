@@ -93,6 +93,10 @@ BAD = [
         "[numerics], cel_mm: this key is not known here; known are: add_sag, cell_mm",
     ),
     (TEXT.replace("diameter_mm = 8.0", ""), "[cutter], diameter_mm: missing; add it"),
+    (
+        TEXT.replace('name = "slavkovic_5r"', 'file = "arm.toml"'),
+        "[robot], file: this key is not known here; known are: compliance_set, definition, name",
+    ),
     (TEXT.replace("diameter_mm = 8.0", "diameter_mm = -8.0"), "Cutter, Diameter: found −8 mm"),
     (TEXT.replace('kind = "path"', 'kind = "magic"'), "[force], kind: expected one of path, constant"),
     (TEXT.replace('name = "slavkovic_5r"', 'name = "robbie"'), "robbie"),

@@ -223,3 +223,9 @@ def test_a_number_that_is_none_in_si_is_refused() -> None:
     assert table("a = 1.7e305").number("a", "kN") == pytest.approx(1.7e308)
     with pytest.raises(ProjectError, match=r"^f.toml, a: expected a number in kN of ordinary size, found 1.7e\+306\.$"):
         table("a = 1.7e306").number("a", "kN")
+
+
+@pytest.mark.parametrize("path", [r"C:\Users\x\p.nc", r"C:\data\p.nc"])
+def test_a_path_of_windows_in_double_quotes_is_told_how_to_write_it(path: str) -> None:
+    with pytest.raises(ProjectError, match=r"single quotes, as 'C:\\Users\\\.\.\.'\.$"):
+        parse_toml(f'program = "{path}"', "mine")

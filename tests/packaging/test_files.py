@@ -31,10 +31,14 @@ def test_what_is_pushed_is_tried_as_everywhere_else() -> None:
     said = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text())
     steps = [step for job in said["jobs"].values() for step in job["steps"]]
     assert any(step.get("run") == "bash .ci/run" for step in steps)
+    systems = said["jobs"]["core"]["strategy"]["matrix"]
+    named = [line.rpartition(" ")[2] for line in PROJECT["classifiers"] if "Python :: 3." in line]
+    assert systems["python"] == named
+    assert [each.partition("-")[0] for each in systems["os"]] == ["ubuntu", "macos", "windows"]
     assert os.access(ROOT / ".ci/run", os.X_OK)
     script = (ROOT / ".ci/run").read_text()
     assert "python3 run.py test" in script
-    assert "python3 .ci/lowest.py" in script
+    assert "python3 .ci/core.py" in script
 
 
 def test_the_container_installs_everything_and_runs_as_a_plain_user() -> None:

@@ -8,8 +8,8 @@ import robomill as rm
 from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
 from robomill.provenance import GIVEN
-from robomill.report.assumed import assumed_of_setup
-from robomill.report.sources import sources
+from robomill.simulation.assumptions import assumed_of_setup
+from robomill.simulation.origins import sources
 
 PAPER = rm.load_setup("paper_flute")
 PATH = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [40, 0, -2]], feed_mm_min=1800)

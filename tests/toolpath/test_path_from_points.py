@@ -64,3 +64,9 @@ def test_a_tool_axis_of_any_length_is_one_of_length_1() -> None:
 def test_what_is_no_path_is_refused(given, words: str) -> None:
     with pytest.raises(ToolpathError, match=words):
         rm.Toolpath.from_points(**given)
+
+
+@pytest.mark.parametrize("points", [[[0, 0, -2]], np.empty((0, 3))])
+def test_a_path_has_a_start_and_an_end(points) -> None:
+    with pytest.raises(ToolpathError, match="^Points: found (1 point|0 points), expected two at least"):
+        rm.Toolpath.from_points(p_mm=points, feed_mm_min=600)

@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill.files import PROGRAM
 from robomill.paper import SLOT
-from robomill.report.sources import sources
+from robomill.simulation.origins import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import cached, evidence, inputs, pieces, rendered, session

@@ -8,8 +8,8 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.provenance import MADE_UP, Finding, Provenance
 from robomill.quantities import quantities
-from robomill.report.sources import MODEL, Source, robot_lengths, robot_sources, sources
 from robomill.robot.model import Robot
+from robomill.simulation.origins import MODEL, Source, robot_lengths, robot_sources, sources
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.units import format_many

@@ -18,7 +18,7 @@ from robomill.io.robots import load_robot, read_robot
 from robomill.io.samples import samples_dir
 from robomill.io.urdf_writer import robot_to_urdf
 from robomill.provenance import Provenance
-from robomill.report.assumed import (
+from robomill.simulation.assumptions import (
     assumed_of_program,
     assumed_of_robot,
     assumed_of_setup,
