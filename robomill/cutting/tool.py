@@ -57,7 +57,11 @@ FAMILIES: dict[str, Family] = {
 }
 
 
-@in_units(CuttingError, "Cutter", asked=("flutes", "helix_angle"))
+ASKED = ("flutes", "helix_angle")
+"""The numbers of a cutter that the force grows with, and that may be left out."""
+
+
+@in_units(CuttingError, "Cutter", asked=ASKED)
 @dataclass(frozen=True, eq=False, repr=False)
 class Cutter(Value):
     """A rotating cutter; its tip is the origin of {T} and its axis is z_T.

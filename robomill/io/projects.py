@@ -10,7 +10,7 @@ import tomli_w
 from robomill.arguments import asked
 from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.springs import SPRINGS
-from robomill.cutting.tool import Cutter
+from robomill.cutting.tool import ASKED, Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import PROGRAM, ROBOT, SETUP
@@ -34,9 +34,11 @@ from robomill.io.workpiece import (
     stock_to_table,
 )
 from robomill.kinematics.spin import LEAST_MOTION, RULES
+from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.setup import TOLERANCES, SimulationSetup
+from robomill.simulation.sources import UNSTATED_TOLERANCE, unstated
 from robomill.spelled import made
 from robomill.toolpath.path import TABLES
 from robomill.toolpath.source import LEANS, GCodeSource, LinesSource, PathSource, SketchSource
@@ -127,10 +129,21 @@ def setup_from_table(data: dict[str, Any], where: str, beside: Beside = ALONE) -
         links=from_table(top.table("links"), LinkMasses) if top.has("links") else None,
         **_numerics(top.table("numerics", {})),
     )
+    known["provenance"] = _unstated(top, known) | known["provenance"]
     setup = made(SimulationSetup, known)
     top.asked.update(("stock", "links", "measured_map", "tools", "tools_unit", *OF_THE_APP))
     top.finish()
     return setup
+
+
+def _unstated(top: Table, known: dict[str, Any]) -> dict[str, Provenance]:
+    """What is assumed as the file does not say it: the tolerance, and of a cutter what the force follows."""
+    said = {} if top.has(NUMBERS["tolerance"].key) else {"tolerance": UNSTATED_TOLERANCE}
+    if known["force"].follows_cut and top.has("cutter"):
+        declared = quantities(Cutter)
+        cutter = unstated(known["cutter"], [name for name in ASKED if declared[name].key not in top.data["cutter"]])
+        said |= {} if cutter is None else {"cutter": cutter}
+    return said
 
 
 def _spin(top: Table) -> float | str:

@@ -18,7 +18,7 @@ from robomill.identification.measured_field import MeasuredField
 from robomill.provenance import Provenance, stated_blocks
 from robomill.quantities import Quantity
 from robomill.robot.model import Robot, check_robot
-from robomill.simulation.sources import AROUND, unstated
+from robomill.simulation.sources import AROUND, UNSTATED_TOLERANCE, unstated
 from robomill.spelled import one_of
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
@@ -132,7 +132,7 @@ def stated(given: Mapping[str, Any]) -> dict[str, Any]:
         )
     said: dict[str, Provenance] = {}
     if "tolerance" not in found:
-        said["tolerance"] = Provenance("assumed", "nobody has stated one")
+        said["tolerance"] = UNSTATED_TOLERANCE
     if found.get("stock") is None:
         said["stock"] = AROUND
     cutter = unstated(found.get("cutter"))

@@ -1,7 +1,7 @@
 """Where the numbers of a changed set-up come from: a block that was changed is of who changed it, and a force that was
 measured on one cut is an assumption on another. One law for the library, the command line and the app."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any, Protocol
 
@@ -25,6 +25,7 @@ BLOCKS = {
     **dict.fromkeys(("tolerance", "floor_tolerance", "feed_tolerance"), "tolerance"),
 }
 """The block of a set-up's provenance that speaks for a field."""
+UNSTATED_TOLERANCE = Provenance("assumed", "nobody has stated one")
 AROUND = Provenance("computed", "a block around what the path cuts")
 OF_ONE_CUT = ("paper", "measured")
 NOT_CUTTING = ("flute_length", "stick_out")  # what of a cutter the force does not depend on
@@ -78,11 +79,12 @@ def carried(said: Provenance, name: str) -> Provenance:
     return replace(said.carried(name), carried_from="")
 
 
-def unstated(cutter: Any) -> Provenance | None:
-    """What is assumed of a cutter of which not all was given; None else."""
-    if not isinstance(cutter, Cutter) or not cutter.unstated:
+def unstated(cutter: Any, names: Collection[str] | None = None) -> Provenance | None:
+    """What is assumed of a cutter of which not all was given: its numbers ``names``, or those it knows; None else."""
+    left_out = getattr(cutter, "unstated", ()) if names is None else names
+    if not isinstance(cutter, Cutter) or not left_out:
         return None
-    declared = (quantities(Cutter)[name] for name in cutter.unstated)
+    declared = (quantities(Cutter)[name] for name in left_out)
     numbers = [f"{each.label.lower()} {each.short(getattr(cutter, each.name))}" for each in declared]
     return Provenance("assumed", f"nobody has stated {' and '.join(numbers)}")
 

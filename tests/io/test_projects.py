@@ -314,3 +314,20 @@ def test_what_turns_the_part_is_kept_in_a_project(table: str) -> None:
     kept = setup_to_toml(setup.replace(source=source))
     assert ("rotary_axis" in kept) == bool(table)
     assert setup_from_toml(kept).source == source
+
+
+@pytest.mark.parametrize(
+    ("sample", "left_out", "said"),
+    [
+        ("setup.toml", "tolerance_mm = 0.3\n", {"tolerance": "nobody has stated one"}),
+        ("setup.toml", "flutes = 3\n", {}),  # a force of fixed numbers does not ask for them
+        ("setup_process.toml", "flutes = 3\n", {"cutter": "nobody has stated flutes 2 and helix angle 30°"}),
+    ],
+)
+def test_what_a_file_leaves_out_is_assumed(sample: str, left_out: str, said: dict[str, str]) -> None:
+    text = (SAMPLE.parent / sample).read_text()
+    assert left_out in text
+    text = text[: text.index("[provenance]")].replace(left_out, "")
+    found = setup_from_toml(text, "mine", Beside(SAMPLE.parent)).provenance
+    assert {block: each.source for block, each in found.items()} == said
+    assert {each.kind for each in found.values()} <= {"assumed"}
