@@ -222,7 +222,7 @@ def colour_bar(plotter: Any, picture: SurfacePicture, colours: Any, left: float 
 
 
 def words(plotter: Any, picture: SurfacePicture, title: str = "") -> None:
-    """Captions at the bottom, a title on top, the axes of {W}."""
+    """Captions at the bottom, a title on top and, where there is a scale, the axes of {W}."""
     p = palette(picture.dark)
     size = font(picture, 11)
     for i, caption in enumerate(picture.captions):
@@ -235,6 +235,8 @@ def words(plotter: Any, picture: SurfacePicture, title: str = "") -> None:
         )
     if title:
         plotter.add_text(title, position=(0.16, 0.885), viewport=True, font_size=size + 2, color=p.text)
+    if not picture.scale:  # a picture that only shows what comes out
+        return
     plotter.add_axes(
         line_width=3,
         labels_off=False,

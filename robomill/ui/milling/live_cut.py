@@ -57,6 +57,7 @@ WORDS = {
     "unloaded": "Pale: without load.",
     "thin": "Thin line: the ideal cut.",
     "alt": "The part as it is cut, coloured by the error of its surface.",
+    "name": "Tip off its path, along the cut; dashed: as much as the tolerance",
     "curve": "Deviation of the tip along the cut against the tolerance (dashed).",
     "without": WITHOUT,
 }

@@ -40,7 +40,7 @@ def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
     point = format_many(result.path.p[i], unit, 2, with_unit=False)
     words = [
         f"<b>Line {result.path.block[i]}</b>",
-        f"at ({point}) {unit} in {{W}}",
+        f"the tip stands at ({point}) {unit} in {{W}}",
     ]
     if between := _range(spread, i, unit):
         words.append(f"tip off by {between}")

@@ -120,12 +120,12 @@ def why(setup: SimulationSetup, length: str) -> str:
 
 def doors(take: Callable[[bytes, str], None]) -> None:
     """A card for each kind of visitor; the one who mills drops a program there, which ``take`` gets."""
-    with st.container(key="doors"):
-        with st.container(border=True, key="door-mill"):
+    with st.container(key="doors", height="stretch"):
+        with st.container(border=True, key="door-mill", height="stretch"):
             _door("I mill parts", "Will my part come out true? Drop its G-code here: .nc, .ngc, .tap")
             inputs.upload("Check my program", "start.program", _then(take), most_MB=PROGRAM.most_MB)
         for title, text, page, label in DOORS:
-            with st.container(border=True, key=f"door-{label.split()[-1]}"):
+            with st.container(border=True, key=f"door-{label.split()[-1]}", height="stretch"):
                 _door(title, text)
                 st.page_link(page, label=label, icon=":material/arrow_forward:")
 

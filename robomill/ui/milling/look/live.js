@@ -93,6 +93,7 @@ class Look {
         return line;
       }));
       for (const name of ["back", "next", "worst"]) this[name].textContent = words[name];
+      html(root, "name").textContent = words.name;
       this.back.title = words.back_help;
       this.next.title = words.next_help;
       this.station.setAttribute("aria-label", words.station);
