@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     from robomill.identification.result import IdentificationResult as IdentificationResult
     from robomill.improve.design import Design as Design
     from robomill.improve.design import design as design
+    from robomill.improve.placed import Place as Place
+    from robomill.improve.placed import Placement as Placement
+    from robomill.improve.placement import place as place
     from robomill.io.drawings import read_drawing as read_drawing
     from robomill.io.force_models import process_force as process_force
     from robomill.io.forces import read_forces as read_forces
@@ -128,6 +131,9 @@ _PUBLIC = {
     "IdentificationResult": "robomill.identification.result",
     "Design": "robomill.improve.design",
     "design": "robomill.improve.design",
+    "Place": "robomill.improve.placed",
+    "Placement": "robomill.improve.placed",
+    "place": "robomill.improve.placement",
     "read_drawing": "robomill.io.drawings",
     "process_force": "robomill.io.force_models",
     "read_forces": "robomill.io.forces",

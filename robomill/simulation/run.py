@@ -145,27 +145,30 @@ def deviation_over_spin(setup: SimulationSetup, path: Toolpath) -> OverSpin:
 
 
 def compliances(setup: SimulationSetup, path: Toolpath, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Shares of the joints (m, n, 3, 3) and of the springs beside them (m, k, 3, 3), m/N, eqs. (13), (14)."""
-    m = len(path)
-    C_joint, C_spring = np.empty((m, setup.robot.n, 3, 3)), np.empty((m, len(setup.springs), 3, 3))
+    """Shares of the joints (..., m, n, 3, 3) and of the springs beside them (..., m, k, 3, 3), m/N, eqs. (13), (14), of
+    configurations theta (..., m, n) along the path."""
+    m = theta.shape[:-1]
+    C_joint, C_spring = np.empty((*m, setup.robot.n, 3, 3)), np.empty((*m, len(setup.springs), 3, 3))
     for tool in held(setup, path):
         steps = np.flatnonzero(tool.steps)
         for some in slices(len(steps), "Compliance"):
             i = steps[some]
-            J = geometric_jacobian(tool.robot, theta[i])
-            C_joint[i] = joint_contributions(J[..., :3, :], setup.robot.C_theta)
+            J = geometric_jacobian(tool.robot, theta[..., i, :])
+            C_joint[..., i, :, :, :] = joint_contributions(J[..., :3, :], setup.robot.C_theta)
             if tool.springs:
-                C_spring[i] = extra_contributions(tool.springs, joint_frames(tool.robot, theta[i]))
+                C_spring[..., i, :, :, :] = extra_contributions(
+                    tool.springs, joint_frames(tool.robot, theta[..., i, :])
+                )
     return C_joint, C_spring
 
 
 def sags(setup: SimulationSetup, path: Toolpath, theta: FloatArray, links: LinkMasses) -> FloatArray:
-    """(m, n, 3) m: shares of the joints in the sag of the tip."""
-    sag = np.empty((len(path), setup.robot.n, 3))
+    """(..., m, n, 3) m: shares of the joints in the sag of the tip, of configurations theta (..., m, n)."""
+    sag = np.empty((*theta.shape, 3))
     for tool in held(setup, path):
         steps = np.flatnonzero(tool.steps)
         for some in slices(len(steps), "Sag"):
-            sag[steps[some]] = gravity_sag(tool.robot, theta[steps[some]], links)
+            sag[..., steps[some], :, :] = gravity_sag(tool.robot, theta[..., steps[some], :], links)
     return sag
 
 

@@ -31,7 +31,7 @@ def moving(path: Toolpath) -> Toolpath:
     for i in short:
         last = int(i) - 1 if keep[i - 1] else last
         keep[i] = np.linalg.norm(path.p[i] - path.p[last]) > STILL
-    return path if keep.all() else _chosen(path, keep)
+    return path if keep.all() else chosen(path, keep)
 
 
 def clock(path: Toolpath, rapid_rate: float | None) -> FloatArray:
@@ -50,7 +50,7 @@ def clock(path: Toolpath, rapid_rate: float | None) -> FloatArray:
     return np.asarray(np.cumsum(took))
 
 
-def _chosen(path: Toolpath, keep: np.ndarray) -> Toolpath:
+def chosen(path: Toolpath, keep: np.ndarray) -> Toolpath:
     """The entries ``keep`` (m,) bool of every array of the path."""
     found: dict[str, Any] = {each.name: getattr(path, each.name) for each in fields(path)}
     arrays = {name: value[keep] for name, value in found.items() if isinstance(value, np.ndarray)}

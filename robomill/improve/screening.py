@@ -1,0 +1,271 @@
+"""What a cut would be elsewhere, at a thousand places at once: the arm's half of a run, batched.
+
+Where the part lies changes how the arm stands, and so its compliance; path, conditions and force in the cut's own axes
+stay. So one run is made in full, and every reading of its gauge is moved as the tip moves beside it: exact for the tip,
+of first order for what a gauge reads. What is called best is simulated in full afterwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.compliance.deflection import displacement
+from robomill.kinematics.choice import SPIN_STEPS
+from robomill.kinematics.decoupled import decoupled
+from robomill.kinematics.dexterity import determinant, largest_determinant, limit_distance
+from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_kinematics
+from robomill.kinematics.spin import LEAST_DEVIATION
+from robomill.progress import checkpoint
+from robomill.robot.model import Robot
+from robomill.simulation.gauge import ALIKE, Readings
+from robomill.simulation.mapped import total_compliance
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import compliances, sags, tool_frames
+from robomill.simulation.samples import chosen
+from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.tools import farther
+from robomill.toolpath.path import Toolpath
+
+By = Literal["verdict", "vector", "wall", "floor", "feed"]
+MEASURES: dict[str, str] = {
+    "verdict": "what the verdict judges, as a share of its tolerance",
+    "vector": "the tip's distance from its path",
+    "wall": "the error of walls",
+    "floor": "the error of floors",
+    "feed": "the deviation along the feed",
+}
+MOST_SAMPLES, SLOW_SAMPLES = 400, 48  # of a path that are looked at everywhere; of arms that search for each pose
+BATCH = 20_000  # configurations at once
+SECTORS = 8
+
+
+class Standing(NamedTuple):
+    """How the arm stands along paths (k,): samples missed, room to the joint limits as a share of the half range, and
+    the smallest |det(J)| as a share of the arm's largest, negative where det(J) changes its sign on the way."""
+
+    missed: IntArray
+    room: FloatArray
+    det: FloatArray
+
+
+def standing(ik: IKResult) -> Standing:
+    """Of configurations (..., m, n), the m samples of each path."""
+    robot = ik.robot
+    missed = (~ik.reached).sum(axis=-1)
+    det = determinant(robot, ik.theta)
+    share = np.abs(det).min(axis=-1) / largest_determinant(robot)
+    if robot.n <= 6:
+        share = np.where((det[..., 1:] * det[..., :-1] < 0.0).any(axis=-1), -share, share)
+    return Standing(missed, limit_distance(robot, ik.theta).min(axis=-1), share)
+
+
+class Screened(NamedTuple):
+    """At k places: how the arm stands, and the errors (k,) m of ``wall``, ``floor``, ``end``, ``feed`` and ``vector``;
+    NaN where a sample has no number."""
+
+    standing: Standing
+    errors: dict[str, FloatArray]
+
+    def share(self, by: By, setup: SimulationSetup) -> FloatArray:
+        """(k,) share of its tolerance that is used by what is asked for."""
+        return share_of(by, setup, self.errors)
+
+
+def share_of(by: By, setup: SimulationSetup, errors: dict[str, FloatArray]) -> FloatArray:
+    """(k,) share of its tolerance that errors (k,) m use, as the verdict has it; NaN where nothing is known."""
+    wall = setup.tolerance
+    floor, feed = (wall if own is None else own for own in (setup.floor_tolerance, setup.feed_tolerance))
+    limits = {"wall": wall, "floor": floor, "feed": feed, "end": feed, "vector": wall}
+    if by != "verdict":
+        return np.asarray(errors[by] / limits[by])
+    deciding = ("wall", "floor") if setup.feed_tolerance is None else ("wall", "floor", "feed", "end")
+    every = np.array([errors[name] / limits[name] for name in deciding])
+    there = np.isfinite(every).any(axis=0)
+    largest = np.fmax.reduce(every)
+    return np.where(there, largest, errors["vector"] / wall)  # nothing is left to be measured
+
+
+@dataclass(frozen=True, eq=False)
+class Screen:
+    """What does not depend on where the part lies, at s samples of a path.
+
+    setup     as it is; its T_MW is not used          path (s samples), at: their numbers on the whole path
+    T_WT      (s, 4, 4) the tool in {W}                R_WF (s, 3, 3) the axes of the cut in {W}
+    F         (s, 3) N in {W} where the force ``turns`` with the part, else in {M}
+    surfaces  what a gauge reads of each kind
+    judged    (s,) samples that count        near (s, n) where arms begin that are solved numerically
+    reference the run that it was made from
+    """
+
+    setup: SimulationSetup
+    path: Toolpath
+    at: IntArray
+    T_WT: FloatArray
+    R_WF: FloatArray
+    F: FloatArray
+    turns: bool
+    surfaces: dict[str, Surfaces]
+    judged: BoolArray
+    near: FloatArray
+    reference: SimulationResult
+
+    def over(self, T_MW: FloatArray) -> Screened:
+        """Of parts that lie at T_MW (k, 4, 4)."""
+        found = []
+        for begin, end in self._batches(len(T_MW)):
+            checkpoint(begin / len(T_MW), "Places tried")
+            found.append(self._best_spin(T_MW[begin:end]))
+        stands = Standing(*(np.concatenate(parts) for parts in zip(*(each.standing for each in found), strict=True)))
+        return Screened(stands, {n: np.concatenate([each.errors[n] for each in found]) for n in found[0].errors})
+
+    def _batches(self, count: int) -> Iterator[tuple[int, int]]:
+        size = max(BATCH // len(self.at), 1)
+        return ((begin, min(begin + size, count)) for begin in range(0, count, size))
+
+    def _best_spin(self, T_MW: FloatArray) -> Screened:
+        setup = self.setup
+        if setup.spin != LEAST_DEVIATION or not spin_matters(setup.robot):
+            return self._with(T_MW, setup.spin if isinstance(setup.spin, float) else LEAST_MOTION)
+        angles = (2 * np.pi / SPIN_STEPS * np.arange(SPIN_STEPS)).tolist()
+        every = [self._with(T_MW, angle) for angle in angles]
+        rank = np.array([np.where(e.standing.missed > 0, np.inf, np.nan_to_num(e.errors["vector"])) for e in every])
+        best, k = rank.argmin(axis=0), np.arange(len(T_MW))
+        stands = Standing(*(np.array([e.standing[i] for e in every])[best, k] for i in range(3)))
+        return Screened(stands, {n: np.array([e.errors[n] for e in every])[best, k] for n in every[0].errors})
+
+    def _with(self, T_MW: FloatArray, spin: Spin) -> Screened:
+        ik = configurations(self.setup, T_MW[:, None] @ self.T_WT, self.near, spin)
+        R_MF = T_MW[:, None, :3, :3] @ self.R_WF
+        F = np.einsum("kij,sj->ksi", T_MW[:, :3, :3], self.F) if self.turns else self.F
+        return Screened(standing(ik), self.errors(np.einsum("ksij,ksi->ksj", R_MF, self._delta(T_MW, ik.theta, F))))
+
+    def _delta(self, T_MW: FloatArray, theta: FloatArray, F: FloatArray) -> FloatArray:
+        """(k, s, 3) m in {M}."""
+        setup = self.setup
+        C_joint, C_spring = compliances(setup, self.path, theta)
+        if setup.measured_map is None:
+            C = C_joint.sum(axis=-3) + C_spring.sum(axis=-3)
+        else:
+            moved = (setup.replace(T_MW=T) for T in T_MW)
+            C = np.array([total_compliance(m, self.path, J, S) for m, J, S in zip(moved, C_joint, C_spring)])
+        delta = displacement(C, np.broadcast_to(F, C.shape[:-1]))
+        if setup.links is not None and setup.add_sag:
+            delta = delta + sags(setup, self.path, theta, setup.links).sum(axis=-2)
+        return delta
+
+    def errors(self, d: FloatArray) -> dict[str, FloatArray]:
+        """Largest errors (k,) m of deviations d (k, s, 3) m along feed, left and axial; NaN where one has none."""
+        found = {name: surface.largest(d) for name, surface in self.surfaces.items()}
+        judged = d[:, self.judged]
+        return found | {"feed": np.abs(judged[..., 0]).max(axis=-1), "vector": np.linalg.norm(judged, axis=-1).max(-1)}
+
+
+def spin_matters(robot: Robot) -> bool:
+    """Whether the turn about the tool axis moves more than one joint about that axis."""
+    arm = decoupled(robot)
+    return robot.n >= 6 and not (arm is not None and arm.spindle_on_last_axis)
+
+
+def configurations(setup: SimulationSetup, T_MT: FloatArray, near: FloatArray, spin: Spin = LEAST_MOTION) -> IKResult:
+    """How the arm stands along paths T_MT (k, s, 4, 4); where it is found numerically, ``near`` (s, n)."""
+    robot = setup.robot
+    if decoupled(robot) is None:
+        return inverse_kinematics(robot, T_MT, near=near, spin=spin)
+    return inverse_kinematics(robot, T_MT, near="path", spin=spin)
+
+
+class Surfaces(NamedTuple):
+    """What a gauge reads of walls, floors or ends, as far as it moves with the tip: of sample ``at`` (q,) of a screen,
+    moved ``toward`` (q, 3); (``low``, ``high``) (q,) m is what the readings were more than that. NaN where another pass
+    had made the surface: there the sample counts as far as it goes deeper, which is the way of ``toward``."""
+
+    at: IntArray
+    toward: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+    def largest(self, d: FloatArray) -> FloatArray:
+        """(k,) m with deviations d (k, s, 3) m; NaN without a reading."""
+        if not len(self.at):
+            return np.full(len(d), np.nan)
+        own = np.einsum("kqi,qi->kq", d[:, self.at], self.toward)
+        made = np.maximum(np.abs(own + self.low), np.abs(own + self.high))
+        return np.asarray(np.where(np.isnan(self.low), np.maximum(own, 0.0), made).max(axis=-1))
+
+
+def surfaces(read: Readings, d: FloatArray, at: IntArray) -> Surfaces:
+    """Of readings of a run with deviations d (m, 3) m along feed, left and axial, those of samples ``at``."""
+    there = np.isin(read.sample, at)
+    sample, toward = np.searchsorted(at, read.sample[there]), read.way[there]
+    more = read.error[there] - np.einsum("qi,qi->q", d[read.sample[there]], toward)
+    other = np.abs(more) > ALIKE
+    toward = np.where(other[:, None], toward * np.sign(more)[:, None], toward)
+    key = np.column_stack([sample, other, np.round(toward, 9)])
+    _, first, which = np.unique(key, axis=0, return_index=True, return_inverse=True)
+    low, high = np.full(len(first), np.inf), np.full(len(first), -np.inf)
+    np.minimum.at(low, which.ravel(), more)
+    np.maximum.at(high, which.ravel(), more)
+    low[other[first]] = np.nan
+    return Surfaces(sample[first], toward[first], low, high)
+
+
+def screen(result: SimulationResult, also: IntArray | None = None) -> Screen:
+    """From a run without coupling all of whose samples are reached; samples ``also`` are looked at in any case."""
+    setup, path = result.setup, result.path
+    searched = spin_matters(setup.robot) and not isinstance(setup.spin, float)
+    quick = decoupled(setup.robot) is not None and not searched
+    at = _few(result, MOST_SAMPLES if quick else SLOW_SAMPLES, np.zeros(0, dtype=np.int64) if also is None else also)
+    keep = np.zeros(len(path), dtype=bool)
+    keep[at] = True
+    R_MW = setup.T_MW[:3, :3]
+    turns = setup.force.frame == "path" or setup.force.turns_with_part
+    home = np.where(np.isnan(result.theta), setup.robot.home, result.theta)
+    return Screen(
+        setup=uncoupled(setup),
+        path=chosen(path, keep),
+        at=at,
+        T_WT=tool_frames(path.p[at], path.k[at], farther(setup, path)[at]),
+        R_WF=R_MW.T @ result.R_MF[at],
+        F=result.F[at] @ R_MW if turns else result.F[at],
+        turns=turns,
+        surfaces={name: surfaces(read, result.delta_in_cut, at) for name, read in _read(result).items()},
+        judged=result.judged[at],
+        near=home[at],
+        reference=result,
+    )
+
+
+def uncoupled(setup: SimulationSetup) -> SimulationSetup:
+    """The set-up without the coupling of force and deflection."""
+    return setup.replace(coupling=False) if setup.coupling else setup
+
+
+def _read(result: SimulationResult) -> dict[str, Readings]:
+    return {"wall": result.gauge.walls, "floor": result.gauge.floors, "end": result.gauge.ends}
+
+
+def _few(result: SimulationResult, most: int, also: IntArray) -> IntArray:
+    """Samples of a path: all where there are few, else some all along it, the ends of its extent, the largest readings
+    in every direction of the feed, and the first of every tool."""
+    path, m = result.path, len(result.path)
+    if m <= most:
+        return np.arange(m)
+    way = np.arctan2(result.R_MF[:, 1, 0], result.R_MF[:, 0, 0])
+    sector = np.floor((way + np.pi) / (2.0 * np.pi) * SECTORS).astype(np.int64) % SECTORS
+    turn = 2.0 * np.pi / SECTORS * np.arange(SECTORS)
+    outward = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(SECTORS)])
+    sides = path.p @ np.vstack([outward, [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]).T
+    kept = [np.linspace(0, m - 1, most * 3 // 4).astype(np.int64), np.argmax(sides, axis=0), also]
+    kept.append(np.unique(path.tool, return_index=True)[1])
+    kept += [np.array([int(np.argmax(path.cutting & (path.tool == n)))]) for n in np.unique(path.tool)]
+    for read in _read(result).values():
+        for error in (read.error, -read.error):
+            for each in range(SECTORS):
+                some = np.flatnonzero(sector[read.sample] == each)
+                kept.append(read.sample[some[np.argmax(error[some])][None]] if len(some) else read.sample[:0])
+    return np.unique(np.concatenate(kept))

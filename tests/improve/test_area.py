@@ -1,0 +1,114 @@
+"""Boxes for the part zero, and blocks that keep out of boxes: against sampled points, and what is refused."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import SetupError
+from robomill.improve.area import Area, area, grid, today
+from robomill.simulation.given import part_frame
+
+LEANING = rm.frame_from_points([0, -1.3, 0], [1, -1.3, 0.2], [0, -0.3, 0.1]).T_MW
+
+
+def setup(**changes: object) -> rm.SimulationSetup:
+    return rm.load_setup("paper_flute").replace(**changes)
+
+
+def test_blocks_meet_where_points_of_one_lie_in_the_other() -> None:
+    """Two solids that share a point of a fine grid meet; two that are apart share none."""
+    rng = np.random.default_rng(3)
+    stock = rm.Stock(lower_mm=(-40, -20, -10), upper_mm=(60, 30, 0))
+    box = np.array([[[0.1, -1.4, -0.05], [0.2, -1.2, 0.02]]])
+    here = Area(np.zeros(4), np.zeros(4), LEANING[:3, :3], stock, box)
+    places = np.column_stack([rng.uniform([-0.05, -1.5, -0.1], [0.35, -1.1, 0.1], (300, 3)), rng.uniform(-3, 3, 300)])
+    fine = np.stack(
+        np.meshgrid(*(np.linspace(a, b, 25) for a, b in zip(stock.lower, stock.upper)), indexing="ij"), -1
+    ).reshape(-1, 3)
+    shared = np.array([_inside(fine, T, box[0]) for T in here.T_MW(places)])
+    meets = here.meets(places)
+    assert 30 < shared.sum() < 270
+    assert not (shared & ~meets).any()
+    grown = box + np.array([[-0.005], [0.005]])  # by the spacing of the points
+    assert all(_inside(fine, T, grown[0]) for T in here.T_MW(places[meets]))
+
+
+def _inside(fine: np.ndarray, T: np.ndarray, box: np.ndarray) -> bool:
+    """Whether a point (q, 3) of the part lies in a box (2, 3) of {M}."""
+    p = fine @ T[:3, :3].T + T[:3, 3]
+    return bool(((p >= box[0]) & (p <= box[1])).all(axis=1).any())
+
+
+def test_a_place_is_the_part_zero_and_the_turn_of_a_set_up() -> None:
+    one = setup(part_zero_mm=(100, -1200, 5), part_rotation_z_deg=30)
+    where = area(one, {"yaw_deg": (-90, 90)})
+    np.testing.assert_allclose(today(one), [0.1, -1.2, 0.005, np.radians(30)])
+    np.testing.assert_allclose(where.T_MW(today(one)), one.T_MW, atol=1e-15)
+    there = where.T_MW(np.array([0.2, -1.3, 0.0, np.radians(-50)]))
+    np.testing.assert_allclose(there, part_frame([0.2, -1.3, 0.0], np.radians(-50)), atol=1e-15)
+
+
+def test_a_leaning_part_keeps_its_lean() -> None:
+    one = setup(T_MW=LEANING)
+    where = area(one, {"yaw_deg": (-180, 180)})
+    np.testing.assert_allclose(where.T_MW(today(one)), one.T_MW, atol=1e-12)
+    np.testing.assert_allclose(where.T_MW(np.array([0.0, -1.0, 0.0, 1.0]))[2, :3], one.T_MW[2, :3], atol=1e-12)
+
+
+def test_left_out_x_and_y_are_todays_and_z_and_yaw_stay() -> None:
+    where = area(setup(), {})
+    np.testing.assert_allclose(where.upper - where.lower, [0.78, 0.78, 0.0, 0.0])
+    np.testing.assert_allclose((where.upper + where.lower) / 2.0, today(setup()), atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("given", "count"),
+    [
+        ({}, (32, 31)),
+        ({"x_mm": (0, 0)}, (1, 1000)),
+        ({"yaw_deg": (-180, 180)}, (11, 11)),
+        ({"z_mm": (0, 100), "yaw_deg": (0, 90)}, (11, 10)),
+    ],
+)
+def test_a_grid_has_about_as_many_places_as_asked_for(given: dict, count: tuple[int, int]) -> None:
+    axes = area(setup(), given).axes(1000)
+    assert (len(axes[0]), len(axes[1])) == count
+    places = grid(axes)
+    assert len(places) == np.prod([len(axis) for axis in axes])
+    assert 850 < len(places) <= 1000
+    assert places.tolist() == [list(each) for each in itertools.product(*axes)]
+
+
+def test_a_full_turn_has_no_place_twice() -> None:
+    turns = area(setup(), {"yaw_deg": (-180, 180)}).axes(1000)[3]
+    np.testing.assert_allclose(np.diff(turns), np.radians(45))
+    assert len(turns) == 8
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (
+            {"x_mm": (300, -300)},
+            "Placement, x: the bounds contradict each other, 300.00 to −300.00 mm",
+        ),
+        ({"y_mm": -1300}, "Placement, y: expected two numbers, the least and the largest, found -1.3"),
+        ({"x": (-300, 300)}, "Placement, x: found -300 m, expected at most 200: a name alone is in m"),
+        ({"x_mm": (-0.3, 0.3)}, "x_mm is in mm. If 0.3 m is meant"),
+        ({"x_mm": (-1e9, 1e9)}, "Placement, x"),
+        ({"x": (-0.3, 0.3), "x_mm": (-300, 300)}, "x and x_mm are the same; give one of them"),
+        ({"yaw": (-180, 180)}, "Placement, yaw: found -180 rad"),
+        ({"yaw_deg": (0, float("nan"))}, "Placement, yaw: expected finite numbers, found NaN"),
+        ({"keep_out_mm": [[[0, 0, 0], [10, 10, 0]]]}, "Placement, keep_out: box 1 has no volume"),
+        ({"keep_out_mm": [[0, 0, 0, 10, 10, 0]]}, "Placement, keep_out: expected shape (..., 2, 3)"),
+        ({"keep_out_mm": 3}, "Placement, keep_out: expected shape (..., 2, 3)"),
+    ],
+)
+def test_what_is_no_area_is_refused(given: dict, said: str) -> None:
+    with pytest.raises(SetupError) as refusal:
+        area(setup(), given)
+    assert said in str(refusal.value)

@@ -1,0 +1,132 @@
+"""What is screened at many places at once, against a full simulation at each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.improve.area import area
+from robomill.improve.screening import screen, share_of, standing
+from robomill.kinematics.dexterity import determinant, largest_determinant, limit_distance
+
+PLACES = np.array([[0.1, -1.25, 0.0, 0.3], [-0.2, -1.5, 0.05, -0.8], [0.3, -1.1, -0.05, 2.0], [0.0, -1.4, 0.002, 0.0]])
+
+
+def slot() -> rm.SimulationSetup:
+    return rm.load_setup("paper_flute")
+
+
+def in_robot() -> rm.SimulationSetup:
+    return slot().replace(force=rm.ConstantForce((30.0, 100.0, -20.0)))
+
+
+def on_part() -> rm.SimulationSetup:
+    s = np.linspace(0.0, 0.2, 50)
+    F = np.column_stack([40.0 + 100.0 * s, 90.0 - 50.0 * s, -30.0 + 0.0 * s])
+    return slot().replace(force=rm.MeasuredForce.along_path(s, F, frame="W"))
+
+
+def bending() -> rm.SimulationSetup:
+    return slot().replace(springs=(rm.ToolBending(stick_out_mm=40, diameter_mm=8), rm.SpindleSpring(lateral_um_N=0.05)))
+
+
+def sagging() -> rm.SimulationSetup:
+    links = rm.LinkMasses(mass=np.full(5, 40.0), centre=np.zeros((5, 3)))
+    return slot().replace(links=links, add_sag=True)
+
+
+def stated_feed() -> rm.SimulationSetup:
+    return slot().replace(tolerance_mm=(0.3, 0.2, 0.1))
+
+
+def tools() -> rm.SimulationSetup:
+    return rm.load_setup("two_tools")
+
+
+def arcs() -> rm.SimulationSetup:
+    return rm.load_setup("pocket_arcs").replace(step_mm=3)
+
+
+def screened_and_simulated(setup: rm.SimulationSetup) -> tuple[dict, list[rm.SimulationResult]]:
+    where = area(setup, {"z": (-0.1, 0.1), "yaw_deg": (-180, 180)})
+    T_MW = where.T_MW(PLACES)
+    found = screen(rm.simulate(setup)).over(T_MW)
+    return found, [rm.simulate(setup.replace(T_MW=T)) for T in T_MW]
+
+
+@pytest.mark.parametrize("make", [slot, in_robot, on_part, bending, sagging, stated_feed, tools, arcs])
+def test_the_tip_is_where_a_full_simulation_has_it(make: Callable[[], rm.SimulationSetup]) -> None:
+    found, full = screened_and_simulated(make())
+    whole = len(full[0].path) <= 400
+    for name, values in (
+        ("vector", [result.max_deviation for result in full]),
+        ("feed", [np.abs(result.delta_in_cut[result.judged, 0]).max() for result in full]),
+    ):
+        np.testing.assert_allclose(found.errors[name], values, rtol=1e-9 if whole else 0.1)
+
+
+@pytest.mark.parametrize("make", [slot, in_robot, on_part, bending, stated_feed, arcs])
+def test_walls_and_floors_are_as_a_gauge_reads_them(make: Callable[[], rm.SimulationSetup]) -> None:
+    setup = make()
+    found, full = screened_and_simulated(setup)
+    for name in ("wall", "floor"):
+        read = np.abs([getattr(result.verdict, name).value for result in full])
+        np.testing.assert_allclose(found.errors[name], read, rtol=5e-3, atol=3e-6)
+    share = [result.verdict.share for result in full]
+    np.testing.assert_allclose(found.share("verdict", setup), share, rtol=5e-3)
+
+
+def test_the_share_is_the_verdicts() -> None:
+    for setup in (slot(), stated_feed(), slot().replace(floor_tolerance_mm=0.05)):
+        verdict = rm.simulate(setup).verdict
+        errors = {name: np.abs([getattr(verdict, name).value]) for name in ("wall", "floor", "feed", "end")}
+        assert share_of("verdict", setup, errors | {"vector": np.array([1.0])})[0] == pytest.approx(
+            verdict.share, rel=1e-12
+        )
+
+
+def test_where_nothing_can_be_measured_the_tip_decides() -> None:
+    none = {name: np.array([np.nan]) for name in ("wall", "floor", "feed", "end")}
+    assert share_of("verdict", slot(), none | {"vector": np.array([0.6e-3])})[0] == pytest.approx(2.0)
+
+
+def test_how_the_arm_stands_is_that_of_every_sample() -> None:
+    setup = slot()
+    found, full = screened_and_simulated(setup)
+    largest = largest_determinant(setup.robot)
+    for k, result in enumerate(full):
+        assert found.standing.missed[k] == (~result.reached).sum() == 0
+        room = min(float(limit_distance(setup.robot, theta)) for theta in result.theta)
+        assert found.standing.room[k] == pytest.approx(room, abs=1e-9)
+        det = min(abs(float(determinant(setup.robot, theta))) for theta in result.theta) / largest
+        assert found.standing.det[k] == pytest.approx(det, rel=1e-6)
+
+
+def test_a_path_through_a_singular_configuration_has_a_negative_determinant() -> None:
+    robot = rm.load_robot("slavkovic_5r")
+    theta = np.array([[0.1, -0.3, 0.4, 0.0, B] for B in (1.4, 1.8)])
+    assert np.prod(np.sign(determinant(robot, theta))) < 0.0
+    ik = rm.inverse_kinematics(robot, rm.tool_pose(robot, theta), near=theta)
+    assert ik.reached.all()
+    assert standing(ik).det < 0.0
+
+
+def test_a_place_out_of_reach_is_told_by_the_samples_missed() -> None:
+    setup = slot()
+    T = np.array(setup.T_MW)
+    T[:3, 3] = [0.0, -2.4, 0.002]
+    found = screen(rm.simulate(setup)).over(T[None])
+    assert found.standing.missed[0] == (~rm.simulate(setup.replace(T_MW=T)).reached).sum() > 0
+    assert np.isnan(found.share("verdict", setup)[0])
+
+
+def test_many_places_are_as_one_by_one() -> None:
+    setup = slot()
+    where = area(setup, {"yaw_deg": (-180, 180)})
+    looking = screen(rm.simulate(setup))
+    T_MW = where.T_MW(np.random.default_rng(1).uniform([-0.3, -1.5, 0.0, -3.0], [0.3, -1.1, 0.0, 3.0], (230, 4)))
+    together = looking.over(T_MW).share("verdict", setup)
+    np.testing.assert_array_equal(together, [looking.over(T[None]).share("verdict", setup)[0] for T in T_MW])
