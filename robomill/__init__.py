@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from robomill.identification.load_test import JointTests as JointTests
     from robomill.identification.load_test import LoadTests as LoadTests
     from robomill.identification.result import IdentificationResult as IdentificationResult
+    from robomill.improve.advice import Advice as Advice
+    from robomill.improve.advice import advise as advise
     from robomill.improve.design import Design as Design
     from robomill.improve.design import design as design
     from robomill.improve.placed import Place as Place
@@ -129,6 +131,8 @@ _PUBLIC = {
     "JointTests": "robomill.identification.load_test",
     "LoadTests": "robomill.identification.load_test",
     "IdentificationResult": "robomill.identification.result",
+    "Advice": "robomill.improve.advice",
+    "advise": "robomill.improve.advice",
     "Design": "robomill.improve.design",
     "design": "robomill.improve.design",
     "Place": "robomill.improve.placed",

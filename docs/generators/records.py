@@ -34,6 +34,7 @@ RUNS: dict[str, tuple[tuple[str, ...], ...]] = {
         ("paper_flute/setup_measured_map",),
         ("two_tools",),
     ),
+    "advise": (("paper_flute/setup_process",),),
     "design": (("paper_flute", "--tolerance-mm", "0.2"),),
     "samples": (("heart",),),
     "reproduce": ((),),

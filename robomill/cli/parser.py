@@ -28,6 +28,7 @@ EXAMPLES = {
     "map": "robomill map slavkovic_5r --quantity C_yy --z 0 --x -600:600:100 --y -1600:-1000:100 --out map.csv",
     "identify": "robomill identify slavkovic_5r nine_points --out identified.toml",
     "simulate": "robomill simulate paper_flute --out result",
+    "advise": "robomill advise paper_flute/setup_process",
     "design": "robomill design paper_flute --tolerance-mm 0.1",
     "samples": "robomill samples --copy samples",
     "reproduce": "robomill reproduce",
@@ -40,12 +41,13 @@ NOTES = {
     "pass.",
     "simulate": "Exits 1 where the verdict is red, and where nothing or not all can be judged: never 0 on a number "
     "that is not known.",
+    "advise": "Exits 1 where no way keeps the tolerance.",
     "design": "Exits 1 where the tolerance cannot be met.",
     "reproduce": "Exits 1 where a claim of the paper that should hold does not.",
     "completion": "For bash, write it to ~/.local/share/bash-completion/completions/robomill; for zsh, to a file "
     "_robomill in a folder of $fpath; for fish, to ~/.config/fish/completions/robomill.fish.",
 }
-MODULES = {"simulate", "identify", "serve", "drawing", "design"}  # verbs with one of their own
+MODULES = {"simulate", "identify", "serve", "drawing", "advise", "design"}  # verbs with one of their own
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
 
@@ -85,6 +87,7 @@ def make_parser() -> argparse.ArgumentParser:
     _map_options(told("map", "A quantity over a plane or a box, NaN where the robot cannot reach."))
     _identify_options(told("identify", "Joint compliances from load tests, with their intervals."))
     _simulate_options(told("simulate", "Run a set-up: deviation, groove, verdict."))
+    _setup(told("advise", "The same part cut otherwise: with another feed, turned round, in passes, once more."))
     _design_options(told("design", "The joints to stiffen so that a cut keeps a tolerance, at the least cost."))
     given = told("samples", "List the samples, or copy them to work on.")
     _named(given, "names", "samples to list or copy (all)", "any", nargs="*")

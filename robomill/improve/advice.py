@@ -1,0 +1,219 @@
+"""The same part cut otherwise: with another feed, the other way round, in passes, or once more; each by a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from robomill.arguments import asked
+from robomill.arrays import FloatArray, digest
+from robomill.errors import RobomillError, SetupError
+from robomill.frames import Columns
+from robomill.improve.ways import fed, in_levels, turned_round
+from robomill.lazy import cached_property
+from robomill.progress import step
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import simulate
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import PointsSource
+from robomill.units import format_percent, format_si, from_si
+from robomill.values import Tabled
+
+SLOWEST, FASTEST, HALVED = 0.1, 4.0, 7  # times the feed, and how often the way between is halved
+MOST_LEVELS = 4
+ALLOWANCE = 0.1  # of the depth: what roughing leaves for a last pass
+Run = Callable[[SimulationSetup], SimulationResult]
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """One way to cut it: its ``name`` and ``title``; the ``run`` (None where it does not apply, with the reason in
+    ``refused``); ``factor`` times the feed, 1 where that stays."""
+
+    name: str
+    title: str
+    run: SimulationResult | None
+    refused: str = ""
+    factor: float = 1.0
+
+    @property
+    def seconds(self) -> float:
+        """s at feed and standing still; rapids are not counted."""
+        path = None if self.run is None else self.run.setup.toolpath
+        return float("nan") if path is None else float(path.t[-1] + path.dwell.sum())
+
+    @property
+    def removal_rate(self) -> float:
+        """m^3/s removed on average while at feed."""
+        if self.run is None:
+            return float("nan")
+        return float(self.run.ideal.removed_volume) / self.seconds if self.seconds > 0.0 else float("nan")
+
+    @property
+    def share(self) -> float:
+        """Of the tolerance that is used; NaN where nothing is known."""
+        return float("nan") if self.run is None else self.run.verdict.share
+
+    @property
+    def keeps(self) -> bool:
+        """Whether the run's verdict is green."""
+        return self.run is not None and not self.run.verdict.red
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Advice(Tabled):
+    """Ways to cut the same part, the one there is first (``ways[0]``); each number is that of a run.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> advice = rm.advise(rm.load_setup("paper_flute/setup_process"))
+    >>> [way.name for way in advice.ways][:3]
+    ['now', 'feed', 'turned round']
+    """
+
+    ways: tuple[Way, ...]
+
+    @property
+    def best(self) -> Way:
+        """The quickest of those that keep the tolerance; the truest where none does."""
+        known = [way for way in self.ways if way.run is not None]
+        kept = [way for way in known if way.keeps]
+        if kept:
+            return min(kept, key=lambda way: way.seconds)
+        return min(known, key=lambda way: way.share if np.isfinite(way.share) else np.inf)
+
+    def columns(self) -> Columns:
+        """One row a way: its name, how long it takes, what it leaves; NaN where it does not apply."""
+
+        def of(value: Callable[[SimulationResult], float]) -> FloatArray:
+            return np.array([float("nan") if way.run is None else value(way.run) for way in self.ways])
+
+        return {
+            "way": np.array([way.name for way in self.ways], dtype=object),
+            "minutes": np.array([way.seconds / 60.0 for way in self.ways]),
+            "removal_cm3_min": np.array([way.removal_rate * 60e6 for way in self.ways]),
+            "wall_mm": from_si(of(lambda run: abs(run.verdict.wall.value)), "mm"),
+            "floor_mm": from_si(of(lambda run: abs(run.verdict.floor.value)), "mm"),
+            "max_deviation_mm": from_si(of(lambda run: run.max_deviation), "mm"),
+            "used_%": 100.0 * np.array([way.share for way in self.ways]),
+            "verdict": np.array(["" if way.run is None else way.run.verdict.level for way in self.ways], dtype=object),
+        }
+
+    @cached_property
+    def _digest(self) -> str:
+        return digest([(way.name, way.refused, way.run.digest() if way.run else "") for way in self.ways])
+
+    def _said(self) -> str:
+        kept = sum(way.keeps for way in self.ways)
+        return f"{len(self.ways)} ways to cut it, {kept} of them within tolerance"
+
+
+@asked
+def advise(setup: SimulationSetup, run: Run = simulate) -> Advice:
+    """The same part cut otherwise: the largest feed that keeps the tolerance, the other way round, in passes, with a
+    last pass for what roughing leaves, and once more.
+
+    Parameters
+    ----------
+    setup : SimulationSetup
+        The cut. Its force has to follow the cut; the material that is left is used for it (``engagement``).
+    run : callable
+        What simulates a set-up; another one may keep results.
+
+    Returns
+    -------
+    Advice
+        One run for each way, with its time and what it leaves; why a way does not apply.
+
+    Raises
+    ------
+    SetupError
+        Where the force is stated and does not follow the cut, or the cut has no number.
+
+    Notes
+    -----
+    A path cut once more meets the stock as the deflected first pass has left it.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> advice = rm.advise(rm.load_setup("paper_flute/setup_process"))
+    >>> once_more = advice.ways[-1]
+    >>> once_more.run.verdict.share < advice.ways[0].run.verdict.share
+    True
+    """
+    if not setup.force.follows_cut:
+        raise SetupError(
+            "The force of this set-up is stated and does not follow the cut: no other feed, way or number of passes "
+            "would change it. State a force from the material first.",
+            where="force",
+        )
+    if not setup.engagement:
+        setup = setup.replace(engagement=True, provenance=setup.provenance)
+    now = run(setup)
+    if now.verdict.level in ("unjudged", "unreached", "missed"):
+        raise SetupError(f"There is no number to improve: {now.verdict.sentence}")
+    asked_for = [*_ways(now)]
+    found = [Way("now", "As it is", now)]
+    with step(0, len(asked_for) + 1, "The largest feed"):
+        found.append(_feed(now, run))
+    for k, (name, title, path) in enumerate(asked_for, 1):
+        with step(k, len(asked_for) + 1, title):
+            found.append(_way(name, title, partial(_run_along, setup, path, run)))
+    return Advice(tuple(found))
+
+
+def _ways(now: SimulationResult) -> Iterator[tuple[str, str, Callable[[], Toolpath]]]:
+    """Name, title and path of each way."""
+    path, top = now.setup.toolpath, float(now.setup.stock_block.upper[2])
+    depth = max(top - float(path.extents[0][2]), 0.0)
+    yield "turned round", "The other way round", partial(turned_round, path, top)
+    for count in range(2, MOST_LEVELS + 1):
+        levels = depth * (1.0 - np.arange(1, count + 1) / count)
+        yield f"{count} passes", f"In {count} passes", partial(in_levels, path, levels, top)
+    rest = np.array([ALLOWANCE * depth, 0.0])
+    said = f"Roughing, {format_si(rest[0], 'mm')} left for a last pass"
+    yield "allowance", said, partial(in_levels, path, rest, top)
+    yield "once more", "The same path once more", partial(in_levels, path, np.zeros(2), top)
+
+
+def _along(setup: SimulationSetup, path: Toolpath) -> SimulationSetup:
+    """The set-up along another path that cuts the same part."""
+    said, source = dict(setup.provenance), PointsSource(path, setup.source.name)
+    return setup.replace(source=source, stock=setup.stock_block, provenance=said)
+
+
+def _run_along(setup: SimulationSetup, path: Callable[[], Toolpath], run: Run) -> SimulationResult:
+    return run(_along(setup, path()))
+
+
+def _way(name: str, title: str, run: Callable[[], SimulationResult], factor: float = 1.0) -> Way:
+    try:
+        return Way(name, title, run(), factor=factor)
+    except RobomillError as refusal:
+        return Way(name, title, None, str(refusal))
+
+
+def _feed(now: SimulationResult, run: Run) -> Way:
+    """The largest feed that keeps the tolerance, by halving between one that does and one that does not."""
+    setup, path = now.setup, now.setup.toolpath
+
+    def at(factor: float) -> Way:
+        title = f"{format_percent(factor)} of the feed"
+        return _way("feed", title, partial(_run_along, setup, partial(fed, path, factor), run), factor)
+
+    slow, fast = (1.0, FASTEST) if not now.verdict.red else (SLOWEST, 1.0)
+    kept, other = at(slow), at(fast)
+    if other.keeps:
+        return replace(other, title=f"{other.title}, the most that is tried")
+    if not kept.keeps:
+        return replace(kept, title=f"{kept.title}: no feed keeps the tolerance")
+    for _ in range(HALVED):
+        middle = at(float(np.sqrt(kept.factor * other.factor)))
+        kept, other = (middle, other) if middle.keeps else (kept, middle)
+    return replace(kept, title=f"{kept.title}, the most that keeps the tolerance")

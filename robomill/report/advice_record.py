@@ -1,0 +1,52 @@
+"""Ways to cut a part as a JSON-ready record in display units, and as lines for a person."""
+
+from typing import Any
+
+from robomill import __version__
+from robomill.improve.advice import Advice, Way
+from robomill.report.assumed import assumed_of_setup
+from robomill.report.design_record import deviations
+from robomill.units import from_si
+
+
+def advice_record(found: Advice) -> dict[str, Any]:
+    """Every way with its time and what it leaves, the one there is first."""
+    setup = found.ways[0].run.setup if found.ways[0].run else None
+    return {
+        "robomill": __version__,
+        "name": setup.name if setup else None,
+        "robot": setup.robot.name if setup else None,
+        "tolerance_mm": float(from_si(setup.tolerance, "mm")) if setup else None,
+        "best": found.best.name,
+        "ways": [_way(way) for way in found.ways],
+        "assumed": [each.record() for each in assumed_of_setup(setup)] if setup else [],
+        "digest": found.digest(),
+    }
+
+
+def _way(way: Way) -> dict[str, Any]:
+    none = {"max_deviation_mm": None, "wall_mm": None, "floor_mm": None}
+    return {
+        "name": way.name,
+        "title": way.title,
+        "feed_factor": way.factor,
+        "minutes": way.seconds / 60.0,
+        "removal_cm3_min": way.removal_rate * 60e6,
+        "share": way.share,
+        **(deviations(way.run) if way.run else none),
+        "verdict": way.run.verdict.level if way.run else None,
+        "verdict_sentence": way.run.verdict.sentence if way.run else None,
+        "refused": way.refused or None,
+    }
+
+
+def advice_lines(record: dict[str, Any]) -> list[str]:
+    """A line a way."""
+    lines = []
+    for way in record["ways"]:
+        if way["refused"]:
+            lines.append(f"{way['title']}: does not apply. {way['refused']}")
+            continue
+        lines.append(f"{way['title']}, {way['minutes']:.2f} min: {way['verdict_sentence']}")
+    best = next(way["title"] for way in record["ways"] if way["name"] == record["best"])
+    return [*lines, f"best      {best}"]

@@ -1,0 +1,75 @@
+"""Other ways to cut, against runs made by hand."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import SetupError
+from robomill.improve.advice import advise
+
+SETUP = rm.load_setup("paper_flute/setup_process").replace(step=4e-3, cell=5e-4)
+
+
+@pytest.fixture(scope="module")
+def advice() -> rm.Advice:
+    return advise(SETUP)
+
+
+def way(advice: rm.Advice, name: str):
+    return next(each for each in advice.ways if each.name == name)
+
+
+def test_the_largest_feed_keeps_the_tolerance_and_a_hundredth_more_does_not(advice: rm.Advice) -> None:
+    found = way(advice, "feed")
+    assert found.keeps
+    text = SETUP.source.text
+    assert "F1800" in text
+    for more, kept in ((1.0, True), (1.02, False)):
+        run = rm.simulate(
+            SETUP.replace(source=rm.GCodeSource(text.replace("F1800", f"F{1800 * found.factor * more:.6f}")))
+        )
+        assert (run.verdict.share <= 1.0) == kept
+    assert found.seconds == pytest.approx(way(advice, "now").seconds / found.factor)
+
+
+def test_two_passes_are_two_programs_lines_one_after_the_other(advice: rm.Advice) -> None:
+    p = np.array(
+        [[-70, 0, 9], [-70, 0, -1], [20, 0, -1], [20, 0, 9], [-70, 0, 9], [-70, 0, -2], [20, 0, -2]], dtype=float
+    )
+    lines = SETUP.toolpath.to_dataframe()
+    at_feed = lines[lines["cutting"]]
+    p[[0, 1, 4, 5], 0] = lines["X_mm"][at_feed.index[0] - 1]
+    p[[2, 3, 6], 0] = at_feed["X_mm"].iloc[-1]
+    cut = [False, False, True, False, False, False, True]
+    path = rm.Toolpath.from_points(p_mm=p, feed_mm_min=1800, spindle_1_min=SETUP.toolpath.n_s.max() * 60, cutting=cut)
+    by_hand = rm.simulate(SETUP.replace(source=path, stock=SETUP.stock_block))
+    found = way(advice, "2 passes").run
+    assert found.verdict.wall.value == pytest.approx(by_hand.verdict.wall.value, rel=1e-6)
+    assert found.verdict.floor.value == pytest.approx(by_hand.verdict.floor.value, rel=1e-6)
+
+
+def test_material_removed_is_that_of_the_groove_in_its_time(advice: rm.Advice) -> None:
+    now = way(advice, "now")
+    assert now.removal_rate * now.seconds == pytest.approx(now.run.ideal.removed_volume)
+    assert way(advice, "2 passes").removal_rate == pytest.approx(now.removal_rate / 2.0, rel=1e-3)
+
+
+def test_the_best_is_the_quickest_within_tolerance(advice: rm.Advice) -> None:
+    kept = [each for each in advice.ways if each.keeps]
+    assert advice.best.seconds == min(each.seconds for each in kept)
+    strict = advise(SETUP.replace(tolerance=1e-6))
+    assert not any(each.keeps for each in strict.ways)
+    assert "no feed keeps the tolerance" in way(strict, "feed").title
+    assert strict.best.share == min(each.share for each in strict.ways)
+
+
+@pytest.mark.parametrize(
+    ("setup", "words"),
+    [
+        (rm.load_setup("paper_flute"), "does not follow the cut"),
+        (SETUP.replace(part_zero_mm=(0, -9000, 0)), "no number"),
+    ],
+)
+def test_what_another_way_would_not_change_is_refused(setup: rm.SimulationSetup, words: str) -> None:
+    with pytest.raises(SetupError, match=words):
+        advise(setup)

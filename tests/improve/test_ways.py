@@ -1,0 +1,61 @@
+"""Paths that cut the same part otherwise, by their geometry."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import ToolpathError
+from robomill.improve.ways import CLEAR, PLUNGE, fed, in_levels, turned_round
+
+PATH = rm.read_gcode("G21 G90 S12000 M3\nG0 X-10 Y0 Z5\nG0 Z-2\nG1 X30 F1200\nG1 Y10 F600\nG0 Z5\nG0 X-10 Y0\nM2\n")
+
+
+def cuts(path: rm.Toolpath) -> set[tuple[tuple[float, ...], tuple[float, ...], float]]:
+    """Straight cuts below the face of the part as start, end and feed, mm."""
+    ends = np.round(path.p * 1e3, 6) + 0.0
+    moves = [
+        (tuple(ends[i - 1]), tuple(ends[i]), round(float(path.v_f[i] * 6e4), 6))
+        for i in range(1, len(path))
+        if path.cutting[i]
+    ]
+    return {move for move in moves if move[0] != move[1]}
+
+
+def test_another_feed_changes_nothing_but_the_time() -> None:
+    quick = fed(PATH, 2.0)
+    assert quick.t[-1] == pytest.approx(PATH.t[-1] / 2.0)
+    np.testing.assert_array_equal(quick.p, PATH.p)
+
+
+def test_turned_round_the_same_cuts_go_backwards_each_with_its_feed() -> None:
+    back = turned_round(PATH, 0.0)
+    there = {(end, start, feed) for start, end, feed in cuts(PATH)}
+    extra = cuts(back) - there
+    assert there <= cuts(back)
+    assert len(extra) == 1, "the way into the material, where it came out as a rapid"
+    ((start, end, feed),) = extra
+    assert (start[2], end[2]) == (5.0, -2.0)
+    assert feed == pytest.approx(PLUNGE * 6e4)
+    twice = turned_round(back, 0.0)
+    np.testing.assert_allclose(twice.p, PATH.p)
+
+
+def test_levels_end_on_the_path_and_go_over_the_part_between() -> None:
+    path = in_levels(PATH, np.array([1e-3, 0.0]), 0.0)
+    assert cuts(PATH) <= cuts(path)
+    raised = {((*a[:2], a[2] + 1.0), (*b[:2], b[2] + 1.0), feed) for a, b, feed in cuts(PATH)}
+    assert cuts(path) == cuts(PATH) | raised
+    aside = np.linalg.norm(np.diff(path.p[:, :2], axis=0), axis=1) > 1e-9
+    rapid = aside & ~path.cutting[1:]
+    between = len(PATH)
+    assert (path.p[between : between + 2, 2] >= 5e-3 + CLEAR - 1e-12).all()
+    assert (path.p[1:][rapid][:, 2] >= -2e-3).all()
+    assert path.t[-1] == pytest.approx(2.0 * PATH.t[-1])
+
+
+def test_what_would_cut_air_is_a_rapid_and_a_tool_that_leans_is_refused() -> None:
+    high = in_levels(PATH, np.array([3e-3, 0.0]), 0.0)
+    assert high.t[-1] == pytest.approx(PATH.t[-1])
+    leaning = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [9, 0, -2]], feed_mm_min=600, k=(0.0, 0.1, 1.0))
+    with pytest.raises(ToolpathError, match="leans"):
+        in_levels(leaning, np.zeros(2), 0.0)
