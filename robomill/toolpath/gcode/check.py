@@ -36,6 +36,9 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
         for letter in "xy":
             if letter in words:
                 raise block.refuse(f"polar coordinates and {letter.upper()} are on one line; give one of them.")
+    if block.g.get(modal.NON_MODAL) == 530 and not (axes or polar or dialect.strict):
+        del block.g[modal.NON_MODAL]
+        machine.note("harmless-g", "ignored", "G53 without axis words is left out: it moves nothing")
     non_modal, motion = block.g.get(modal.NON_MODAL, -1), block.g.get(modal.MOTION, -1)
     covets = non_modal in modal.NEEDS_AXES
     if covets and (polar or (not axes and non_modal in (520, 920))):
