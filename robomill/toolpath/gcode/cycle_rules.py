@@ -4,6 +4,7 @@
 of ``codes``: R, P, Q, I, J, K, and in the column of Z the bottom along whatever axis is drilled. ``m.keeps_heights``
 says that a control (Fanuc, Haas) keeps R and the bottom as the heights that they are: G91 behind a hole in G90 counts
 places from hole to hole, and not how deep they are. It also makes no hole for L0, and keeps its words.
+``m.is_fanuc`` says that it taps and bores (G89) out to R alone, and is at rapid from there.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
@@ -177,7 +178,9 @@ def _hole(m, motion: int, line: int, end, clearance: float, clear: float, bottom
     if is_tap(motion):
         _tap(m, line, end, bottom, rows)
         dwell(m, 0.0 if math.isnan(m.cycle[P]) else m.cycle[P])
-        _tap(m, line, end, clear, rows)
+        _tap(m, line, end, clearance if m.is_fanuc else clear, rows)
+        if m.is_fanuc and clear > clearance:
+            _go(m, TRAVERSE, line, end, clear, rows)
         return
     if pecks(motion):
         depth = clearance - m.cycle[Q]
@@ -191,12 +194,12 @@ def _hole(m, motion: int, line: int, end, clearance: float, clear: float, bottom
     _go(m, FEED, line, end, bottom, rows)
     if takes_dwell(motion):
         dwell(m, m.cycle[P])
-    if motion == 850:
+    if motion == 850 or (motion == 890 and m.is_fanuc):
         _go(m, FEED, line, end, clearance, rows)
     if motion == 880:  # the machine waits, and the retract is made by hand
         end[axes(m.plane)[2]] = clear
     else:
-        _go(m, FEED if motion == 890 else TRAVERSE, line, end, clear, rows)
+        _go(m, FEED if motion == 890 and not m.is_fanuc else TRAVERSE, line, end, clear, rows)
 
 
 def _tap(m, line: int, end, height: float, rows) -> None:

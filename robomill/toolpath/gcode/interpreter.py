@@ -166,7 +166,7 @@ class Interpreter(Klartext):
     def _check_time(self, index: int) -> None:
         if self.steps <= len(self.main.lines):
             return
-        now = thread_time()
+        now = thread_time() - self.stretches.preparing
         if self.looping_since is None:
             self.looping_since = now
         elif now - self.looping_since > LOOPING:

@@ -311,13 +311,19 @@ def tool_length(machine: Machine, block: Block, code: int) -> None:
 
 
 def known_tool(machine: Machine, block: Block, number: int) -> Tool:
-    """The tool, of no size if there is no table; 0 is the one in the spindle. Raises GCodeError if it is missing."""
+    """The tool, of no size if there is no table, or it is not there; 0 is the one in the spindle.
+
+    Raises GCodeError where LinuxCNC is stated, which knows the tools of its table alone.
+    """
     if number == 0:
         return machine.tool
     try:
         return machine.find_tool(number) or Tool(number)
     except KeyError:
-        raise block.refuse(f"tool {number} is not in the tool table; add it.") from None
+        if machine.strict:
+            raise block.refuse(f"tool {number} is not in the tool table; add it.") from None
+    machine.note("tool-unknown", "warning", f"tool {number} is not in the tool table: its size is not known; add it")
+    return Tool(number)
 
 
 def compensation_on(machine: Machine, block: Block) -> None:
@@ -354,6 +360,10 @@ def compensation_on(machine: Machine, block: Block) -> None:
                 else ""
             )
             raise block.refuse(f"{name} needs the diameter of {which or 'the tool in the spindle'}; give a tool table.")
+        if tool.number and tool.number not in machine.tools:
+            raise block.refuse(f"tool {tool.number} is not in the tool table; add it.")
+        if not tool.number and machine.tool_name:
+            raise block.refuse(f'tool "{machine.tool_name[:40]}" is not in the tool table; add it under that name.')
         radius, orientation = from_si(tool.diameter, machine.unit) / 2.0, tool.orientation
         if machine.plane != 18 and orientation not in (0, 9):
             raise block.refuse(f"{name} with a lathe tool works in the plane G18 only.")

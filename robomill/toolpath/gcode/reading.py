@@ -117,10 +117,12 @@ def interpret(
 def _machine(tools: Tools | None, dialect: Dialect, lines: int) -> Machine:
     machine = Machine(tools)
     machine.recorder.most = most_moves(lines)
+    machine.strict = dialect.strict
     machine.keeps_heights = dialect.keeps_heights
     machine.enters_square = dialect.name in ("fanuc", "sinumerik", "heidenhain")
     if dialect.name == "fanuc":
         begin_empty(machine)
+        machine.retract_r = False  # these controls begin in G98
     return machine
 
 

@@ -14,7 +14,7 @@ _CODES = (
 )
 _FLAGS = (
     *("absolute", "retract_r", "mist", "flood", "arc_absolute", "arc_not_allowed"),
-    *("seeking", "broke", "continued", "keeps_heights", "kept_steps"),
+    *("seeking", "broke", "continued", "is_fanuc", "keeps_heights", "kept_steps"),
 )
 STATE = np.dtype(
     [

@@ -116,14 +116,16 @@ def _places(code: str, machine: Machine) -> str:
 
 
 def named_tool(name: str, number: int, machine: Machine) -> str:
-    """The word of T="...", by the number that the tool table gives that name; none without a table."""
-    if machine.tools is None:
-        machine.tool_name = name
-        machine.findings.add(
-            "named-tool", "info", number, f'tool "{name[:40]}" is of unknown size: there is no tool table'
-        )
-        return ""
-    found = [tool.number for tool in machine.tools.values() if tool.name and tool.name.lower() == name.lower()]
-    if not found:
-        raise GCodeError.at(number, f'tool "{name[:40]}" is not in the tool table; add it there under that name.')
-    return f"T{found[0]}"
+    """The word of T="...", by the number that the tool table gives that name; none where it gives none."""
+    tools = machine.tools
+    found = [tool.number for tool in (tools or {}).values() if tool.name and tool.name.lower() == name.lower()]
+    if found:
+        return f"T{found[0]}"
+    machine.tool_name = name
+    if tools is None:
+        text = f'tool "{name[:40]}" is of unknown size: there is no tool table'
+        machine.findings.add("named-tool", "info", number, text)
+    else:
+        text = f'tool "{name[:40]}" is not in the tool table: its size is not known; add it there under that name'
+        machine.findings.add("tool-unknown", "warning", number, text)
+    return ""

@@ -2,6 +2,7 @@
 
 import sys
 from operator import attrgetter
+from time import thread_time
 from typing import Any
 
 import numpy as np
@@ -28,19 +29,23 @@ _state_of = attrgetter(*_FIELDS)
 
 
 class Stretches:
-    """Runs stretches on a machine: in plain Python, or compiled where so many lines are executed that it pays."""
+    """Runs stretches on a machine: in plain Python, or compiled where so many lines are executed that it pays.
+
+    ``preparing`` is the time (s) that the first call of compiled rules took: they may have had to be compiled for it.
+    """
 
     def __init__(self, machine: Any) -> None:
         self._machine = machine
         self._state = np.zeros(1, STATE)
         self._kernels: Any = None
+        self.preparing = 0.0
 
     def run(self, lines: Lines, structure: Structure, at: int, executed: int, most: int) -> tuple[int, int, bool]:
         """Execute lines from index ``at`` on: how many, which comes next, and whether that may be one of a stretch too.
 
         ``executed`` lines came before; at most ``most`` are executed.
         """
-        machine, recorder = self._machine, self._machine.recorder
+        machine, recorder, began = self._machine, self._machine.recorder, thread_time()
         if self._kernels is None and max(len(lines), executed) >= (LOADED_LONG if _KERNELS in sys.modules else LONG):
             from robomill.toolpath.gcode import kernels
 
@@ -60,4 +65,5 @@ class Stretches:
         for name, value in zip(_FIELDS, self._state[0].item()):
             setattr(machine, name, value.tolist() if STATE[name].shape else value)
         recorder.take(machine.moves)
+        self.preparing = self.preparing or thread_time() - began
         return done, at, done == count or machine.moves == len(rows)

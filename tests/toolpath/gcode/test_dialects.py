@@ -186,7 +186,7 @@ def test_a_tool_that_is_called_by_name_is_the_one_of_that_name() -> None:
     program = interpret(text, dialect="sinumerik", tools=tools)
     assert program.end[-1] * 1e3 == pytest.approx([20, 5, 0])
     assert program.tool[-1] == 7
-    with pytest.raises(GCodeError, match='Line 2: tool "Mill_10" is not in the tool table; add it there'):
+    with pytest.raises(GCodeError, match='Line 4: tool "Mill_10" is not in the tool table; add it under that name'):
         interpret(text, dialect="sinumerik", tools={4: Tool(4, 6e-3)})
 
 

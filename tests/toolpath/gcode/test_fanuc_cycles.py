@@ -91,3 +91,20 @@ def test_who_gives_r_anew_in_g91_counts_as_linuxcnc_does() -> None:
     stated, guessed = (interpret(text, dialect=dialect) for dialect in ("linuxcnc", "auto"))
     np.testing.assert_allclose(guessed.end, stated.end, atol=1e-12)
     np.testing.assert_allclose(guessed.end[guessed.kind == 1, 2] * 1e3, [-5, 5, 5, 6], atol=1e-9)
+
+
+def test_a_control_of_fanuc_begins_with_g98() -> None:
+    """Holes end at the initial level until G99 is said; LinuxCNC begins at the R plane."""
+    assert [z for _, _, z in ends("G81 X10 Z-5 R2\n")][-2:] == [-5, 10]
+    assert [z for _, _, z in ends("G99 G81 X10 Z-5 R2\n")][-2:] == [-5, 2]
+
+
+def ends(body: str) -> list[tuple[float, ...]]:
+    return [tuple(row) for row in (np.round(read(body).end * 1e3, 9) + 0.0).tolist()]
+
+
+@pytest.mark.parametrize("cycle", ["G84 X10 Z-5 R2", "G89 X10 Z-5 R2", "G85 X10 Z-5 R2"])
+def test_taps_and_borers_leave_at_feed_up_to_r_and_at_rapid_from_there(cycle: str) -> None:
+    program = read(f"{cycle}\n")
+    out = [(int(k), round(float(z) * 1e3, 9)) for k, z in zip(program.kind, program.end[:, 2])]
+    assert out[-3:] == [(1, -5), (1, 2), (0, 10)]

@@ -130,9 +130,16 @@ def test_messages_show_parameters() -> None:
     assert program.messages == ((2, " hello"), (3, " 2.500000 and ###### and 0.000000"))
 
 
-def test_a_tool_that_the_table_lacks_is_refused() -> None:
-    with pytest.raises(GCodeError, match="tool 9 is not in the tool table"):
-        interpret("T9 M6\n", tools={1: Tool(1)})
+def test_a_tool_that_the_table_lacks_is_said() -> None:
+    """It may cut nothing that matters; where it cuts, a simulation asks for it. LinuxCNC stops, and G41 has to know."""
+    text = "G21 G90 F100\nT9 M6\nG43 H9\nG1 X1\nM2\n"
+    program = interpret(text, tools={1: Tool(1)})
+    assert [(f.level, f.line, f.count) for f in program.findings if f.code == "tool-unknown"] == [("warning", 2, 3)]
+    assert program.tool[-1] == 9
+    with pytest.raises(GCodeError, match="Line 2: tool 9 is not in the tool table; add it"):
+        interpret(text, tools={1: Tool(1)}, dialect="linuxcnc")
+    with pytest.raises(GCodeError, match="Line 4: tool 9 is not in the tool table; add it"):
+        interpret(text.replace("G1 X1", "G41 D9"), tools={1: Tool(1)})
 
 
 def test_report_and_moves(tmp_path: Path) -> None:
