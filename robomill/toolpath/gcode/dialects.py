@@ -40,6 +40,10 @@ NAMED = {
     510: "G51 scales coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
     511: "G51.1 mirrors coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
     682: "G68.2 tilts the working plane, which is not read; post the program with the tool's direction.",
+    **{
+        code: f"G{code // 10} sets the pole of polar coordinates (Sinumerik), which are not read; write X and Y."
+        for code in (1100, 1110, 1120)
+    },
     650: "G65 calls a macro with values, which is read for Fanuc-like controls alone; choose that dialect.",
     660: "G66 calls a macro at every point, which is read for Fanuc-like controls alone; choose that dialect.",
 }
@@ -146,7 +150,7 @@ class Dialect:
                 code = _IN_MS.sub(_in_seconds, code)
             return _TIP.sub("G43", _DWELL.sub(r"\1P", code))
         if self._is_fanuc_like:
-            return _take_corner(raw, machine)
+            return _DWELL.sub(r"\1P", _take_corner(raw, machine)) if not self.strict else raw
         if self.name == "grbl" and raw.lstrip()[:1] in ("$", "!", "~", "?"):
             return _from_grbl(raw, number, findings)
         return raw

@@ -4,11 +4,13 @@ import math
 
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import P
-from robomill.toolpath.gcode.cycle_rules import is_cycle, takes_dwell
+from robomill.toolpath.gcode.cycle_rules import is_cycle, pecks, takes_dwell
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.words import Block
 
+_THOUSANDTHS = 100.0
+"""Nobody pecks so deep: controls count a Q without a point in steps of 0.001 mm (0.0001 in)."""
 _FINE_BORING, _BORING, _BACK_BORING = 760, 860, 870
 
 
@@ -30,6 +32,9 @@ def repeats(machine: Machine, block: Block) -> None:
         return
     if "k" in words and "l" not in words:
         words["l"] = words.pop("k")
+    if pecks(motion) and words.get("q", 0.0) >= _THOUSANDTHS and words["q"] == round(words["q"]):
+        words["q"] /= 1000.0 if machine.unit == "mm" else 10_000.0
+        machine.note("peck-thousandths", "info", "a depth per peck (Q) of 100 and more counts in the control's steps")
     if takes_dwell(motion) and "p" not in words and (machine.motion != motion or math.isnan(machine.cycle[P])):
         words["p"] = 0.0
     steps = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 910

@@ -77,7 +77,7 @@ def _takes(w, motion: int, has_axes: bool, has_centre: bool) -> bool:
     """True if a line has only words that its motion (-1: none) uses; cycles of which more is to be said are not."""
     if is_cycle(motion):
         turns = not (math.isnan(w[A]) and math.isnan(w[B]) and math.isnan(w[C]))
-        if turns or has_centre or motion in (740, 840, 870, 880) or w[L] == 0.0:
+        if turns or has_centre or motion in (740, 840, 870, 880) or w[L] == 0.0 or w[Q] >= 100.0:
             return False
         return has_axes and math.isnan(w[P]) and (pecks(motion) or math.isnan(w[Q]))  # controls count dwells otherwise
     if not (math.isnan(w[P]) and math.isnan(w[Q]) and math.isnan(w[L])):

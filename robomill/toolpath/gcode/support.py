@@ -236,6 +236,7 @@ DIFFERENCES: tuple[str, ...] = (
     "A G1, G2 or G3 without a feed rate is refused, as on the machine; LinuxCNC's preview takes a feed of 1.",
     "Probing is taken to travel its whole way and to touch nothing.",
     "Homes (G28, G30) and places in the machine (G53) are not known: the path stands clear of the part there.",
+    "Holes in G91 behind one in G90 keep its R and depth, as on Fanuc and Haas, unless LinuxCNC is stated.",
     "What LinuxCNC refuses and other controls run (axis words after G80, G0 beside G28) is read unless it is stated.",
 )
 """Where reading differs from LinuxCNC 2.9, by design."""

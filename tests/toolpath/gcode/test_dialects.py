@@ -228,3 +228,17 @@ ONLY_SINUMERIK = [
 @pytest.mark.parametrize("line", ONLY_SINUMERIK)
 def test_words_that_only_a_sinumerik_has_tell_it(line: str) -> None:
     assert choose_dialect(f"G90 G54\n{line}\nG1 X5 F100\n", "auto").name == "sinumerik"
+
+
+@pytest.mark.parametrize("dialect", ["auto", "fanuc"])
+@pytest.mark.parametrize("word", ["X", "U", "P"])
+def test_seconds_of_a_dwell_stand_behind_x_u_or_p(dialect: str, word: str) -> None:
+    program = interpret(f"G21 G90\nG1 X1. F9\nG4 {word}1.5\nX2.\nM30\n", dialect=dialect)
+    assert program.dwell_time == pytest.approx(1.5)
+    assert (program.end[:, 0] * 1e3).tolist() == [1, 2]
+
+
+@pytest.mark.parametrize("code", ["G110", "G111", "G112"])
+def test_poles_of_a_sinumerik_are_named(code: str) -> None:
+    with pytest.raises(GCodeError, match=f"Line 2: {code} sets the pole of polar coordinates"):
+        interpret(f"G71 F9\n{code} X1 Y1\nM30\n")

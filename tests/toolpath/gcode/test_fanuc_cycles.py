@@ -108,3 +108,13 @@ def test_taps_and_borers_leave_at_feed_up_to_r_and_at_rapid_from_there(cycle: st
     program = read(f"{cycle}\n")
     out = [(int(k), round(float(z) * 1e3, 9)) for k, z in zip(program.kind, program.end[:, 2])]
     assert out[-3:] == [(1, -5), (1, 2), (0, 10)]
+
+
+@pytest.mark.parametrize("dialect", ["fanuc", "auto"])
+def test_a_depth_per_peck_without_a_point_counts_in_steps_of_the_control(dialect: str) -> None:
+    """Fanuc: Q takes no decimal point; Q2000 is 2 mm, and 0.2 in where the program counts in inches."""
+    for unit, mm in (("G21", 1.0), ("G20", 25.4)):
+        hole = "G99 G83 X0 Y0 Z-5. R1. Q{} F9\n".format(2000 if unit == "G21" else 20000)
+        program = interpret(f"{unit} G90 S9 M3\nG0 Z9.\n{hole}G80\nM30\n", dialect=dialect)
+        np.testing.assert_allclose(program.end[program.kind == 1, 2] * 1e3 / mm, [-1, -3, -5], atol=1e-9)
+        assert "peck-thousandths" in {f.code for f in program.findings}
