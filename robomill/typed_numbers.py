@@ -29,7 +29,7 @@ _NUMBER = re.compile(
     r"(?:e(?P<e>[+-]?\d+)| ?[·⋅×*x] ?10(?:\^|\*\*)(?P<ten>[+-]?\d+))?)(?![\d.,'])",
     re.IGNORECASE,
 )
-_PLAIN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
+_PLAIN = re.compile(r"[+-]?(\d+(?:\.\d*)?|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
 _GROUPED = re.compile(r"\d{1,3}(?P<mark>[ '])\d{3}((?P=mark)\d{3})*([.,]\d*)?")
 _PARTED = re.compile(r"[1-9]\d{0,2}(?P<mark>[.,])\d{3}((?P=mark)\d{3})*(?P<rest>(?!(?P=mark))[.,]\d*)?")
 _EITHER = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")

@@ -29,7 +29,7 @@ from robomill.units import format_many, from_si, to_si, unit_label
 SUFFIXES = (".csv", ".parquet")
 ASKED = {"mm": "mm/min", "in": "in/min", "cm": "mm/min", "m": "mm/min"}
 """Units that somebody may say of a file that is silent, each with that of its feeds."""
-MOST_POINTS = 2_000_000
+MOST_POINTS, MOST_VALUES = 2_000_000, 20_000_000  # rows, and numbers in all columns: a packed file may be next to none
 PLACE, AXIS = ("x", "y", "z"), ("i", "j", "k")
 FEEDS = ("mm/min", "mm/s", "in/min", "in/s")
 UNITS: dict[str, tuple[str, ...]] = {
@@ -116,6 +116,11 @@ def _of_parquet(data: bytes, name: str, layout: Layout) -> tuple[Columns, str]:
             found = f"{file.metadata.num_rows:,}"
             raise ToolpathError(f"{name}: found {found} rows, expected {MOST_POINTS:,} at most; split the file.")
         numbers = [each.name for each in file.schema_arrow if _is_number(pyarrow, each.type)]
+        if len(numbers) * file.metadata.num_rows > MOST_VALUES:
+            raise ToolpathError(
+                f"{name}: found {len(numbers):,} columns of {file.metadata.num_rows:,} numbers, expected "
+                f"{MOST_VALUES:,} numbers at most; leave out the columns that no path has."
+            )
         frame = file.read(columns=numbers).to_pandas(ignore_metadata=True)
     except ToolpathError:
         raise

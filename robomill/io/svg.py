@@ -6,7 +6,6 @@ Layers are those of Inkscape, else the groups of the page. Y points up from the 
 import io
 import math
 import re
-import time
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any
@@ -17,15 +16,14 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.extras import needed
-from robomill.io.dxf import LONGEST_S, PER_INCH, Read, metres
-from robomill.progress import checkpoint
-from robomill.toolpath.contour import Contour
+from robomill.io.dxf import PER_INCH, STUMBLES, Read, Reading, metres
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
-from robomill.toolpath.sketch import MAX_POINTS
 
-DEEPEST = 200  # elements in elements
-MOST_ELEMENTS, OF_ONE = 20_000, 50  # drawn, each time they are used; so many characters of a path count as one
-MOST_STYLE, MOST_TRANSFORM = 100_000_000, 1_000  # characters: of styles, times elements; of one transform
+DEEPEST = 200  # elements in elements, twice as many where some are used by others
+MOST_TAGS = 100_000  # beginnings, ends and comments of elements
+MOST_ELEMENTS, OF_ONE = 20_000, 50  # drawn, each time they are used; so many characters of a path count as one,
+STRETCHES = 5  # and so many lines and curves of it
+MOST_STYLE, MOST_TRANSFORM = 20_000_000, 1_000  # characters: of styles, times elements; of any other attribute
 ABSOLUTE = {"mm": "mm", "cm": "cm", "in": "in", "pt": "pt", "pc": "pt", "q": "mm"}  # and what of it people know
 TIMES = {"pc": 12.0, "q": 0.25}
 SVG, INKSCAPE = "{http://www.w3.org/2000/svg}", "{http://www.inkscape.org/namespaces/inkscape}"
@@ -35,8 +33,12 @@ WORDS = ("text", "image", "foreignObject")
 # All that says where a line is; the rest would be handed down to every element below.
 XLINK = "{http://www.w3.org/1999/xlink}href"
 PLACES = "d points x y x1 y1 x2 y2 cx cy r rx ry width height viewBox preserveAspectRatio transform"
-KEPT = frozenset((*PLACES.split(), "style", "display", "class", "id", "href", XLINK, LAYER))
-_SIZE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([A-Za-z%]*)\s*")
+STYLED = frozenset((*PLACES.split(), "display"))
+KEPT = STYLED | {"style", "class", "id", "href", XLINK, LAYER}
+LONG = {"d", "points", "style"}  # attributes that may be
+COMMANDS = "MLTHVCSQAZmlthvcsqaz"
+_NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
+_SIZE = re.compile(r"\s*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)\s*([A-Za-z%]*)\s*")
 
 
 class Svg:
@@ -55,6 +57,8 @@ class Svg:
             raise ToolpathError(
                 f"{self.name}: it declares entities (<!ENTITY), which no plain drawing needs; save it as plain SVG."
             )
+        if text.count("<") > MOST_TAGS:
+            raise self._too_many()
         try:
             root = ElementTree.fromstring(text)
         except ElementTree.ParseError as exc:
@@ -71,26 +75,43 @@ class Svg:
         return root
 
     def _refuse(self, why: str) -> ToolpathError:
-        return ToolpathError(f"{self.name}: {why}; save what is to be cut in a drawing of its own.")
+        return Reading(self.name).refuse(why)
+
+    def _too_many(self) -> ToolpathError:
+        return self._refuse(f"it holds more than {MOST_ELEMENTS:,} elements, each as often as it is used")
 
     # ---- a look at everything before it is drawn -------------------------------------------------------------------
     def _look(self) -> None:
         """Names layers, puts away what is drawn only where it is used, and counts what all uses come to."""
         known = {e.attrib["id"]: e for e in self.root.iter() if "id" in e.attrib}
-        self._count_of(self.root, known, {}, set())
-        style = sum(len(e.text or "") for e in self.root.iter() if _kind(e) == "style")
-        if style * sum(1 for _ in self.root.iter()) > MOST_STYLE:
-            raise self._refuse(f"its styles are {style:,} characters long")
         for parent in list(self.root.iter()):
-            for child in list(parent):
-                self._look_at(parent, child)
+            for place, child in enumerate(parent):
+                self._look_at(parent, place, child)
         for element in self.root.iter():
             for key in [key for key in element.attrib if key not in KEPT]:
                 del element.attrib[key]
-            if len(element.get("transform", "")) > MOST_TRANSFORM or len(element.get("class", "")) > MOST_TRANSFORM:
-                raise self._refuse(f"a transform or class in it has more than {MOST_TRANSFORM:,} characters")
+            for key in element.attrib.keys() - LONG:
+                if len(element.attrib[key]) > MOST_TRANSFORM:
+                    raise self._refuse(f"the {key:.20} of an element has more than {MOST_TRANSFORM:,} characters")
+            if "href" in element.attrib:  # of two it is the one that holds
+                element.attrib.pop(XLINK, None)
+            self._reduce(element)
+        drawn, turned = self._count_of(self.root, known, {}, set())
+        style = sum(len(e.text or "") for e in self.root.iter() if _kind(e) == "style")
+        if style * drawn > MOST_STYLE:
+            raise self._refuse(f"its styles are {style:,} characters long")
+        if turned > MOST_STYLE:
+            raise self._refuse("its transforms, one in another, are too long")
 
-    def _look_at(self, parent: ElementTree.Element, child: ElementTree.Element) -> None:
+    def _reduce(self, element: ElementTree.Element) -> None:
+        """Leave of words and styles what says where a line is, and whether it is drawn."""
+        element.text = _rules(element.text or "") if _kind(element) == "style" else None
+        if "style" in element.attrib:
+            element.set("style", _placing(element.attrib["style"]))
+        if "class" in element.attrib:
+            element.set("class", " ".join(dict.fromkeys(element.attrib["class"].split())))
+
+    def _look_at(self, parent: ElementTree.Element, place: int, child: ElementTree.Element) -> None:
         kind = _kind(child)
         if kind == "g" and (parent is self.root or child.get(f"{INKSCAPE}groupmode") == "layer"):
             label = child.get(f"{INKSCAPE}label") or child.get("id")
@@ -98,7 +119,7 @@ class Svg:
                 child.set(LAYER, label[:200])
         if kind in NOT_DRAWN and _kind(parent) != "defs":
             put_away = ElementTree.Element(f"{SVG}defs")
-            parent[list(parent).index(child)] = put_away
+            parent[place] = put_away
             put_away.append(child)
         if kind in WORDS:
             self.left_out[kind] += 1
@@ -107,28 +128,31 @@ class Svg:
         self,
         element: ElementTree.Element,
         known: dict[str, ElementTree.Element],
-        counted: dict[ElementTree.Element, int],
+        counted: dict[ElementTree.Element, tuple[int, int]],
         around: set[ElementTree.Element],
-    ) -> int:
-        """Elements that it comes to with all that it uses. Raises ToolpathError for too many, and for a circle."""
-        if element in around or len(around) > 4 * DEEPEST:
-            raise self._refuse("an element uses itself (<use>)")
+    ) -> tuple[int, int]:
+        """Elements that it comes to with all that it uses, and characters of the transforms around all of them.
+
+        Raises ToolpathError for too many, and for a circle.
+        """
+        if element in around or len(around) > 2 * DEEPEST:
+            raise self._refuse("an element uses itself (<use>), or others do deeper than can be followed")
         if element not in counted:
             around.add(element)
             inside = list(element)
-            named = (element.get(XLINK) or element.get("href") or "").strip()
-            own = (
-                1
-                + (len(element.get("d", "")) + len(element.get("points", "")) + len(element.get("style", ""))) // OF_ONE
-            )
+            named = element.get("href", element.get(XLINK, "")).strip()
             if _kind(element) == "use" and named[1:] in known:
                 inside.append(known[named[1:]])
             if _kind(element) == "use" and not named.startswith("#"):
                 self.left_out["use of another file"] += 1
-            counted[element] = own + sum(self._count_of(each, known, counted, around) for each in inside)
+            count, turned = 1 + _weight(element), 0
+            for each in inside:
+                of_each = self._count_of(each, known, counted, around)
+                count, turned = count + of_each[0], turned + of_each[1]
+            if count > MOST_ELEMENTS:
+                raise self._too_many()
+            counted[element] = count, turned + count * len(element.get("transform", ""))
             around.discard(element)
-        if counted[element] > MOST_ELEMENTS:
-            raise self._refuse(f"it holds more than {MOST_ELEMENTS:,} elements, each as often as it is used")
         return counted[element]
 
     def _sized(self) -> str:
@@ -165,7 +189,8 @@ class Svg:
         """Its lines, with ``scale`` (m) for a pixel."""
         import svgelements
 
-        found, until, points = Read(left_out=self.left_out.copy()), time.monotonic() + LONGEST_S, 0
+        reading = Reading(self.name)
+        reading.found.left_out.update(self.left_out)
         try:
             page = svgelements.SVG.parse(
                 io.StringIO(ElementTree.tostring(self.root, encoding="unicode")), ppi=PER_INCH["px"], on_error="raise"
@@ -175,24 +200,43 @@ class Svg:
                 if not isinstance(element, svgelements.Shape):
                     continue
                 layer = str(element.values.get(LAYER, NO_LAYER))
-                for shape, line in _lines(abs(svgelements.Path(element)), scale):
-                    checkpoint()
-                    points += len(line)
-                    if points > MAX_POINTS:
-                        raise self._refuse(f"its lines have more than {MAX_POINTS:,} points")
-                    if time.monotonic() > until:
-                        raise self._refuse(f"it takes longer than {LONGEST_S:.0f} s to read")
-                    turned = line * [1.0, -1.0] + [0.0, height * scale]
-                    found.pieces.append(Contour(layer, shape, turned))
+                for shape, line in _lines(abs(svgelements.Path(element)), scale, reading):
+                    reading.take(layer, shape, line * [1.0, -1.0] + [0.0, height * scale])
         except ToolpathError:
             raise
-        except (ValueError, TypeError, KeyError, IndexError, AttributeError, ArithmeticError, RecursionError) as exc:
+        except (*STUMBLES, RecursionError) as exc:
             # svgelements has no error of its own: what a broken path or transform makes it stumble over.
             raise ToolpathError(
                 f"{self.name}: a path or a transform in it cannot be read ({type(exc).__name__}: {str(exc)[:80]}); "
                 "export it again as SVG."
             ) from None
-        return found
+        return reading.found
+
+
+def _weight(element: ElementTree.Element) -> int:
+    """How many elements more one counts as, of whose path or style there is much."""
+    d, points = element.get("d", ""), element.get("points", "")
+    weight = (len(d) + len(points) + len(element.get("style", ""))) // OF_ONE
+    if weight > MOST_ELEMENTS:
+        return weight
+    stretches = max(sum(map(d.count, COMMANDS)), len(_NUMBER.findall(d + points)) // 2)
+    return max(weight, stretches // STRETCHES)
+
+
+def _placing(style: str) -> str:
+    """The part of a style that says where a line is, and whether it is drawn."""
+    return ";".join(each for each in style.split(";") if each.partition(":")[0].strip() in STYLED)
+
+
+def _rules(sheet: str) -> str:
+    """The rules of a style sheet that do."""
+    first, *rest = sheet.split("/*")
+    found = []
+    for rule in "".join([first, *(each.partition("*/")[2] for each in rest)]).split("}"):
+        names, _, style = rule.partition("{")
+        if placing := _placing(style):
+            found.append(f"{','.join(dict.fromkeys(name.strip() for name in names.split(',')))}{{{placing}}}")
+    return "\n".join(found)
 
 
 def _text_of(data: bytes, name: str) -> str:
@@ -217,30 +261,34 @@ def _is_number(text: str) -> bool:
         return False
 
 
-def _lines(path: Any, scale: float) -> Iterator[tuple[Any, FloatArray]]:
+def _lines(path: Any, scale: float, to: Reading) -> Iterator[tuple[Any, FloatArray]]:
     """Shape and points (r, 2) m of every stretch of a path that is drawn without lifting."""
     run: list[Any] = []
     for segment in path:
         if type(segment).__name__ == "Move" and run:
-            yield _line(run, scale)
+            yield _line(run, scale, to)
             run = []
         if type(segment).__name__ != "Move":
             run.append(segment)
             if type(segment).__name__ == "Close":
-                yield _line(run, scale)
+                yield _line(run, scale, to)
                 run = []
     if run:
-        yield _line(run, scale)
+        yield _line(run, scale, to)
 
 
-def _line(run: list[Any], scale: float) -> tuple[Any, FloatArray]:
+def _line(run: list[Any], scale: float, to: Reading) -> tuple[Any, FloatArray]:
     """One stretch: a circle where all of it is, else a line or a polyline."""
     arcs = [each for each in run if type(each).__name__ == "Arc"]
     others = [each for each in run if each not in arcs and abs(each.end - each.start) * scale > CHORD_ERROR]
     begin = _at(run[0].start)
     if arcs and not others and _one_circle(arcs, scale):
         return "circle", np.array([_at(arcs[0].center), begin]) * scale
-    points = np.vstack([begin[None], *(_corners(each, scale) for each in run)]) * scale
+    found, count = [begin[None]], 1
+    for each in run:
+        found.append(_corners(each, scale, to, count))
+        count += len(found[-1])
+    points = np.vstack(found) * scale
     if not np.isfinite(points).all():
         raise ValueError("a point is no number")
     return ("line" if len(points) == 2 else "polyline"), points
@@ -262,8 +310,8 @@ def _one_circle(arcs: list[Any], scale: float) -> bool:
     return alike and math.isclose(abs(turn), 2.0 * math.pi, rel_tol=1e-9)
 
 
-def _corners(segment: Any, scale: float) -> FloatArray:
-    """(r, 2) px: the corners behind the start of a segment, within ``CHORD_ERROR`` of it."""
+def _corners(segment: Any, scale: float, to: Reading, before: int) -> FloatArray:
+    """(r, 2) px: the corners behind the start of a segment, within ``CHORD_ERROR`` of it; ``before`` come before."""
     kind = type(segment).__name__
     if kind == "Arc":
         largest = max(float(segment.rx), float(segment.ry)) * scale
@@ -272,10 +320,11 @@ def _corners(segment: Any, scale: float) -> FloatArray:
     elif kind in ("QuadraticBezier", "CubicBezier"):
         count = _bezier_chords([_at(p) * scale for p in _controls(segment)])
     else:
+        count = 1
+    to.look(before + count)
+    if count == 1:
         return _at(segment.end)[None]
-    if count > MAX_POINTS:
-        raise ValueError(f"a curve of {count:,} chords")
-    return np.array([_at(segment.point(t)) for t in np.arange(1, count) / count] + [_at(segment.end)])
+    return np.vstack([np.asarray(segment.npoint(np.arange(1, count) / count)), _at(segment.end)])
 
 
 def _controls(segment: Any) -> list[Any]:

@@ -36,7 +36,7 @@ LONGEST_LINE = 500  # characters of a tool in a .tbl
 SMALL = 1.6e-3
 """m: a table whose largest cutter is smaller than this may count in inches."""
 
-_WORD = re.compile(r"([A-Za-z])\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?=$|[\s;A-Za-z])\s*")
+_WORD = re.compile(r"([A-Za-z])\s*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)(?=$|[\s;A-Za-z])\s*")
 _OF_TBL = {"T": "number", "X": "offset_x_mm", "Y": "offset_y_mm", "Z": "length_mm", "Q": "orientation"}
 _SILENT = frozenset("PABCUVWIJ")
 _LENGTHS = "XYZD"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+
 import numpy as np
 import pytest
 
@@ -96,6 +98,17 @@ def test_refusals_name_row_and_column(text, said) -> None:
     with pytest.raises(ToolpathError) as refused:
         rm.read_points(text)
     assert said in str(refused.value)
+
+
+def test_a_packed_parquet_file_that_inflates_is_refused_before_it_is_read() -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    zeros = pyarrow.array(np.zeros(1_000_000))
+    packed = io.BytesIO()
+    parquet.write_table(pyarrow.table(dict.fromkeys(("x_mm", "y_mm", "z_mm", *"abcdefghijklmnopqr"), zeros)), packed)
+    with pytest.raises(ToolpathError, match="21 columns of 1,000,000 numbers"):
+        points_from_bytes(packed.getvalue(), "a.parquet")
 
 
 def test_a_parquet_file_that_is_none_is_refused() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -134,6 +135,14 @@ NESTED = '<defs><g id="a0"><circle r="1"/></g>' + "".join(
 )
 
 
+CHAIN = "".join(f'<use id="a{k}" href="#a{k + 1}"/>' for k in range(900)) + '<line id="a900" x2="1"/>'
+TWICE = '<line id="z" x2="1"/>' + "".join(
+    f'<g id="p{k}">' + f'<use href="#p{k + 1}" xlink:href="#z"/>' * 50 + "</g>" for k in range(3)
+)
+TWICE += '<line id="p3" x2="1"/>'
+AROUND = f'<g transform="{"scale(1)" * 100}">' * 50 + '<line x2="1"/>' * 1_000 + "</g>" * 50
+
+
 @pytest.mark.parametrize(
     ("body", "before", "said"),
     [
@@ -145,8 +154,20 @@ NESTED = '<defs><g id="a0"><circle r="1"/></g>' + "".join(
         ('<path d="M0 0 L10"/>', "", "cannot be read"),
         ('<path d="M0 0 L 1e400 5"/>', "", "cannot be read"),
         ('<g transform="rotate(x)"><path d="M0 0 L 1 5"/></g>', "", "cannot be read"),
-        ("<style>" + ".a{fill:red}" * 10_000 + "</style>" + '<line class="a"/>' * 2_000, "", "its styles are"),
-        ('<g transform="' + "scale(1) " * 1_000 + '"/>', "", "a transform or class in it has more than"),
+        ("<style>" + ".a{display:inline}" * 10_000 + "</style>" + '<line class="a"/>' * 2_000, "", "its styles are"),
+        (
+            '<g transform="' + "scale(1) " * 1_000 + '"/>',
+            "",
+            "the transform of an element has more than",
+        ),
+        ('<svg width="' + "1" * 100_000 + '!"/>', "", "the width of an element has more than"),
+        (CHAIN, "", "others do deeper than can be followed"),
+        ('<path d="M0 0' + "h1" * 490_000 + '"/>', "", "more than 20,000 elements"),
+        ('<path d="M0 0' + "A1e6 1e6 0 1 1 1e6 1e6" * 9 + '"/>', "", "more than 100,000 points"),
+        ('<circle r="1e9"/>', "", "goes farther than 10 km"),
+        ("<a/>" * 110_000, "", "more than 20,000 elements"),
+        (TWICE, "", "more than 20,000 elements"),
+        (AROUND, "", "one in another, are too long"),
     ],
 )
 def test_harmful_and_broken_files_are_refused_in_a_sentence(body, before, said) -> None:
@@ -166,3 +187,21 @@ def test_harmful_and_broken_files_are_refused_in_a_sentence(body, before, said) 
 def test_what_is_no_svg_is_refused(data, said) -> None:
     with pytest.raises(ToolpathError, match=said):
         Svg(data, "x.svg")
+
+
+@pytest.mark.parametrize(
+    ("sheet", "drawn"),
+    [
+        ("x" * 400_000, 1),
+        ("a{" * 200_000, 1),
+        ("/*" * 200_000, 1),
+        ("line{display:none}", 0),
+        ("/* line{display:none} */ line{stroke:red}", 1),
+        (".b, line , .c { stroke: red; display : none }", 0),
+    ],
+)
+def test_a_style_sheet_hides_lines_and_costs_no_time(sheet, drawn) -> None:
+    began = time.process_time()
+    read = svg(f'<style>{sheet}</style><line x2="1"/><circle r="1"/>').read(1e-3)
+    assert len(read.pieces) == 1 + drawn
+    assert time.process_time() - began < 2.0

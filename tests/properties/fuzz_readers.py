@@ -5,6 +5,7 @@ python tests/properties/fuzz_readers.py 10000 [READER ...]     counts what escap
 
 from __future__ import annotations
 
+import io
 import random
 import re
 import resource
@@ -18,10 +19,12 @@ from functools import cache
 from pathlib import Path
 
 from robomill.errors import RobomillError
+from robomill.io.drawings import drawing_from_bytes
 from robomill.io.forces import read_forces
 from robomill.io.load_tests import read_load_tests, read_measured_map
 from robomill.io.materials import material_from_toml
 from robomill.io.meshes import read_stl_stock
+from robomill.io.point_tables import points_from_bytes
 from robomill.io.profiles import read_profile
 from robomill.io.projects import load_setup, setup_from_toml, setup_to_toml
 from robomill.io.robots import load_robot, robot_from_toml
@@ -138,6 +141,75 @@ APT = (
 )
 
 
+HEIDENHAIN = (
+    b"BEGIN PGM A MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+100 Z+0\nTOOL CALL 1 Z S3000 F500\n"
+    b"L Z+50 R0 FMAX M3\nL X+5 Y+5 FMAX\nL Z-5 F200\nFN 0: Q1 = +3\nLBL 1\nL IX+Q1 F600\nCC X+50 Y+50\nCP IPA+30 DR+\n"
+    b"CALL LBL 1 REP 3\nCYCL DEF 200 BOHREN Q200=2 Q201=-10 Q206=150 Q202=5 Q210=0 Q203=+0 Q204=50\n"
+    b"L X+10 Y+10 FMAX M99\nM30\nEND PGM A MM\n",
+    b"BEGIN PGM B MM\nTOOL CALL 2 Z S3000\nL Z+5 FMAX M3\nCC X+0 Y+0\nLP PR+20 PA+30 F400\nCR X+10 Y+5 R+20 DR-\n"
+    b"L X+20 Y+9\nRND R2\nL X+30 Y+0\nCHF 1\nL X+40 Y+2\nFN 0: Q2 = +1\n"
+    b"L X+1 Y+1 F100\nL X+9\nL X+9 Y+9\nEND PGM B MM\n",
+)
+SINUMERIK = (
+    b"G17 G90 G71 G54\nT1 D1 M6\nS3000 M3 F600\nDEF REAL TIEF=1.5\nDEF INT ZAHL\nR1=10 R2=R1*2+SIN(30)\nG0 X0 Y0 Z5\n"
+    b"FOR ZAHL=1 TO 3\nG1 X=R1*ZAHL Z=-TIEF\nENDFOR\nWHILE R1>5\nR1=R1-1\nENDWHILE\nIF R1==5 GOTOF WEITER\n"
+    b"WEITER:\nG1 X=IC(5) Y0\nTRANS X10\nROT RPL=30\nCYCLE81(5,0,2,-10)\nMCALL CYCLE83(5,0,2,-20,,-5,,2,0,0,1,0)\n"
+    b"X10 Y10\nMCALL\nM30\n",
+)
+SVG_HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">'
+SVG = (
+    "<style>.a{display:inline}</style><defs><g id='p'><rect width='5' height='4' rx='1'/></g></defs><g id='cut' "
+    "transform='translate(3,4) rotate(20)'><path class='a' d='M1 2 h3 v4 C1 2 3 4 5 6 s1 1 2 2 Q1 5 9 9 t3 3 "
+    "A5 4 20 0 1 9 8 z'/><use href='#p' x='3'/><polyline points='0,0 5,5 9,1'/></g><circle r='3' cx='9'/>"
+    "<ellipse rx='3' ry='2'/><text>x</text></svg>"
+)
+SVGS = (f'<?xml version="1.0" encoding="UTF-8"?><!DOCTYPE svg>{SVG_HEAD}{SVG}'.encode(), f"{SVG_HEAD}{SVG}".encode())
+
+
+def _dxfs() -> tuple[bytes, ...]:
+    import ezdxf
+
+    found = []
+    for version in ("R12", "R2010"):
+        doc = ezdxf.new(version, units=0)
+        if version != "R12":
+            doc.header["$INSUNITS"] = 4
+        space, block = doc.modelspace(), doc.blocks.new("B")
+        block.add_circle((1, 1), 2)
+        block.add_arc((1, 1), 2, 10, 80)
+        space.add_line((0, 0), (5, 5))
+        space.add_blockref("B", (5, 5), dxfattribs={"xscale": 2, "yscale": 3, "rotation": 20})
+        space.add_polyline2d([(0, 0, 0.5), (5, 0, 0), (5, 5, -1)], format="xyb", close=True)
+        if version != "R12":
+            space.add_lwpolyline([(0, 0, 0.5), (5, 0, 0), (5, 5, -1)], format="xyb", close=True)
+            space.add_spline([(0, 0), (5, 3), (9, 1)])
+            space.add_open_spline([(0, 0), (5, 3), (9, 1), (12, 4)])
+            space.add_ellipse((0, 0), (5, 0), 0.5, 0.1, 3.0)
+        text = io.StringIO()
+        doc.write(text)
+        found.append(text.getvalue().encode())
+    drawn = found[1].decode()
+    short = drawn[: drawn.index("SECTION")] + drawn[drawn.index("SECTION\n  2\nENTITIES") :]
+    return (*found, short.encode())
+
+
+def _parquets() -> tuple[bytes, ...]:
+    import pandas
+
+    def packed(rows: int) -> bytes:
+        file = io.BytesIO()
+        columns = {name: [float(k) for k in range(rows)] for name in ("x_mm", "y_mm", "z_mm", "feed_mm_min")}
+        pandas.DataFrame({**columns, "words": ["a"] * rows}).to_parquet(file)
+        return file.getvalue()
+
+    return packed(3), packed(400)
+
+
+POINTS = (
+    "X_mm,Y_mm,Z_mm,i,j,k,feed_mm_min,tool,spindle\n" + "".join(f"{k},{-k},-1,0,0,1,{k},1,900\n" for k in range(9))
+).encode()
+
+
 @cache
 def readers(folder: Path) -> dict[str, Reader]:
     """Every reader by name; ``folder`` is for those that read files only."""
@@ -156,7 +228,13 @@ def readers(folder: Path) -> dict[str, Reader]:
         "tool table": Reader(read_tool_table, TABLES),
         "materials": Reader(lambda data: material_from_toml(text_of(data)), _files("materials/*.toml")),
         "gcode": Reader(read_gcode, GCODE),
+        "heidenhain": Reader(read_gcode, HEIDENHAIN),
+        "sinumerik": Reader(read_gcode, SINUMERIK),
         "apt": Reader(read_apt, APT),
+        "dxf": Reader(lambda data: drawing_from_bytes(data, "a.dxf", "mm"), _dxfs()),
+        "svg": Reader(lambda data: drawing_from_bytes(data, "a.svg"), SVGS),
+        "points": Reader(lambda data: points_from_bytes(data, "a.csv"), (POINTS,)),
+        "parquet": Reader(lambda data: points_from_bytes(data, "a.parquet"), _parquets(), True),
         "stl": Reader(read_stl_stock, _stls(), True),
         "sketch": Reader(lambda data: setup_from_toml(text_of(data)).toolpath, _sketches()),
     }

@@ -284,9 +284,9 @@ _IN_MS = re.compile(r"P\s*(\d+)(?![\d.])", re.IGNORECASE)
 _G_WORD = re.compile(r"G0*(\d+(?:\.\d+)?)|M0*9[789]\b", re.IGNORECASE)
 _CYCLES = frozenset({"73", "74", "76", "81", "82", "83", "84", "85", "86", "87", "88", "89"})
 _MOVES = frozenset({"0", "1", "2", "3", "33", "80"})
-_CORNER = re.compile(r",\s*([RC])\s*(\d+\.?\d*|\.\d+)", re.IGNORECASE)
+_CORNER = re.compile(r",\s*([RC])\s*(\d+(?:\.\d*)?|\.\d+)", re.IGNORECASE)
 _DWELL = re.compile(r"(\bG0?4\s*)[XU](?=[\d.])", re.IGNORECASE)
-_EXPONENT = re.compile(r"(?<![A-Za-z_])([A-Za-z]\s*[-+]?(?:\d+\.?\d*|\.\d+))[eE]([-+]?\d{1,3})(?![\d.])")
+_EXPONENT = re.compile(r"(?<![A-Za-z_])([A-Za-z]\s*[-+]?(?:\d+(?:\.\d*)?|\.\d+))[eE]([-+]?\d{1,3})(?![\d.])")
 _USES_E = re.compile(r"\bG0*76\b|\bM0*6[678]\b", re.IGNORECASE)
 
 

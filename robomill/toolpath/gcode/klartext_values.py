@@ -10,7 +10,7 @@ from robomill.toolpath.gcode.sinumerik_flow import SinumerikFlow
 from robomill.toolpath.gcode.sinumerik_words import Hole
 from robomill.toolpath.gcode.words import Block, normalise
 
-NUMBER = r"[-+]? ?(?:\d+\.?\d*|\.\d+|Q[LR]?\d+)"
+NUMBER = r"[-+]? ?(?:\d+(?:\.\d*)?|\.\d+|Q[LR]?\d+)"
 FIRST_Q = {"Q": 1000, "QL": 3000, "QR": 4000}
 MOST_Q = {"Q": 1999, "QL": 499, "QR": 499}
 MAX_PECKS = 10_000

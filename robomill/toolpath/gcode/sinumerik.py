@@ -16,7 +16,7 @@ _SILENT = re.compile(
 )
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
 _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
+_NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)"
 _EXPONENT = re.compile(rf"({_NUMBER})EX([-+]?\d{{1,3}})\b", re.IGNORECASE)
 _PLACE = re.compile(rf"\b([XYZABCIJK])[ \t]*=[ \t]*(AC|IC)[ \t]*\([ \t]*({_NUMBER})[ \t]*\)", re.IGNORECASE)
 _VECTOR = re.compile(rf"\b([ABC])3[ \t]*=[ \t]*({_NUMBER})", re.IGNORECASE)

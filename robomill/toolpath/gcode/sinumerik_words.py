@@ -34,7 +34,7 @@ _FRAME = re.compile(r"(A?TRANS|A?ROT)\b(.*)")
 _ALONE = re.compile(r"\bA?(?:TRANS|ROT)\b")
 _FRAME_WORD = re.compile(r"\b(X|Y|Z|RPL)[ \t]*(?:=|(?=[-+.\d]))")
 _CYCLE = re.compile(r"(MCALL\b[ \t]*)?(?:CYCLE(8[1-9])[ \t]*\(([^()]*)\))?[ \t]*")
-_CORNER = re.compile(r"\b(RND|CHF|CHR)[ \t]*=[ \t]*(\d+\.?\d*|\.\d+)")
+_CORNER = re.compile(r"\b(RND|CHF|CHR)[ \t]*=[ \t]*(\d+(?:\.\d*)?|\.\d+)")
 _KINDS = {"RND": ROUND, "CHF": BEVEL, "CHR": LEGS}
 _IDENTIFIER = re.compile(r"\b[A-Z_]{1,2}\w+\b")
 _TRUTH = re.compile(r"\b(?:TRUE|FALSE|TRUNC)\b")

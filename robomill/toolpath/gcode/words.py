@@ -144,10 +144,10 @@ def _read_value(reader: Reader, block: Block, letter: str) -> None:
 
 def _read_g(reader: Reader, block: Block) -> None:
     reader.at += 1
-    value = 10.0 * reader.value()
-    code = round(value)
-    if abs(value - code) > 0.01 or not 0 <= code <= 9999:
-        raise reader.refuse(f"G{value / 10:g} is not a G code.")
+    number = reader.value()
+    if not 0.0 <= number < 1000.0 or abs(10.0 * number - round(10.0 * number)) > 0.01:
+        raise reader.refuse(f"G{number:g} is not a G code.")
+    code = round(10.0 * number)
     group = G_GROUPS.get(code)
     if group is None:
         block.unknown_g.append(code)

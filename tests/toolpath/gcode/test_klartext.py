@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -192,3 +193,10 @@ def test_lines_in_brackets_are_remarks() -> None:
 def test_another_program_is_asked_for_as_a_label() -> None:
     with pytest.raises(GCodeError, match=r"Line 2: CALL PGM TNC:\\PLAN.H calls another program; paste it in"):
         interpret("BEGIN PGM A MM\nCALL PGM TNC:\\Plan.h\nEND PGM A MM\n")
+
+
+def test_a_line_of_digits_is_refused_at_once() -> None:
+    began = time.process_time()
+    with pytest.raises(GCodeError, match="a block is over"):
+        interpret(f"BEGIN PGM A MM\nCYCL DEF 200 E Q1{'1' * 98_000}\nEND PGM A MM\n")
+    assert time.process_time() - began < 2.0

@@ -52,6 +52,7 @@ REFUSED = [
     ("F-1", "cannot be negative"),
     ("S-1 M3", "cannot be negative"),
     ("G1000", "G1000 is not a G code"),
+    ("G1e308 X1", "G1e+308 is not a G code"),
     ("G-1", "G-1 is not a G code"),
     ("G1.52 X1", "G1.52 is not a G code"),
     ("G0 G1 X1", "G0 and G1 are of one modal group"),
