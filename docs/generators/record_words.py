@@ -200,6 +200,36 @@ WORDS: dict[str, dict[str, str]] = {
         "ways[].refused": "Why the way does not apply; null where it does.",
         "digest": "Fingerprint of the answer.",
     },
+    "place": {
+        "robomill": "The version that found it.",
+        "name": "What the set-up is called.",
+        "measure": "What is made small: `verdict` (the largest share of its tolerance that walls or floors use, and "
+        "the feed where it has a tolerance of its own), `wall`, `floor`, `tip` or `feed`.",
+        **{
+            f"{name}.*": f"{text}: part zero in {{M}} (`zero_mm`) and turn about Z (`yaw_deg`), the `share` of the "
+            "tolerance used there by what is asked for, the largest deviation of the tip, of walls and of floors, and "
+            "the verdict; the `room` the joints keep to their limits, as a share of their half range, and the least "
+            "determinant of the task Jacobian as a share of the arm's largest (`det_J_share`). By a full simulation; "
+            "null where the path is not reached, and why (`reason`)."
+            for name, text in (
+                ("best", "The best place found"),
+                ("now", "The place of the set-up"),
+                ("median", "The median of the places allowed"),
+                ("worst", "The worst of the places allowed"),
+            )
+        },
+        "candidates.tried": "How many places the map has.",
+        "candidates.reached": "At how many of them the arm reaches the path.",
+        "candidates.allowed": "How many were compared.",
+        "candidates.refused.*": "How many were not, by reason.",
+        "map.*_mm": "Coordinates of part zero on the map, in {M}.",
+        "map.yaw_deg": "Turns tried at each.",
+        "map.share": "By x and y: the share of the tolerance at the best height and turn there, by moving the readings "
+        "of one full simulation; null where no place is allowed.",
+        "map.samples": "How many samples of the path the map looks at.",
+        "map.of": "Of how many.",
+        "digest": "Fingerprint of the answer.",
+    },
     "design": {
         "robomill": "The version that found it.",
         "name": "What the set-up is called.",

@@ -35,6 +35,7 @@ RUNS: dict[str, tuple[tuple[str, ...], ...]] = {
         ("two_tools",),
     ),
     "advise": (("paper_flute/setup_process",),),
+    "place": (("paper_flute", "--x", "-200:200", "--y", "-2300:-1100", "--candidates", "30", "--out", "moved.toml"),),
     "design": (("paper_flute", "--tolerance-mm", "0.2"),),
     "samples": (("heart",),),
     "reproduce": ((),),

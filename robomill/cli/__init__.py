@@ -13,7 +13,7 @@ from robomill.console import refuse
 from robomill.errors import RobomillError
 
 # Values of these options may begin with a minus ("-90,0,0"), which argparse would take for an option.
-SIGNED = ("--theta-deg", "--pose", "--x", "--y", "--z", "--a-deg", "--b-deg")
+SIGNED = ("--theta-deg", "--pose", "--x", "--y", "--z", "--a-deg", "--b-deg", "--yaw", "--keep-out")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -57,3 +57,21 @@ def axis(text: str, option: str) -> Any:
         raise RobomillError(f"{option}: expected low:high:step or one number, in mm, found {text!r:.80}.")
     low, *rest = values
     return to_si(axis_points(low, rest[0], rest[1], option), "mm") if rest else to_si(low, "mm")
+
+
+def span(text: str | None, option: str) -> tuple[float, float] | None:
+    """Least and largest from "low:high", or one number for both; None where nothing is said."""
+    if text is None:
+        return None
+    values = floats(text.split(":"))
+    if len(values) not in (1, 2):
+        raise RobomillError(f"{option}: expected low:high or one number, found {text!r:.80}.")
+    return values[0], values[-1]
+
+
+def box(text: str, option: str) -> tuple[list[float], list[float]]:
+    """Lower and upper corner from "x,y,z:x,y,z"."""
+    corners = [floats(corner.split(",")) for corner in text.split(":")]
+    if list(map(len, corners)) != [3, 3]:
+        raise RobomillError(f"{option}: expected X,Y,Z:X,Y,Z (lower and upper corner, mm), found {text!r:.80}.")
+    return corners[0], corners[1]

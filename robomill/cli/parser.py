@@ -30,6 +30,7 @@ EXAMPLES = {
     "simulate": "robomill simulate paper_flute --out result",
     "advise": "robomill advise paper_flute/setup_process",
     "design": "robomill design paper_flute --tolerance-mm 0.1",
+    "place": "robomill place paper_flute --x -300:300 --y -1500:-1100 --yaw -90:90",
     "samples": "robomill samples --copy samples",
     "reproduce": "robomill reproduce",
     "completion": "robomill completion bash",
@@ -43,11 +44,13 @@ NOTES = {
     "that is not known.",
     "advise": "Exits 1 where no way keeps the tolerance.",
     "design": "Exits 1 where the tolerance cannot be met.",
+    "place": "Left out, x and y are today's and 15 % of the arm's length to each side; height and yaw stay. Exits 1 "
+    "where the verdict is red at the best place, too.",
     "reproduce": "Exits 1 where a claim of the paper that should hold does not.",
     "completion": "For bash, write it to ~/.local/share/bash-completion/completions/robomill; for zsh, to a file "
     "_robomill in a folder of $fpath; for fish, to ~/.config/fish/completions/robomill.fish.",
 }
-MODULES = {"simulate", "identify", "serve", "drawing", "advise", "design"}  # verbs with one of their own
+MODULES = {"simulate", "identify", "serve", "drawing", "advise", "design", "place"}  # verbs with one of their own
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
 
@@ -88,6 +91,7 @@ def make_parser() -> argparse.ArgumentParser:
     _identify_options(told("identify", "Joint compliances from load tests, with their intervals."))
     _simulate_options(told("simulate", "Run a set-up: deviation, groove, verdict."))
     _setup(told("advise", "The same part cut otherwise: with another feed, turned round, in passes, once more."))
+    _place_options(told("place", "Where in a box the part should lie so that its cut comes out best."))
     _design_options(told("design", "The joints to stiffen so that a cut keeps a tolerance, at the least cost."))
     given = told("samples", "List the samples, or copy them to work on.")
     _named(given, "names", "samples to list or copy (all)", "any", nargs="*")
@@ -236,6 +240,30 @@ def _design_options(sub: argparse.ArgumentParser) -> None:
         help="what has to keep it: what the verdict judges (default), one of its parts, or the tip's deviation",
     )
     sub.add_argument("--most", type=float, metavar="TIMES", help="how many times as stiff a joint may be made (10)")
+
+
+def _place_options(sub: argparse.ArgumentParser) -> None:
+    _setup(sub)
+    for axis in "xyz":
+        sub.add_argument(f"--{axis}", metavar="LOW:HIGH", help=f"{axis} of part zero in the robot's base, mm")
+    sub.add_argument("--yaw", metavar="LOW:HIGH", help="turn of the part about Z, degrees (as it is)")
+    sub.add_argument(
+        "--keep-out",
+        action="append",
+        metavar="X,Y,Z:X,Y,Z",
+        help="a box, mm, in the robot's base that the stock keeps out of; one --keep-out a box",
+    )
+    sub.add_argument(
+        "--measure",
+        default="verdict",
+        choices=("verdict", "wall", "floor", "tip", "feed"),
+        help="what is made small: what the verdict judges (default), one of its parts, or the tip's deviation",
+    )
+    sub.add_argument("--room", type=float, metavar="SHARE", help="of its half range a joint keeps to its limits (0.05)")
+    sub.add_argument(
+        "--candidates", type=partial(whole, 100_000), default=1000, metavar="PLACES", help="places of the map (1000)"
+    )
+    sub.add_argument("--out", metavar="SETUP.toml", help="write the set-up moved there; an older file is replaced")
 
 
 def _simulate_options(run: argparse.ArgumentParser) -> None:

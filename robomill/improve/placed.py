@@ -9,10 +9,10 @@ import numpy as np
 from robomill.arrays import FloatArray, IntArray
 from robomill.frames import Columns
 from robomill.improve.area import Area, turned_back
-from robomill.improve.screening import By, share_of, standing
+from robomill.improve.screening import Asked, share_of, standing
 from robomill.kinematics.transforms import rotation_z, transform
 from robomill.lazy import cached_property
-from robomill.provenance import Finding
+from robomill.provenance import Finding, Provenance
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.verdict_words import Level
@@ -81,7 +81,7 @@ class Placement(Tabled):
     """The best place found, and what it was compared with.
 
     setup    as it was; ``moved`` is the one with the part at the best place
-    by       what is minimised: a key of ``MEASURES``
+    measure  what is minimised: one of ``ASKED``
     now, best, median, worst   places, each simulated in full; median and worst of those that are allowed
     axes     x, y, z m and yaw rad of the coarse map; ``keep_out`` (b, 2, 3) m
     share    (nx, ny, nz, nyaw) of the tolerance, screened; NaN where ``why`` (of the same shape) is not 0, see ``WHY``
@@ -99,7 +99,7 @@ class Placement(Tabled):
     """
 
     setup: SimulationSetup
-    by: By
+    measure: Asked
     now: Place
     best: Place
     median: Place
@@ -115,7 +115,8 @@ class Placement(Tabled):
     def moved(self) -> SimulationSetup:
         """The set-up with the part at the best place."""
         R = rotation_z(self.best.yaw) @ turned_back(self.setup)
-        return self.setup.replace(T_MW=transform(R, self.best.zero))
+        said = Provenance("computed", "the best place found for this cut")
+        return self.setup.replace(T_MW=transform(R, self.best.zero), provenance={"part": said})
 
     @property
     def tried(self) -> int:
@@ -160,12 +161,12 @@ class Placement(Tabled):
         return [*said, ("Places", f"{self.allowed} allowed, {self.reached} reached, {self.tried} tried")]
 
 
-def place_of(result: SimulationResult, at: FloatArray, by: By) -> Place:
+def place_of(result: SimulationResult, at: FloatArray, measure: Asked) -> Place:
     """What a run says of the place (4,) it was made at."""
     verdict, stands = result.verdict, standing(result.ik)
     missed = bool(result.missed.any())
     errors = {name: np.array(getattr(verdict, name).value) for name in ("wall", "floor", "feed", "end")}
-    errors = {name: np.abs(value) for name, value in errors.items()} | {"vector": np.array(result.max_deviation)}
+    errors = {name: np.abs(value) for name, value in errors.items()} | {"tip": np.array(result.max_deviation)}
     reason = ""
     if missed:
         lost = int(np.flatnonzero(result.missed)[0])
@@ -175,7 +176,7 @@ def place_of(result: SimulationResult, at: FloatArray, by: By) -> Place:
     return Place(
         zero=at[:3].copy(),
         yaw=float(at[3]),
-        share=nan if missed else float(share_of(by, result.setup, errors)),
+        share=nan if missed else float(share_of(measure, result.setup, errors)),
         max_deviation=nan if missed else result.max_deviation,
         wall=nan if missed else verdict.wall.value,
         floor=nan if missed else verdict.floor.value,
@@ -200,11 +201,11 @@ def findings(found: Placement, where: Area, result: SimulationResult) -> tuple[F
         text = f"The best place lies at the edge of the box in {names}: a larger one may hold a better one."
         said.append(Finding("info", text, code=EDGE))
     grown = found.best.max_deviation - found.now.max_deviation
-    if found.by != "vector" and grown > GROWN * found.now.max_deviation:
+    if found.measure != "tip" and grown > GROWN * found.now.max_deviation:
         sizes = [format_si(each.max_deviation, "mm") for each in (found.now, found.best)]
         text = (
             f"The tip itself strays further there, {sizes[1]} instead of {sizes[0]}, where that leaves no mark on "
-            f"{MARKED[found.by]}; by='vector' minimises it."
+            f"{MARKED[found.measure]}; measure='tip' minimises it."
         )
         said.append(Finding("info", text, code=TIP))
     if setup.force.frame == "M" and not setup.force.turns_with_part and free[3]:

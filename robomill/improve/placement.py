@@ -28,8 +28,8 @@ from robomill.improve.placed import (
     place_of,
 )
 from robomill.improve.screening import (
-    MEASURES,
-    By,
+    ASKED,
+    Asked,
     Screen,
     Screened,
     Standing,
@@ -69,7 +69,7 @@ def place(
     yaw_deg: ArrayLike | None = None,
     keep_out: Sequence[Any] | None = None,
     keep_out_mm: Sequence[Any] | None = None,
-    by: By = "verdict",
+    measure: Asked = "verdict",
     room: float = ROOM,
     candidates: int = 1000,
 ) -> Placement:
@@ -86,9 +86,9 @@ def place(
         Least and largest turn of the part about z_M, as ``part_rotation_z`` has it; left out: as it is.
     keep_out : (b, 2, 3) m, or keep_out_mm
         Boxes in {M}, lower and upper corner, that the block of the stock keeps out of.
-    by : str
+    measure : str
         What is minimised: "verdict" (the largest share of its tolerance that walls or floors use, and the feed where it
-        has a tolerance of its own), "vector" (the tip's distance from its path), "wall", "floor" or "feed".
+        has a tolerance of its own), "tip" (the tip's distance from its path), "wall", "floor" or "feed".
     room : float
         What every joint keeps to its limits, as a share of its half range.
     candidates : int
@@ -122,15 +122,15 @@ def place(
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
     given = {"x": x, "x_mm": x_mm, "y": y, "y_mm": y_mm, "z": z, "z_mm": z_mm, "yaw": yaw, "yaw_deg": yaw_deg}
     where = area(setup, {**given, "keep_out": keep_out, "keep_out_mm": keep_out_mm})
-    if by not in MEASURES:
-        raise SetupError(f"{WHO}, by: found {by!r:.40}; expected {', '.join(MEASURES)}.", where="by")
+    if measure not in ASKED:
+        raise SetupError(f"{WHO}, measure: found {measure!r:.40}; expected {', '.join(ASKED)}.", where="measure")
     if not 0.0 <= room < 1.0:
         raise SetupError(f"{WHO}, room: found {room!r:.40}; expected a share from 0 to less than 1.", where="room")
     if not 1 <= candidates <= MOST_CANDIDATES:
         raise SetupError(
             f"{WHO}, candidates: found {candidates!r:.40}; expected 1 to {MOST_CANDIDATES}.", where="candidates"
         )
-    return _Search(setup, where, by, float(room)).run(int(candidates))
+    return _Search(setup, where, measure, float(room)).run(int(candidates))
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +139,7 @@ class _Search:
 
     setup: SimulationSetup
     area: Area
-    by: By
+    measure: Asked
     room: float
 
     def run(self, candidates: int) -> Placement:
@@ -152,13 +152,13 @@ class _Search:
         screened, why = self._look(looking, places)
         if not (why == FINE).any():
             raise self._nowhere(places, screened.standing, why)
-        share = np.where(why == FINE, screened.share(self.by, self.setup), np.nan)
+        share = np.where(why == FINE, screened.share(self.measure, self.setup), np.nan)
         best, looking = self._best(looking, axes, share, here if now.known and self.area.contains(here) else None, now)
         median, worst = self._compared(places, share, why)
         shape = tuple(map(len, axes))
         found = Placement(
             setup=self.setup,
-            by=self.by,
+            measure=self.measure,
             now=now,
             best=best,
             median=median,
@@ -174,7 +174,7 @@ class _Search:
     def simulated(self, at: FloatArray) -> tuple[Place, SimulationResult]:
         """A place (4,) by a full simulation."""
         result = simulate(self.setup.replace(T_MW=self.area.T_MW(at)))
-        return place_of(result, at, self.by), result
+        return place_of(result, at, self.measure), result
 
     def _now(self) -> tuple[FloatArray, Place, SimulationResult]:
         """Where the part lies, with its yaw as the area counts it, and the run there, without coupling."""
@@ -184,7 +184,7 @@ class _Search:
             here[3] += whole
         checkpoint(0.0, "The cut where it is")
         result = simulate(self.setup)
-        found = place_of(result, here, self.by)
+        found = place_of(result, here, self.measure)
         if result.verdict.level == "missed" or (found.reason == "" and not found.known):
             raise SetupError(f"{WHO}: nothing is judged that places could be compared by. {result.verdict.sentence}")
         return here, found, simulate(uncoupled(self.setup)) if self.setup.coupling else result
@@ -206,7 +206,7 @@ class _Search:
         for i in order[:8]:
             if every.missed[i] == 0:
                 result = simulate(setup.replace(T_MW=self.area.T_MW(places[i])))
-                if place_of(result, places[i], self.by).known:
+                if place_of(result, places[i], self.measure).known:
                     return result
         raise self._nowhere(places, every, np.where(every.missed > 0, UNREACHED, UNKNOWN))
 
@@ -214,7 +214,7 @@ class _Search:
         """Places (k, 4) screened, and why each is not allowed (k,)."""
         screened = looking.over(self.area.T_MW(places))
         stands = screened.standing
-        why = np.where(np.isnan(screened.share(self.by, self.setup)), UNKNOWN, FINE)
+        why = np.where(np.isnan(screened.share(self.measure, self.setup)), UNKNOWN, FINE)
         why[~(np.abs(stands.det) > NEAR) | (stands.det < 0.0)] = SINGULAR
         why[~(stands.room >= self.room)] = NO_ROOM
         why[stands.missed > 0] = UNREACHED
@@ -245,7 +245,7 @@ class _Search:
                 found, result = self.simulated(end)
                 if self.allows(found, end):
                     known.append((found, end))
-                screened = float(self._look(looking, end[None])[0].share(self.by, self.setup)[0])
+                screened = float(self._look(looking, end[None])[0].share(self.measure, self.setup)[0])
                 if not found.known or abs(found.share - screened) > AGREES * found.share:
                     unseen += _worst_samples(result)
             if not (fresh := np.setdiff1d(np.array(unseen, dtype=np.int64), looking.at)).size:
@@ -263,7 +263,7 @@ class _Search:
     def _polished(self, best: Place, at: FloatArray, looking: Screen, axes: Sequence[FloatArray]) -> Place:
         """Where the screen is no good measure (a surface that another pass has made), a few steps along the axes by
         full runs; none of a coupled or a long program, each of whose runs takes its time."""
-        screened = float(self._look(looking, at[None])[0].share(self.by, self.setup)[0])
+        screened = float(self._look(looking, at[None])[0].share(self.measure, self.setup)[0])
         long = self.setup.coupling or len(looking.reference.path) > LONG
         if long or abs(best.share - screened) <= AGREES * best.share:
             return best
@@ -297,11 +297,11 @@ class _Search:
         """A place (4,) none of whose neighbours at the finest steps is better, rounded to what is written."""
         at, size = self._written(start), _spacing(axes) / 2.0
         screened, why = self._look(looking, at[None])
-        best = float(screened.share(self.by, self.setup)[0]) if why[0] == FINE else np.inf
+        best = float(screened.share(self.measure, self.setup)[0]) if why[0] == FINE else np.inf
         while (size >= FINEST).any():
             around = np.array(list(self._around(at, size)))
             screened, why = self._look(looking, around)
-            share = np.where(why == FINE, screened.share(self.by, self.setup), np.inf)
+            share = np.where(why == FINE, screened.share(self.measure, self.setup), np.inf)
             if share.min() < best:
                 at, best = around[share.argmin()], float(share.min())
             else:

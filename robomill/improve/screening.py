@@ -15,6 +15,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.compliance.deflection import displacement
+from robomill.improve.judged import MEASURES, Measure
 from robomill.kinematics.choice import SPIN_STEPS
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.dexterity import determinant, largest_determinant, limit_distance
@@ -31,14 +32,9 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import farther
 from robomill.toolpath.path import Toolpath
 
-By = Literal["verdict", "vector", "wall", "floor", "feed"]
-MEASURES: dict[str, str] = {
-    "verdict": "what the verdict judges, as a share of its tolerance",
-    "vector": "the tip's distance from its path",
-    "wall": "the error of walls",
-    "floor": "the error of floors",
-    "feed": "the deviation along the feed",
-}
+Asked = Measure | Literal["feed"]
+ASKED: tuple[Asked, ...] = (*MEASURES, "feed")
+"""What a place may be asked for: what a remedy is judged by, or the deviation along the feed."""
 MOST_SAMPLES, SLOW_SAMPLES = 400, 48  # of a path that are looked at everywhere; of arms that search for each pose
 BATCH = 20_000  # configurations at once
 SECTORS = 8
@@ -71,23 +67,23 @@ class Screened(NamedTuple):
     standing: Standing
     errors: dict[str, FloatArray]
 
-    def share(self, by: By, setup: SimulationSetup) -> FloatArray:
+    def share(self, measure: Asked, setup: SimulationSetup) -> FloatArray:
         """(k,) share of its tolerance that is used by what is asked for."""
-        return share_of(by, setup, self.errors)
+        return share_of(measure, setup, self.errors)
 
 
-def share_of(by: By, setup: SimulationSetup, errors: dict[str, FloatArray]) -> FloatArray:
+def share_of(measure: Asked, setup: SimulationSetup, errors: dict[str, FloatArray]) -> FloatArray:
     """(k,) share of its tolerance that errors (k,) m use, as the verdict has it; NaN where nothing is known."""
     wall = setup.tolerance
     floor, feed = (wall if own is None else own for own in (setup.floor_tolerance, setup.feed_tolerance))
-    limits = {"wall": wall, "floor": floor, "feed": feed, "end": feed, "vector": wall}
-    if by != "verdict":
-        return np.asarray(errors[by] / limits[by])
+    limits = {"wall": wall, "floor": floor, "feed": feed, "end": feed, "tip": wall}
+    if measure != "verdict":
+        return np.asarray(errors[measure] / limits[measure])
     deciding = ("wall", "floor") if setup.feed_tolerance is None else ("wall", "floor", "feed", "end")
     every = np.array([errors[name] / limits[name] for name in deciding])
     there = np.isfinite(every).any(axis=0)
     largest = np.fmax.reduce(every)
-    return np.where(there, largest, errors["vector"] / wall)  # nothing is left to be measured
+    return np.where(there, largest, errors["tip"] / wall)  # nothing is left to be measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +129,7 @@ class Screen:
             return self._with(T_MW, setup.spin if isinstance(setup.spin, float) else LEAST_MOTION)
         angles = (2 * np.pi / SPIN_STEPS * np.arange(SPIN_STEPS)).tolist()
         every = [self._with(T_MW, angle) for angle in angles]
-        rank = np.array([np.where(e.standing.missed > 0, np.inf, np.nan_to_num(e.errors["vector"])) for e in every])
+        rank = np.array([np.where(e.standing.missed > 0, np.inf, np.nan_to_num(e.errors["tip"])) for e in every])
         best, k = rank.argmin(axis=0), np.arange(len(T_MW))
         stands = Standing(*(np.array([e.standing[i] for e in every])[best, k] for i in range(3)))
         return Screened(stands, {n: np.array([e.errors[n] for e in every])[best, k] for n in every[0].errors})
@@ -162,7 +158,7 @@ class Screen:
         """Largest errors (k,) m of deviations d (k, s, 3) m along feed, left and axial; NaN where one has none."""
         found = {name: surface.largest(d) for name, surface in self.surfaces.items()}
         judged = d[:, self.judged]
-        return found | {"feed": np.abs(judged[..., 0]).max(axis=-1), "vector": np.linalg.norm(judged, axis=-1).max(-1)}
+        return found | {"feed": np.abs(judged[..., 0]).max(axis=-1), "tip": np.linalg.norm(judged, axis=-1).max(-1)}
 
 
 def spin_matters(robot: Robot) -> bool:

@@ -4,8 +4,8 @@ from typing import Any
 
 from robomill import __version__
 from robomill.improve.advice import Advice, Way
-from robomill.report.assumed import assumed_of_setup
 from robomill.report.design_record import deviations
+from robomill.simulation.assumptions import assumed_of_setup
 from robomill.units import from_si
 
 

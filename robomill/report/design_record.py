@@ -4,8 +4,8 @@ from typing import Any
 
 from robomill import __version__
 from robomill.improve.design import Design
-from robomill.report.assumed import assumed_of_setup
 from robomill.report.records import shown
+from robomill.simulation.assumptions import assumed_of_setup
 from robomill.simulation.result import SimulationResult
 
 

@@ -12,6 +12,7 @@ from robomill.units import format_beside, format_count, format_percent, format_s
 
 TIGHT_FROM = 0.8
 Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
+RED: tuple[Level, ...] = ("out", "unjudged", "unreached", "missed")
 WORDS: dict[Level, str] = {
     "ok": "within tolerance",
     "tight": "within tolerance, tight",
@@ -93,7 +94,7 @@ class Verdict:
 
     @property
     def red(self) -> bool:
-        return self.level in ("out", "unjudged", "unreached", "missed")
+        return self.level in RED
 
     @property
     def deciding(self) -> tuple[str, Reading] | None:

@@ -118,11 +118,11 @@ def test_a_place_can_be_no_worse_than_today_where_today_is_in_the_box() -> None:
 
 
 @pytest.mark.parametrize(
-    ("by", "name"), [("vector", "max_deviation"), ("wall", "wall"), ("floor", "floor"), ("feed", "feed")]
+    ("measure", "name"), [("tip", "max_deviation"), ("wall", "wall"), ("floor", "floor"), ("feed", "feed")]
 )
-def test_what_is_asked_for_is_minimised(by: str, name: str) -> None:
+def test_what_is_asked_for_is_minimised(measure: str, name: str) -> None:
     box = {"x_mm": (-300, 300), "y_mm": (-1500, -1100), "candidates": 60}
-    asked, usual = place(slot(), by=by, **box), place(slot(), **box)
+    asked, usual = place(slot(), measure=measure, **box), place(slot(), **box)
     assert abs(getattr(asked.best, name)) <= abs(getattr(usual.best, name)) + 1e-7
     assert asked.best.share == pytest.approx(abs(getattr(asked.best, name)) / slot().tolerance)
 
@@ -174,7 +174,7 @@ def test_a_part_that_fits_nowhere_is_told_with_the_nearest_reason() -> None:
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"by": "speed"}, "by: found 'speed'; expected verdict, vector, wall, floor, feed"),
+        ({"measure": "speed"}, "measure: found 'speed'; expected verdict, tip, wall, floor, feed"),
         ({"room": 1.0}, "room: found 1.0; expected a share"),
         ({"room": float("nan")}, "room: found nan"),
         ({"candidates": 0}, "candidates: found 0"),

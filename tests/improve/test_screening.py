@@ -62,7 +62,7 @@ def test_the_tip_is_where_a_full_simulation_has_it(make: Callable[[], rm.Simulat
     found, full = screened_and_simulated(make())
     whole = len(full[0].path) <= 400
     for name, values in (
-        ("vector", [result.max_deviation for result in full]),
+        ("tip", [result.max_deviation for result in full]),
         ("feed", [np.abs(result.delta_in_cut[result.judged, 0]).max() for result in full]),
     ):
         np.testing.assert_allclose(found.errors[name], values, rtol=1e-9 if whole else 0.1)
@@ -83,14 +83,14 @@ def test_the_share_is_the_verdicts() -> None:
     for setup in (slot(), stated_feed(), slot().replace(floor_tolerance_mm=0.05)):
         verdict = rm.simulate(setup).verdict
         errors = {name: np.abs([getattr(verdict, name).value]) for name in ("wall", "floor", "feed", "end")}
-        assert share_of("verdict", setup, errors | {"vector": np.array([1.0])})[0] == pytest.approx(
+        assert share_of("verdict", setup, errors | {"tip": np.array([1.0])})[0] == pytest.approx(
             verdict.share, rel=1e-12
         )
 
 
 def test_where_nothing_can_be_measured_the_tip_decides() -> None:
     none = {name: np.array([np.nan]) for name in ("wall", "floor", "feed", "end")}
-    assert share_of("verdict", slot(), none | {"vector": np.array([0.6e-3])})[0] == pytest.approx(2.0)
+    assert share_of("verdict", slot(), none | {"tip": np.array([0.6e-3])})[0] == pytest.approx(2.0)
 
 
 def test_how_the_arm_stands_is_that_of_every_sample() -> None:
