@@ -208,7 +208,7 @@ class Compensation:
 
     def _enter_straight(self, machine: Machine, block: Block, full: list[float], u: float, v: float, w: float) -> None:
         cu, cv, _ = self.current(machine)
-        if math.hypot(u - cu, v - cv) <= self.radius and not machine.enters_square:
+        if math.hypot(u - cu, v - cv) <= self.radius and not machine.other_control:
             raise block.refuse(
                 "the first move with cutter compensation is not longer than the cutter's radius; start farther away."
             )
@@ -217,7 +217,7 @@ class Compensation:
         self.corner = (cu, cv)
         self._hold(machine, block, (*end, w), full, direction=(math.cos(alpha), math.sin(alpha)))
         self._stand(machine, *end, full, (u, v))
-        self.entering = machine.enters_square
+        self.entering = machine.other_control
 
     def _entered(self, machine: Machine, direction: float) -> tuple[float, float]:
         """End the entry move beside the start of the contour, whose ``direction`` there is now known (u, v)."""

@@ -32,7 +32,7 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     _execute_m(machine, block, saved)
     switch(machine, plain)
     _execute_g(machine, block, plain)
-    if modal.TOOL in block.m or block.m.get(modal.IO) == 66:
+    if not machine.other_control and (modal.TOOL in block.m or block.m.get(modal.IO) == 66):
         if max(abs(p - s) for p, s in zip(machine.p, machine.sent)) > 1e-6:
             machine.note(
                 "position-after-tool",

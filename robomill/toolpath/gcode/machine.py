@@ -64,10 +64,9 @@ class Machine:
     ``corner`` is what the line says of the corner at its end (size in program units), ``polar_words`` says that X and Y
     are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68, ``scale`` what G51 does to
     words. ``extended`` are the origins and rotations of G54.1 P1 and on (program units), ``is_fanuc`` says that G10 and
-    variables mean what they mean there, ``enters_square`` that G41 leads beside the contour, ``strict``
-    that LinuxCNC is stated, ``variable`` what those
-    are that nobody has set, ``machine_word`` which word leads to a place in the machine. ``keeps_heights`` and
-    ``kept_steps`` are those of ``cycle_rules``. ``modal`` is what MCALL or G66 holds, ``r_set`` are the R parameters
+    variables mean what they mean there, ``other_control`` that it is neither LinuxCNC nor grbl, ``strict`` that LinuxCNC
+    is stated, ``variable`` what those are that nobody has set, ``machine_word`` which word leads to a place in the
+    machine. ``keeps_heights`` and ``kept_steps`` are those of ``cycle_rules``. ``modal`` is what MCALL or G66 holds, ``r_set`` are the R parameters
     that a program has set.
     """
 
@@ -102,7 +101,7 @@ class Machine:
         self.aways: list[tuple[int, tuple[bool, ...]]] = []
         self.homes: set[int] = set()
         self.strict = False
-        self.is_fanuc, self.enters_square, self.machine_word = False, False, "G53"
+        self.is_fanuc, self.other_control, self.machine_word = False, False, "G53"
         self.variable: Callable[[Machine, int], float] | None = None
         self.extended: dict[int, tuple[list[float], float]] = {}
         self.systems: list[tuple[int, int]] = [(0, 1)]

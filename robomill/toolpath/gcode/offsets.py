@@ -334,7 +334,7 @@ def compensation_on(machine: Machine, block: Block) -> None:
         raise block.refuse(f"{name} while coordinates are mirrored is not read; end that first (G50.1).")
     if machine.plane not in (17, 18):
         raise block.refuse(f"{name} works in the planes G17 and G18 only.")
-    if machine.compensation is not None and not machine.enters_square:
+    if machine.compensation is not None and not machine.other_control:
         raise block.refuse(f"{name}: cutter compensation is on already; use G40 first.")
     orientation = 0
     if code in (411, 421):

@@ -119,7 +119,7 @@ def _machine(tools: Tools | None, dialect: Dialect, lines: int) -> Machine:
     machine.recorder.most = most_moves(lines)
     machine.strict = dialect.strict
     machine.keeps_heights = dialect.keeps_heights
-    machine.enters_square = dialect.name in ("fanuc", "sinumerik", "heidenhain")
+    machine.other_control = dialect.name in ("fanuc", "sinumerik", "heidenhain")
     if dialect.name == "fanuc":
         begin_empty(machine)
         machine.retract_r = False  # these controls begin in G98

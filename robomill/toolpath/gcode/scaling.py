@@ -1,4 +1,4 @@
-"""Scaled and mirrored coordinates of Fanuc and Haas: G51 P or I J K with G50, G51.1 with G50.1.
+"""Scaled and mirrored coordinates of Fanuc and Haas: G51 P or I J K with G50, G51.1 with G50.1, G101 with G100.
 
 Words are scaled as they are read, about a centre in the coordinate system in force: a place X is C + s (X - C), a step
 or the centre and radius of an arc are s times what is written. What a cycle pecks (Q) stays as it is.
@@ -13,12 +13,12 @@ from robomill.toolpath.gcode.machine import Machine, Scale
 from robomill.toolpath.gcode.motion_rules import CLOCKWISE, COUNTERCLOCKWISE, LINE, RAPID, axes, is_arc
 from robomill.toolpath.gcode.words import Block
 
-_CODES = {510: "G51", 511: "G51.1", 500: "G50", 501: "G50.1"}
+_CODES = {510: "G51", 511: "G51.1", 500: "G50", 501: "G50.1", 1010: "G101", 1000: "G100"}
 _THOUSAND = 1000.0
 
 
 def scales(machine: Machine, block: Block, code: int) -> bool:
-    """Follow G51, G51.1, G50 and G50.1; False for other words."""
+    """Follow G51, G51.1, G50 and G50.1, and Haas's G101 and G100; False for other words."""
     if code not in _CODES:
         return False
     if code == 500 and machine.scale is None:
@@ -28,7 +28,7 @@ def scales(machine: Machine, block: Block, code: int) -> bool:
     words = block.words
     if machine.before_turn is not None or machine.polar_words:
         raise block.refuse(f"{_CODES[code]} inside of G68 or G16 is not read; give it before them.")
-    if code in (500, 501):
+    if code in (500, 501, 1000):
         if words.keys() & set("xyz") and code == 500:
             raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")
         for letter in "xyz":
@@ -39,9 +39,11 @@ def scales(machine: Machine, block: Block, code: int) -> bool:
     if not machine.absolute:
         raise block.refuse(f"{_CODES[code]} is read in G90 alone.")
     centre = tuple(given.get(letter, at) for letter, at in zip("xyz", machine.p))
-    if code == 511:
+    if code in (511, 1010):
         if not given.keys() & set("xyz"):
-            raise block.refuse("G51.1 needs the axes that it mirrors, as in G51.1 X0.")
+            raise block.refuse(f"{_CODES[code]} needs the axes that it mirrors, as in {_CODES[code]} X0.")
+        if code == 1010:  # about part zero, whatever its words say
+            centre = tuple(0.0 if letter in given else at for letter, at in zip("xyz", centre))
         before = machine.scale.factors if machine.scale is not None else (1.0, 1.0, 1.0)
         factors = tuple(-1.0 if letter in given else old for letter, old in zip("xyz", before))
     elif "p" in given:

@@ -228,3 +228,10 @@ def test_tools_that_a_fanuc_program_sets_are_left_out_with_a_word() -> None:
     program = interpret("G21 G90\nG10 L10 P1 R50.\nG10 L12 P1 R5.\nG0 Z5\nM30\n", dialect="fanuc")
     assert [f.line for f in program.findings if f.code == "tool-set"] == [2, 3]
     assert program.end[-1, 2] == pytest.approx(5e-3)
+
+
+@pytest.mark.parametrize(("dialect", "z"), [("linuxcnc", 10.0), ("fanuc", 30.0)])
+def test_a_tool_change_behind_a_shift_loses_the_height_on_linuxcnc_alone(dialect: str, z: float) -> None:
+    """LinuxCNC goes on from the words of the last straight move, as if G52 had not been; others know where they are."""
+    text = "G21 G90\nG0 Z30.\nG52 Z-20.\nT1 M6\nG0 X1.\nM30\n"
+    assert interpret(text, dialect=dialect).end[-1, 2] * 1e3 == pytest.approx(z)

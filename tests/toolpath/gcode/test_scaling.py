@@ -64,5 +64,10 @@ def test_what_cannot_be_scaled_is_refused(body: str, says: str) -> None:
         read(body)
 
 
+def test_haas_mirrors_about_part_zero_by_g101_until_g100() -> None:
+    """Mill Operator's Manual, G101: about the zero of the work offset, whatever stands behind X."""
+    assert ends("G0 X5. Y1.\nG101 X7.\nG1 X10. Y2.\nG100 X0\nX3.\n") == [[5, 1, 0], [-10, 2, 0], [3, 2, 0]]
+
+
 def test_units_may_change_while_coordinates_are_scaled() -> None:
     assert ends("G51 X10 Y0 Z0 P2.\nG20\nG1 X1\n") == [[pytest.approx(10 + 2 * 15.4), 0, 0]]
