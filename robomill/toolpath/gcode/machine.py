@@ -64,10 +64,10 @@ class Machine:
     ``corner`` is what the line says of the corner at its end (size in program units), ``polar_words`` says that X and Y
     are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68, ``scale`` what G51 does to
     words. ``extended`` are the origins and rotations of G54.1 P1 and on (program units), ``is_fanuc`` says that G10 and
-    variables mean what they mean there, ``other_control`` that it is neither LinuxCNC nor grbl, ``strict`` that LinuxCNC
-    is stated, ``variable`` what those are that nobody has set, ``machine_word`` which word leads to a place in the
-    machine. ``keeps_heights`` and ``kept_steps`` are those of ``cycle_rules``. ``modal`` is what MCALL or G66 holds, ``r_set`` are the R parameters
-    that a program has set.
+    variables mean what they mean there, ``other_control`` that it is neither LinuxCNC nor grbl, ``strict`` that
+    LinuxCNC is stated, ``variable`` what those are that nobody has set, ``machine_word`` which word leads to a place in
+    the machine. ``keeps_heights`` and ``kept_steps`` are those of ``cycle_rules``. ``modal`` is what MCALL or G66
+    holds, ``r_set`` are the R parameters that a program has set.
     """
 
     def __init__(self, tools: Tools | None) -> None:
