@@ -417,7 +417,7 @@ def test_ctrl_c_in_the_midst_of_a_run_ends_it_with_130_and_one_line(tmp_path) ->
     while b"step by step: " not in said and process.poll() is None:
         said += os.read(leader, 1000)
     process.send_signal(signal.SIGINT)
-    assert process.wait(30) == 130, said
+    assert process.wait(120) == 130, said
     assert b"Traceback" not in said
     assert process.stdout is not None
     assert process.stdout.read() == b""
