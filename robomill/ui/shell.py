@@ -41,7 +41,18 @@ export default function (component) {
   if (!page) return;
   const look = () => getComputedStyle(page).backgroundColor;
   let seen = look();
+  // The menu's groups stand between the list and its items: to a screen reader each group is the list.
+  const lists = () => {
+    for (const list of document.querySelectorAll('ul[data-testid="stSidebarNavItems"]:not([role])')) {
+      list.setAttribute('role', 'presentation');
+    }
+    for (const item of document.querySelectorAll('[data-testid="stSidebarNavItems"] > :not(li):not([role]) > li')) {
+      item.parentElement.setAttribute('role', 'list');
+    }
+  };
+  lists();
   const timer = setInterval(() => {
+    lists();
     const now = look();
     if (now !== seen) { seen = now; setTriggerValue('changed', now); }
   }, 400);
