@@ -8,7 +8,9 @@ with a cutter of 0.008 mm. Whoever does mean it has the first name. Arguments ar
 """
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import fields
 from functools import wraps
 from typing import Any, Self, TypeVar
@@ -23,6 +25,7 @@ from robomill.units import SI_NAMES, format_plain, from_si, to_si, unit_label
 
 T = TypeVar("T")
 C = TypeVar("C", bound=type)
+_BESIDE: ContextVar[bool] = ContextVar("units_beside", default=False)
 
 
 def in_units(
@@ -149,7 +152,23 @@ def refuse_slip(declared: Quantity, value: Any, error: type[RobomillError], who:
     size = np.where(np.isfinite(found), np.abs(found), 0.0)
     if size.max(initial=0.0) > declared.slip:
         worst = float(found.ravel()[np.argmax(size)])
-        raise error(f"{declared.said_of(who)}: {slip_words(declared, worst, found.ndim == 0)}", where=declared.name)
+        if _BESIDE.get():
+            bounded = declared.below is not None or declared.most is not None
+            least = declared.expected if bounded else f"at most {declared.short(declared.slip)}"
+            words = f"found {declared.short(worst)}; expected {least}."
+        else:
+            words = slip_words(declared, worst, found.ndim == 0)
+        raise error(f"{declared.said_of(who)}: {words}", where=declared.name)
+
+
+@contextmanager
+def units_beside() -> Iterator[None]:
+    """What is given meanwhile comes from boxes that say their units: a refusal says nothing of names in code."""
+    before = _BESIDE.set(True)
+    try:
+        yield
+    finally:
+        _BESIDE.reset(before)
 
 
 def slip_words(declared: Quantity, worst: float, alone: bool = True) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 import streamlit as st
 
 from robomill.errors import RobomillError
+from robomill.spelled import units_beside
 from robomill.ui import session
 from robomill.ui.markup import as_markdown
 
@@ -93,7 +94,8 @@ def accept(key: str) -> None:
 def submit(key: str, typed: Any, action: Callable[[], None]) -> None:
     """Do ``action``; a refusal keeps ``typed`` and its sentence at ``key``, success forgets an earlier one."""
     try:
-        action()
+        with units_beside():
+            action()
     except RobomillError as exc:
         refuse(key, typed, str(exc))
     else:

@@ -13,7 +13,7 @@ import pytest
 import robomill as rm
 from robomill.errors import CuttingError, RobomillError, SetupError, SurfaceError, WorkspaceError
 from robomill.quantities import quantities
-from robomill.spelled import converted, in_radians, made, spelled
+from robomill.spelled import converted, in_radians, made, spelled, units_beside
 
 CLASSES = (rm.Cutter, rm.Stock, rm.Grid, rm.SimulationSetup)
 
@@ -204,3 +204,14 @@ def test_of_numbers_in_lists_the_largest_counts() -> None:
     assert setup.replace(tolerance_mm=[0.3, None, None]).tolerance == pytest.approx(3e-4)
     assert setup.replace(part_zero_mm=[0, 0, 0]).T_MW[0, 3] == 0.0
     assert rm.Stock(lower_mm=[0, 0, -0.2], upper_mm=[60, 40, 0]).size[2] == pytest.approx(2e-4)
+
+
+def test_who_types_beside_a_unit_is_told_the_bound_and_no_name_in_code() -> None:
+    cutter = rm.Cutter("flat", 0.008)
+    with units_beside():
+        with pytest.raises(CuttingError, match=r"Helix angle: found 1220\.5°; expected 0° to less than 85°\.$"):
+            cutter.replace(helix_angle=math.radians(1220.5))
+        with pytest.raises(CuttingError, match=r"^Cutter, Diameter: found 8000 mm; expected at most 600 mm\.$"):
+            cutter.replace(diameter=8.0)
+    with pytest.raises(CuttingError, match="diameter_mm=8"):
+        cutter.replace(diameter=8.0)

@@ -147,3 +147,10 @@ def test_an_exaggeration_of_ones_own_is_drawn_too(app: AppTest) -> None:
     looked(app, camera="front", exaggeration=37.0, station=1.0)
     assert not app.exception
     assert held.project.view.exaggeration == 37.0
+
+
+def test_an_angle_beyond_its_bounds_is_refused_in_the_unit_of_its_box(app: AppTest) -> None:
+    go(app, "6_Milling")
+    box = next(b for b in app.text_input if b.label == "Helix angle, °")
+    box.set_value("1220,5").run()
+    assert errors(app) == ["Cutter, Helix angle: found 1220.5°; expected 0° to less than 85°."]
