@@ -9,6 +9,7 @@ plane (G17: x, y; G18: z, x) in program units.
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.machine import Machine
@@ -52,6 +53,7 @@ class Compensation:
         self.held: list[HeldMove] = []
         self.corner: tuple[float, float] | None = None
         self.entering = False
+        self.due: Any = None
 
     # --- frames
     def current(self, machine: Machine) -> tuple[float, float, float]:
@@ -60,6 +62,8 @@ class Compensation:
 
     def programmed_point(self, machine: Machine) -> list[float]:
         """The programmed point as (x, y, z, a, b, c)."""
+        if self.due is not None:
+            return list(self.due.end)
         assert self.programmed is not None
         point = list(machine.p)
         point[self.axes[0]], point[self.axes[1]] = self.programmed[0], self.programmed[1]
@@ -67,6 +71,9 @@ class Compensation:
 
     def scale(self, ratio: float) -> None:
         """Change the unit of all lengths."""
+        if self.due is not None:
+            self.due.end[:3] = [v * ratio for v in self.due.end[:3]]
+            self.due.corner, self.due.feed = (self.due.corner[0], self.due.corner[1] * ratio), self.due.feed * ratio
         self.radius *= ratio
         if self.programmed is not None:
             self.programmed = (self.programmed[0] * ratio, self.programmed[1] * ratio, self.programmed[2] * ratio)
@@ -145,6 +152,8 @@ class Compensation:
 
     def finish(self, machine: Machine, block: Block) -> None:
         """Record what is held, as at the end of the program or before a stop."""
+        if self.due is not None:
+            raise self.due.block.refuse("a corner is rounded or chamfered between two straight cuts (G1) alone.")
         if self.programmed is not None:
             u, v, _ = self.current(machine)
             self._finish_at(machine, block, u, v)

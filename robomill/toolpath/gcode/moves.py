@@ -2,6 +2,7 @@
 
 import math
 
+from robomill.toolpath.gcode import compensated_corners
 from robomill.toolpath.gcode import cycle_rules as cycles
 from robomill.toolpath.gcode import motion_rules as rules
 from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, NON_MODAL, WIDTH, Q, g_name
@@ -148,6 +149,8 @@ def move(machine: Machine, block: Block) -> None:
     if compensation is not None and compensation.radius > 0 and not (is_arc and machine.plane == 19):
         machine.arc_not_allowed = False
         rules.keep_motion(machine, block.motion)
+        if is_arc and (machine.corner is not None or compensation.due is not None):
+            raise block.refuse(compensated_corners.BETWEEN)
         if is_arc:
             compensation.arc(machine, block, end)
             return
@@ -155,7 +158,7 @@ def move(machine: Machine, block: Block) -> None:
             rules.inverse_time(machine, words, rules.straight_length(machine.p, end))
         if block.g.get(NON_MODAL) == 530:
             machine.need_compensation_off(block, "G53")
-        compensation.straight(machine, block, end)
+        compensated_corners.straight(machine, block, end)
         return
     row = Move(block.line)
     demand(machine, block, rules.make_move(machine, words, block.motion, end, row))
