@@ -83,6 +83,8 @@ UNITS: dict[str, Unit] = {
     "m2": Unit("m²", 1.0, 3),
     "m3": Unit("m³", 1.0, 3),
     "mm3": Unit("mm³", 1e-9, 1),
+    "cm3/min": Unit("cm³/min", 1e-6 / 60.0, 1),
+    "in3/min": Unit("in³/min", 25.4e-3**3 / 60.0, 2, 1),
     "mm2": Unit("mm²", 1e-6, 2),
     "ft2": Unit("ft²", 0.3048**2, 3),
     "ft3": Unit("ft³", 0.3048**3, 2),
@@ -100,6 +102,7 @@ SI_NAMES = {
     "1": "",
     "%": "1",
     "um/N": "m/N",
+    "cm3/min": "m3/s",
 }
 """The SI unit in which a plain number is given that people know in another."""
 
@@ -116,6 +119,7 @@ INCHES = {
     "mm/min": "in/min",
     "mm/s": "in/s",
     "mm/tooth": "in/tooth",
+    "cm3/min": "in3/min",
     "deg/mm": "deg/in",
     "um/N": "uin/N",
     "mm/N": "in/N",

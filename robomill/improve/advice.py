@@ -95,8 +95,8 @@ class Advice(Tabled):
 
         return {
             "way": np.array([way.name for way in self.ways], dtype=object),
-            "minutes": np.array([way.seconds / 60.0 for way in self.ways]),
-            "removal_cm3_min": np.array([way.removal_rate * 60e6 for way in self.ways]),
+            "minutes": from_si(np.array([way.seconds for way in self.ways]), "min"),
+            "removal_cm3_min": from_si(np.array([way.removal_rate for way in self.ways]), "cm3/min"),
             "wall_mm": from_si(of(lambda run: abs(run.verdict.wall.value)), "mm"),
             "floor_mm": from_si(of(lambda run: abs(run.verdict.floor.value)), "mm"),
             "max_deviation_mm": from_si(of(lambda run: run.max_deviation), "mm"),

@@ -9,7 +9,10 @@ import numpy as np
 from conftest import go, store, words
 from streamlit.testing.v1 import AppTest
 
+from robomill.improve.design import design
 from robomill.improve.stiffening import Stiffening, some_stiffer
+from robomill.io.projects import load_setup
+from robomill.io.samples import samples_dir
 from robomill.simulation.run import simulate
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.improve.stiffen import made_by, meanwhile
@@ -26,6 +29,7 @@ def test_the_best_joint_can_be_used_and_taken_back(app: AppTest) -> None:
     best = before.robot.joint_numbers[int(left.argmin())]
     assert f"Joint {best} twice as stiff: a wall error of 0.230 mm becomes 0." in words(app)
     assert "Verdict then" in words(app)
+    assert "Stiffen joints: wall error of 0.230 mm becomes 0.1" in words(app)
     app.button(key=f"improve.use.{best}").click().run()
     assert not app.exception
     assert "of the tolerance is used, 77 % before it: within tolerance. Undo leads back." in words(app)
@@ -92,3 +96,56 @@ def test_a_joint_that_makes_it_worse_is_not_said_to_change_nothing() -> None:
     ranked = Stiffening(dataclasses.replace(verdict, share=0.7653), after, np.zeros(4))
     fig = gain_bars(100.0 * ranked.saved, "%", 0, (1, 2, 3), dark=False, height=200)
     assert fig.traces[0]["text"] == ["27 %", "0", "−13 %"]
+
+
+def test_every_remedy_has_a_row_with_what_it_leaves_or_why_it_does_not_apply(app: AppTest) -> None:
+    go(app, "7_Improve")
+    said = words(app)
+    for title in ("As it is", "Stiffen joints", "Move the part", "Cut otherwise"):
+        assert title in said
+    assert "State a force from the material first." in said
+    stiffer = design(store(app).project.setup, 0.5 * 0.22953604512e-3)
+    assert f"wall {stiffer.after.verdict.wall.value * 1e3:.3f} mm" in said
+
+
+def test_joints_of_least_stiffening_are_used_and_taken_back(app: AppTest) -> None:
+    kept = store(app)
+    kept.project = kept.project.replace(setup=kept.project.setup.replace(tolerance=0.15e-3))
+    before = kept.project.setup
+    go(app, "7_Improve")
+    app.button(key="improve.do.Use these joints").click().run()
+    assert not app.exception
+    now = store(app).project.setup
+    assert simulate(now).verdict.share <= 1.0
+    np.testing.assert_allclose(now.robot.C_theta, design(before).C_theta)
+    app.button(key="undo").click().run()
+    assert store(app).project.setup.digest() == before.digest()
+
+
+def test_the_part_is_moved_to_where_it_was_found_to_be_better(app: AppTest) -> None:
+    go(app, "7_Improve")
+    before = simulate(store(app).project.setup)
+    next(g for g in app.get("button_group") if g.key == "improve.remedy").set_value("place").run()
+    assert not app.exception
+    app.button(key="improve.do.Move the part there").click().run()
+    assert not app.exception
+    now = simulate(store(app).project.setup)
+    assert now.verdict.share < before.verdict.share - 0.1
+    np.testing.assert_array_equal(now.setup.robot.C_theta, before.setup.robot.C_theta)
+
+
+def test_another_way_to_cut_is_used(app: AppTest) -> None:
+    kept = store(app)
+    setup = load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(step=4e-3, cell=5e-4)
+    kept.project = kept.project.replace(setup=setup)
+    before = simulate(kept.project.setup)
+    go(app, "7_Improve")
+    next(g for g in app.get("button_group") if g.key == "improve.remedy").set_value("cut").run()
+    assert not app.exception
+    assert "In 2 passes" in words(app)
+    app.selectbox(key="improve.way").set_value("2 passes").run()
+    app.button(key="improve.way.use").click().run()
+    assert not app.exception
+    now = simulate(store(app).project.setup)
+    assert now.verdict.share < 0.6 * before.verdict.share
+    assert now.path.t[-1] > 1.9 * before.path.t[-1]

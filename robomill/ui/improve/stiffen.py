@@ -14,7 +14,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
 from robomill.simulation.verdict_words import Verdict
 from robomill.ui import cached, inputs, pieces, session
-from robomill.ui.verdict import WORDS, decides_at, previous, share_words, tone
+from robomill.ui.verdict import WORDS, decides_at, previous
 from robomill.units import format_percent, format_share, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 
@@ -108,26 +108,6 @@ def _worst(verdict: Verdict, tip: float, unit: str) -> str:
         return f"a deviation of the tip of {format_si(tip, unit)}"
     name, reading = verdict.deciding
     return f"{'an' if ERRORS[name][0] == 'e' else 'a'} {ERRORS[name]} of {format_si(abs(reading.value), unit)}"
-
-
-def tiles(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> list[pieces.Tile]:
-    """What decides now, the best joint, what it leaves, and the verdict then."""
-    best = int(ranked.ranking[0])
-    then, saved = ranked.after[best], float(ranked.saved[best])
-    if not saved > LEAST:
-        return [_used("Tolerance used now", ranked.before, ranked.tip[0], unit)]
-    return [
-        _used("Tolerance used now", ranked.before, ranked.tip[0], unit),
-        pieces.Tile(
-            "Stiffen first", f"joint {joints[best]}", f"twice as stiff: {format_percent(saved)} of the tolerance saved"
-        ),
-        _used("Tolerance used then", then, ranked.tip[best + 1], unit),
-        pieces.Tile("Verdict then", WORDS[then.level], share_words(then), tone=tone(then)),
-    ]
-
-
-def _used(label: str, verdict: Verdict, tip: float, unit: str) -> pieces.Tile:
-    return pieces.Tile(label, format_share(verdict.share), _worst(verdict, tip, unit))
 
 
 def columns(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> dict[str, list[Any]]:

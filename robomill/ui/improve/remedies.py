@@ -1,0 +1,226 @@
+"""Every remedy for the project's cut in one table, ranked by what it leaves; one of them opens beneath."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robomill.errors import RobomillError
+from robomill.improve.advice import Advice, advise
+from robomill.improve.design import STIFFEST, Design, design
+from robomill.improve.placed import Placement
+from robomill.improve.placement import place
+from robomill.simulation.estimate import run_seconds
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.verdict_words import Level
+from robomill.ui import cached, inputs, pieces, session
+from robomill.ui.job import Underway
+from robomill.ui.verdict import WORDS
+from robomill.units import format_many, format_percent, format_share, format_short, format_si, format_value
+
+RUNS_OF_DESIGN, RUNS_OF_ADVICE, RUNS_OF_PLACES = 4, 20, 25
+LEAST = 0.005  # of the tolerance: what saves less is no remedy
+
+
+@dataclass(frozen=True, eq=False)
+class Left:
+    """What a remedy leaves: share of the tolerance, its error in words, the verdict; what it costs and how sure it is;
+    ``setup`` is the cut with it, None where it is no better than what there is."""
+
+    share: float
+    error: str
+    level: Level
+    cost: str
+    sure: str
+    setup: SimulationSetup | None
+
+
+@dataclass(frozen=True, eq=False)
+class Remedy:
+    """A kind of remedy: ``find`` computes it for a set-up (and raises its refusal, or ``Underway``), ``left`` says what
+    it leaves against the run as it is, in a unit of length."""
+
+    name: str
+    title: str
+    find: Callable[[SimulationSetup], Any]
+    left: Callable[[Any, SimulationResult, str], Left]
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A remedy as far as it is known: what was ``made`` and what it leaves; or why there is none."""
+
+    remedy: Remedy
+    made: Any = None
+    left: Left | None = None
+    why: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffened:
+    """A design, and the project's cut with its joints; ``half``: it was to halve an error that keeps its tolerance."""
+
+    design: Design
+    run: SimulationResult
+    half: bool
+
+
+@cached.shared(cached.by_setup, "Stiffer joints", lambda setup: run_seconds(setup) * RUNS_OF_DESIGN)
+def designed(setup: SimulationSetup) -> Stiffened:
+    """The cheapest stiffer joints that keep the tolerance; where it is kept, that halve what is used of it."""
+    found = design(setup)
+    if found.cost > 0.0 or not found.feasible:
+        return Stiffened(found, found.after, half=False)
+    halved = design(setup, 0.5 * found.share * setup.tolerance)
+    return Stiffened(halved, cached.result(setup.replace(robot=halved.setup.robot)), half=True)
+
+
+@cached.shared(cached.by_setup, "Other ways to cut", lambda setup: run_seconds(setup) * RUNS_OF_ADVICE)
+def advised(setup: SimulationSetup) -> Advice:
+    """The same part cut otherwise."""
+    return advise(setup, cached.result)
+
+
+@cached.shared(cached.by_setup, "Other places of the part", lambda setup: run_seconds(setup) * RUNS_OF_PLACES)
+def placed(setup: SimulationSetup) -> Placement:
+    """The best place of the part about where it is."""
+    return place(setup)
+
+
+def error_words(result: SimulationResult, unit: str) -> str:
+    """What decides a verdict: ``wall 0.230 mm``."""
+    rests = result.verdict.deciding
+    if rests is None:
+        return f"tip {format_si(result.max_deviation, unit)}"
+    return f"{rests[0]} {format_si(abs(rests[1].value), unit)}"
+
+
+def _of_design(found: Stiffened, now: SimulationResult, unit: str) -> Left:
+    made, then = found.design, found.run.verdict
+    named = [
+        f"joint {number} {format_short(ratio, '1', 3)} times"
+        for number, ratio in zip(made.setup.robot.joint_numbers, made.stiffness_ratio, strict=True)
+        if ratio > 1.001
+    ]
+    sure = "the least stiffening, proved" if np.isfinite(made.residual) else "kept; the least is not proved"
+    if not made.feasible:
+        sure = f"{format_short(STIFFEST, '1')} times as stiff is the most that is tried"
+    cost = f"{', '.join(named) or 'nothing'} as stiff"
+    return Left(then.share, error_words(found.run, unit), then.level, cost, sure, found.run.setup)
+
+
+def _of_advice(found: Advice, now: SimulationResult, unit: str) -> Left:
+    known = [way for way in found.ways if way.run is not None]
+    truest = min(known, key=lambda way: way.share if np.isfinite(way.share) else np.inf)
+    run = truest.run or now
+    extra = truest.seconds - found.ways[0].seconds
+    cost = f"{truest.title[0].lower()}{truest.title[1:]}: {'+' if extra >= 0 else '−'}{_time(abs(extra))}"
+    better = truest.share < found.ways[0].share - LEAST
+    sure = "by a run on what the deflected tool leaves"
+    return Left(truest.share, error_words(run, unit), run.verdict.level, cost, sure, run.setup if better else None)
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.1f} min"
+
+
+def _of_place(found: Placement, now: SimulationResult, unit: str) -> Left:
+    best = found.best
+    far = best.zero - now.setup.T_MW[:3, 3]
+    cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0 if unit == 'mm' else 2)}"
+    errors = {"wall": best.wall, "floor": best.floor}
+    name, value = max(
+        ((n, v) for n, v in errors.items() if v == v), key=lambda e: e[1], default=("tip", best.max_deviation)
+    )
+    better = best.share < now.verdict.share - LEAST
+    sure = f"best of {format_value(found.allowed, '1', 0)} places, simulated in full"
+    return Left(best.share, f"{name} {format_si(value, unit)}", best.level, cost, sure, found.moved if better else None)
+
+
+REMEDIES: tuple[Remedy, ...] = (
+    Remedy("stiffen", "Stiffen joints", designed, _of_design),
+    Remedy("place", "Move the part", placed, _of_place),
+    Remedy("cut", "Cut otherwise", advised, _of_advice),
+)
+
+
+def known(result: SimulationResult, unit: str) -> tuple[list[Found], Underway | None]:
+    """Every remedy as far as it is known, the truest first, then what is computed (one after the other), then what does
+    not apply; and what is being computed."""
+    every, waits = [], None
+    for remedy in REMEDIES:
+        if waits is not None:
+            every.append(Found(remedy, why="is computed next"))
+            continue
+        try:
+            made = remedy.find(result.setup)
+            every.append(Found(remedy, made, remedy.left(made, result, unit)))
+        except Underway as now:
+            waits = now
+            every.append(Found(remedy, why="is being computed"))
+        except RobomillError as refusal:
+            every.append(Found(remedy, why=str(refusal)))
+    order = sorted(range(len(every)), key=lambda k: every[k].left.share if every[k].left else 10.0 + k)  # type: ignore[union-attr]
+    return [every[k] for k in order], waits
+
+
+def sentence(found: Sequence[Found], result: SimulationResult, unit: str) -> str:
+    """What would fix it, in one line."""
+    now = result.verdict
+    known = [each for each in found if each.left is not None and each.left.setup is not None]
+    if not known:
+        return (
+            "What would fix it?" if any(not each.left for each in found) else "Nothing that was tried makes it truer."
+        )
+    best = known[0]
+    left = best.left
+    if left is None or not left.share < now.share - LEAST:
+        return "Nothing that was tried makes this cut noticeably truer."
+    before = error_words(result, unit)
+    name = before.partition(" ")[0]
+    then = left.error.removeprefix(f"{name} ")
+    said = f"{name} error of {before.removeprefix(name).strip()} becomes {then}" if then != left.error else left.error
+    return (
+        f"{best.remedy.title}: {said}, {WORDS[left.level].lower()} "
+        f"({format_percent(left.share)} of the tolerance, now {format_percent(now.share)})."
+    )
+
+
+def table(found: Sequence[Found], result: SimulationResult, unit: str) -> None:
+    """Remedies with what they leave, what they cost and how sure that is."""
+    now = result.verdict
+    rows = [["As it is", error_words(result, unit), format_share(now.share), WORDS[now.level], "", ""]]
+    for each in found:
+        left = each.left
+        if left is None:
+            rows.append([each.remedy.title, "–", "–", "–", each.why, ""])
+        else:
+            rows.append(
+                [each.remedy.title, left.error, format_percent(left.share), WORDS[left.level], left.cost, left.sure]
+            )
+    head = ("Remedy", "Error then", "Of tolerance", "Verdict then", "What it takes", "How sure")
+    pieces.table(rows, "snnvww", head, strong=1 if found and found[0].left else -1)
+
+
+def use(left: Left, title: str) -> None:
+    """The button that does it; undo takes it back."""
+    if left.setup is None:
+        pieces.note("It leaves no less than there is now: nothing to use.")
+        return
+    inputs.button(title, f"improve.do.{title}", "check", _take, left.setup, type="primary", help="Undo takes it back.")
+
+
+def _take(setup: SimulationSetup) -> None:
+    old = session.project().setup
+    changes: dict[str, Any] = {}
+    if setup.robot is not old.robot:
+        changes["robot"] = setup.robot
+    if (setup.T_MW != old.T_MW).any():
+        changes["T_MW"] = setup.T_MW
+    if setup.source is not old.source:
+        changes |= {"source": setup.source, "stock": setup.stock, "engagement": setup.engagement}
+    session.change(**changes)

@@ -1,0 +1,87 @@
+"""Pictures of remedies: where a part lies best, and what stiffer joints cost."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.viz.chart import Chart
+from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, figure, palette, say
+
+PLACES_HEIGHT, FRONT_HEIGHT = 420, 300  # px
+
+
+def places_map(
+    x: FloatArray,
+    y: FloatArray,
+    used: FloatArray,
+    marks: Sequence[tuple[str, float, float]],
+    unit: str,
+    *,
+    dark: bool,
+) -> Chart:
+    """Share of the tolerance used (nx, ny), %, with part zero at x (nx,), y (ny,) in ``unit``; blank where no place is
+    allowed. ``marks`` are places by name."""
+    p = palette(dark)
+    fig = figure(dark=dark, height=PLACES_HEIGHT, revision="places", showlegend=False)
+    fig.layout["margin"] = {"l": 62, "r": 10, "t": 10, "b": 48, "autoexpand": True}
+    known = used[np.isfinite(used)]
+    fig.add(
+        "heatmap",
+        x=x,
+        y=y,
+        z=np.asarray(used).T,
+        colorscale=SEQUENTIAL,
+        reversescale=False,
+        zmin=float(known.min()) if known.size else 0.0,
+        zmax=float(np.quantile(known, 0.95)) if known.size else 1.0,
+        colorbar=colour_bar("% of tolerance", dark=dark),
+        hovertemplate=f"X %{{x:.0f}}, Y %{{y:.0f}} {unit}<br>%{{z:.0f}} % of the tolerance<extra></extra>",
+    )
+    for name, at_x, at_y in marks:
+        fig.add(
+            "scatter",
+            x=[at_x],
+            y=[at_y],
+            mode="markers",
+            marker={
+                "symbol": "circle-open" if name == "now" else "star",
+                "size": 15,
+                "color": "#FFFFFF",
+                "line": {"width": 2.5, "color": "#FFFFFF"},
+            },
+            hovertemplate=f"{name}<br>X %{{x:.0f}}, Y %{{y:.0f}} {unit}<extra></extra>",
+        )
+        say(fig, f"<b>{name}</b>", at_x, at_y, "#FFFFFF", size=13, yshift=16, bgcolor="rgba(0,0,0,.55)", borderpad=2)
+    fig.layout["xaxis"] = axis(f"part zero X, {unit}", dark=dark, constrain="domain", automargin=True)
+    fig.layout["yaxis"] = axis(f"Y, {unit}", dark=dark, scaleanchor="x", constrain="domain", automargin=True)
+    fig.layout["plot_bgcolor"] = p.panel
+    return fig
+
+
+def cost_front(used: FloatArray, cost: FloatArray, chosen: tuple[float, float], *, dark: bool) -> Chart:
+    """What each share of the tolerance (k,), %, costs (k,); ``chosen`` is the design found, (share, cost)."""
+    p = palette(dark)
+    fig = figure(dark=dark, height=FRONT_HEIGHT, revision="front", showlegend=False)
+    fig.layout["margin"] = {"l": 56, "r": 16, "t": 10, "b": 48, "autoexpand": False}
+    fig.add(
+        "scatter",
+        x=used,
+        y=cost,
+        mode="lines+markers",
+        line={"color": p.accent, "width": 2},
+        marker={"size": 6, "color": p.accent},
+        hovertemplate="%{x:.0f} % of the tolerance costs %{y:.2f}<extra></extra>",
+    )
+    fig.add(
+        "scatter",
+        x=[chosen[0]],
+        y=[chosen[1]],
+        mode="markers",
+        marker={"size": 13, "color": p.text},
+        hovertemplate="this design: %{x:.0f} %, cost %{y:.2f}<extra></extra>",
+    )
+    say(fig, "<b>this design</b>", chosen[0], chosen[1], p.text, size=13, xanchor="left", xshift=10, yshift=10)
+    fig.layout["xaxis"] = axis("% of the tolerance used", dark=dark, rangemode="tozero", automargin=False)
+    fig.layout["yaxis"] = axis("cost (1: one joint twice as stiff)", dark=dark, rangemode="tozero", automargin=False)
+    return fig
