@@ -36,11 +36,13 @@ if TYPE_CHECKING:
     from robomill.identification.result import IdentificationResult as IdentificationResult
     from robomill.improve.advice import Advice as Advice
     from robomill.improve.advice import advise as advise
+    from robomill.improve.compensation import Compensation as Compensation
     from robomill.improve.design import Design as Design
     from robomill.improve.design import design as design
     from robomill.improve.placed import Place as Place
     from robomill.improve.placed import Placement as Placement
     from robomill.improve.placement import place as place
+    from robomill.io.compensated import compensate as compensate
     from robomill.io.drawings import read_drawing as read_drawing
     from robomill.io.force_models import process_force as process_force
     from robomill.io.forces import read_forces as read_forces
@@ -138,6 +140,8 @@ _PUBLIC = {
     "Place": "robomill.improve.placed",
     "Placement": "robomill.improve.placed",
     "place": "robomill.improve.placement",
+    "Compensation": "robomill.improve.compensation",
+    "compensate": "robomill.io.compensated",
     "read_drawing": "robomill.io.drawings",
     "process_force": "robomill.io.force_models",
     "read_forces": "robomill.io.forces",

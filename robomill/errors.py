@@ -78,6 +78,10 @@ class SetupError(RobomillError):
     """A simulation set-up that cannot be run."""
 
 
+class CompensationError(RobomillError):
+    """A path that is not corrected: its prediction is not to be trusted, or no correction is found."""
+
+
 class LoadTestError(RobomillError):
     """Measurements that cannot be read or identified from."""
 

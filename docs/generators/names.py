@@ -20,7 +20,12 @@ ROOMS = {
     "improve": "What would fix it",
     "report": "Tables and reports",
 }
-ELSEWHERE = {"process_force": "cutting", "identify": "identification", "read_load_tests": "identification"}
+ELSEWHERE = {
+    "compensate": "improve",
+    "process_force": "cutting",
+    "identify": "identification",
+    "read_load_tests": "identification",
+}
 REST = "Further names"
 ERRORS = "Errors"
 

@@ -252,6 +252,30 @@ WORDS: dict[str, dict[str, str]] = {
         "verdict_sentence": "The same in words.",
         "digest": "Fingerprint of the answer.",
     },
+    "compensate": {
+        "robomill": "The version that computed it.",
+        "name": "What the set-up is called.",
+        "program": "The program that was corrected.",
+        "components": "What of the deviation was taken back: across the path (`normal`), `axial`, along the `feed`.",
+        "bound_um": "How near the program keeps to the corrected path.",
+        "before_mm.*": "What the program leaves as it is: `max` and `rms` of what the verdict "
+        "judges, the larger of wall and floor; beside it the largest of each (`wall_mm`, `floor_mm`) and of the vector "
+        "by which the tip is off (`max_deviation_mm`, `rms_deviation_mm`).",
+        "after_mm.*": "The same of the corrected program as it is written, against the path that was wanted.",
+        "after_if_compliance_20_percent_wrong_mm": "What would be left at most if all that gives were 20 % softer or "
+        "stiffer than in the model.",
+        "after_if_force_20_percent_wrong_mm": "The same if the force were 20 % stronger or weaker.",
+        "half_band_mm": "Half the 95 % interval of what remains, by linear propagation; null where nobody has said how "
+        "sure the compliances are.",
+        "iterations": "Runs along corrected paths until force and path agreed.",
+        "change_um": "By how much the correction still changed at each.",
+        "lines_in": "Lines of the program.",
+        "lines_out": "Lines of the corrected one.",
+        "unrolled": "What was written out: loops and subprograms, canned cycles, rounded corners, computed words ...",
+        "reversals.*": "How often joints turn back while cutting, before and after.",
+        "verdict.*": "The verdict as it is, and of the corrected program.",
+        "digest": "The result's fingerprint.",
+    },
     "samples": {
         "samples[].kind": "What it is.",
         "samples[].name": "What commands take for it.",

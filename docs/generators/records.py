@@ -37,6 +37,7 @@ RUNS: dict[str, tuple[tuple[str, ...], ...]] = {
     "advise": (("paper_flute/setup_process",),),
     "place": (("paper_flute", "--x", "-200:200", "--y", "-2300:-1100", "--candidates", "30", "--out", "moved.toml"),),
     "design": (("paper_flute", "--tolerance-mm", "0.2"),),
+    "compensate": (("paper_flute/setup_process", "--out", "corrected.nc"), ("two_tools", "--out", "corrected.nc")),
     "samples": (("heart",),),
     "reproduce": ((),),
 }

@@ -31,6 +31,7 @@ EXAMPLES = {
     "advise": "robomill advise paper_flute/setup_process",
     "design": "robomill design paper_flute --tolerance-mm 0.1",
     "place": "robomill place paper_flute --x -300:300 --y -1500:-1100 --yaw -90:90",
+    "compensate": "robomill compensate paper_flute --out corrected.nc",
     "samples": "robomill samples --copy samples",
     "reproduce": "robomill reproduce",
     "completion": "robomill completion bash",
@@ -46,11 +47,13 @@ NOTES = {
     "design": "Exits 1 where the tolerance cannot be met.",
     "place": "Left out, x and y are today's and 15 % of the arm's length to each side; height and yaw stay. Exits 1 "
     "where the verdict is red at the best place, too.",
+    "compensate": "Refused, with the reason, where the prediction itself is not to be trusted.",
     "reproduce": "Exits 1 where a claim of the paper that should hold does not.",
     "completion": "For bash, write it to ~/.local/share/bash-completion/completions/robomill; for zsh, to a file "
     "_robomill in a folder of $fpath; for fish, to ~/.config/fish/completions/robomill.fish.",
 }
-MODULES = {"simulate", "identify", "serve", "drawing", "advise", "design", "place"}  # verbs with one of their own
+# Verbs with a module of their own.
+MODULES = {"simulate", "identify", "serve", "drawing", "advise", "design", "place", "compensate"}
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
 
@@ -93,6 +96,7 @@ def make_parser() -> argparse.ArgumentParser:
     _setup(told("advise", "The same part cut otherwise: with another feed, turned round, in passes, once more."))
     _place_options(told("place", "Where in a box the part should lie so that its cut comes out best."))
     _design_options(told("design", "The joints to stiffen so that a cut keeps a tolerance, at the least cost."))
+    _compensate_options(told("compensate", "Correct a program for the push on its tool, and say what is left."))
     given = told("samples", "List the samples, or copy them to work on.")
     _named(given, "names", "samples to list or copy (all)", "any", nargs="*")
     given.add_argument("--copy", metavar="DIR", help="copy them there; what is there and differs is never replaced")
@@ -280,3 +284,22 @@ def _simulate_options(run: argparse.ArgumentParser) -> None:
         "runs again from there; what an earlier run wrote is replaced, other files stay",
     )
     run.add_argument("--full-stl", action="store_true", help="with --out: an STL of every cell, however large")
+
+
+def _compensate_options(run: argparse.ArgumentParser) -> None:
+    _setup(run)
+    run.add_argument(
+        "--out", required=True, metavar="FILE.nc", help="write the corrected program there; an older file is replaced"
+    )
+    run.add_argument(
+        "--components",
+        default="normal,axial",
+        help="what is taken back: normal (across the path), axial, feed; with commas (default normal,axial)",
+    )
+    run.add_argument(
+        "--bound-um",
+        type=float,
+        default=2.0,
+        metavar="UM",
+        help="how near the program keeps to the corrected path, um (default 2)",
+    )

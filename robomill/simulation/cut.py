@@ -1,6 +1,6 @@
 """How the tool meets the part along the path: stated (a full slot) or found from the stock as it stands."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,16 @@ SUSPECTED = 0.1  # of a force's size: that much along the feed is suspected
 SEEN = 4.0  # steps a tool's width: what the tool is in for half its width is met twice
 
 
+@dataclass(frozen=True, eq=False)
+class Led:
+    """A tool that, pushed off, goes otherwise than it is told to, in {W}: where it is ``meant`` to go (m, 3) m, which
+    says what a step is, the unit feeds ``way`` (m, 3) that it has, and where ``tips`` (m, 3) m it meets the part."""
+
+    meant: FloatArray
+    way: FloatArray
+    tips: FloatArray
+
+
 def steps_in_stock(setup: SimulationSetup, path: Toolpath) -> FloatArray:
     """(m,) m: how long the steps of a move may be at most so that no material is passed over: a share of the tool's
     width where its body comes near the stock, any length elsewhere."""
@@ -39,9 +49,12 @@ def steps_in_stock(setup: SimulationSetup, path: Toolpath) -> FloatArray:
     return np.where(near, width / SEEN, np.inf)
 
 
-def told_conditions(setup: SimulationSetup, path: Toolpath, reached: BoolArray) -> CutConditions:
+def told_conditions(
+    setup: SimulationSetup, path: Toolpath, reached: BoolArray, led: Led | None = None
+) -> CutConditions:
     """What the program alone says of every sample: feeds, speeds, tools, and a full slot as deep as the tip stands."""
-    a_p, way = np.maximum(setup.stock_block.upper[2] - path.p[:, 2], 0.0), ways(path)
+    a_p = np.maximum(setup.stock_block.upper[2] - path.p[:, 2], 0.0)
+    way = ways(path) if led is None else led.way
     told = CutConditions.steady(
         path.v_f,
         path.n_s,
@@ -58,16 +71,20 @@ def told_conditions(setup: SimulationSetup, path: Toolpath, reached: BoolArray) 
     return replace(told, tooling=tooling(setup, path))
 
 
-def cut_conditions(setup: SimulationSetup, path: Toolpath, told: CutConditions) -> CutConditions:
-    """What is told, with what each step meets where the tool goes as it is told."""
-    return met_conditions(told, engage(through_stock(setup, path, told)))
+def cut_conditions(
+    setup: SimulationSetup, path: Toolpath, told: CutConditions, led: Led | None = None
+) -> CutConditions:
+    """What is told, with what each step meets where the tool goes as it is told, or ``led``."""
+    return met_conditions(told, engage(through_stock(setup, path, told, led)))
 
 
-def through_stock(setup: SimulationSetup, path: Toolpath, told: CutConditions) -> March:
+def through_stock(setup: SimulationSetup, path: Toolpath, told: CutConditions, led: Led | None = None) -> March:
     """The path through its stock, ready to be marched."""
     assert told.tooling is not None
     exponents = setup.force.exponents or (0.0,)
-    return March(setup.stock_block, setup.cell, told.tooling, path.p, path.k, told.cutting, exponents, way=ways(path))
+    p, way, tips = (path.p, ways(path), None) if led is None else (led.meant, led.way, led.tips)
+    block, cell = setup.stock_block, setup.cell
+    return March(block, cell, told.tooling, p, path.k, told.cutting, exponents, really=tips, way=way)
 
 
 def met_conditions(told: CutConditions, found: Engagement) -> CutConditions:

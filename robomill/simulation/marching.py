@@ -13,7 +13,7 @@ from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged
 from robomill.progress import checkpoint
 from robomill.simulation.coupling import Coupling, Settled, settle
-from robomill.simulation.cut import met_conditions, through_stock
+from robomill.simulation.cut import Led, met_conditions, through_stock
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.engagement import engagement
 from robomill.surface.march import March
@@ -23,7 +23,8 @@ from robomill.toolpath.path import Toolpath
 @dataclass(frozen=True, eq=False)
 class Bent:
     """What bends the tool along a path: compliance C (m, 3, 3) m/N, feed frames R_MF (m, 3, 3) and a displacement
-    ``offset`` (m, 3) m that the force does not cause, all in {M}; ``told`` are the conditions by the program alone.
+    ``offset`` (m, 3) m that the force does not cause, all in {M}; ``told`` are the conditions by the program alone, and
+    ``stronger`` is what the force is multiplied by; ``led`` says where it goes if not as it is told.
     """
 
     setup: SimulationSetup
@@ -32,13 +33,15 @@ class Bent:
     C: FloatArray
     R_MF: FloatArray
     offset: FloatArray
+    stronger: float = 1.0
+    led: Led | None = None
 
     def force(self, conditions: CutConditions, R_MF: FloatArray) -> FloatArray:
         """Force on the tool (k, 3) N in {M}; a stated force ends with the material."""
         force = force_on_tool(self.setup.force, conditions, R_MF)
         if self.setup.engagement and self.setup.force.ends_with_material:
             force = np.where(conditions.engaged[:, None], force, 0.0)
-        return force
+        return force if self.stronger == 1.0 else self.stronger * force
 
     def delta(self, F: FloatArray) -> FloatArray:
         """(m, 3) m: C F, eq. (15), and the offset."""
@@ -58,7 +61,7 @@ class Coupled:
 def march_coupled(bent: Bent, one_pass: FloatArray) -> Coupled:
     """March the path with every step where its own force bends it to; ``one_pass`` (m, 3) m is the answer without."""
     path, told = bent.path, bent.told
-    march = through_stock(bent.setup, path, told)
+    march = through_stock(bent.setup, path, told, bent.led)
     walk = _Walk(bent, march, np.zeros((len(path), 3)))
     rows, sectors, settled = walk.every_step()
     found = engagement(march.exponents, rows, sectors)
@@ -97,7 +100,7 @@ class _Walk:
 
     def _step(self, i: int) -> tuple[Settled, FloatArray, FloatArray]:
         """Solve step i and cut it: how it was settled, and what it meets, row and sectors."""
-        bent, p, to_W = self.bent, self.march.points, self.bent.setup.T_MW[:3, :3]
+        bent, p, to_W = self.bent, self.bent.path.p, self.bent.setup.T_MW[:3, :3]
         told = _only(bent.told, i)
 
         def meets(delta: FloatArray) -> tuple[FloatArray, FloatArray]:

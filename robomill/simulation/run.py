@@ -23,7 +23,7 @@ from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins
 from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
 from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
-from robomill.simulation.cut import cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
+from robomill.simulation.cut import Led, cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
 from robomill.simulation.leaning import leaning
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
@@ -78,20 +78,44 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     0.252
     """
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
-    path = sampled(setup.toolpath, setup.step, partial(steps_in_stock, setup) if setup.engagement else None)
+    return along(setup, stepped(setup, setup.toolpath))
+
+
+def stepped(setup: SimulationSetup, whole: Toolpath) -> Toolpath:
+    """``whole`` as a run of ``setup`` evaluates it, in short steps. Raises ToolpathError where they are too many, and
+    where nothing is cut."""
+    path = sampled(whole, setup.step, partial(steps_in_stock, setup) if setup.engagement else None)
     if setup.engagement:
-        check_samples(setup.toolpath, setup.step, len(path), budgets.samples(marched=True))
+        check_samples(whole, setup.step, len(path), budgets.samples(marched=True))
     if not path.cutting.any():
         raise ToolpathError("The path has no feed move, so nothing is cut: add a G1 move, or a point with a feed.")
+    return path
+
+
+def along(
+    setup: SimulationSetup,
+    path: Toolpath,
+    *,
+    led: Led | None = None,
+    softer: float = 1.0,
+    stronger: float = 1.0,
+) -> SimulationResult:
+    """The run of ``setup`` along a path in {W} as it is sampled.
+
+    ``led`` says where the tool goes if not as the path tells it to; ``softer`` is what all that gives is multiplied by,
+    ``stronger`` what the force is: how a result changes where they are wrong.
+    """
     checkpoint(0.0, "How the arm stands")
     ik = configurations(setup, path)
     checkpoint(0.0, "Compliance")
     C_joint, C_spring = compliances(setup, path, ik.theta)
-    C = total_compliance(setup, path, C_joint, C_spring)
+    C = softer * total_compliance(setup, path, C_joint, C_spring)
+    C_joint, C_spring = (each if softer == 1.0 else softer * each for each in (C_joint, C_spring))
     checkpoint(stage="Force and deflection")
-    sag = None if setup.links is None else sags(setup, path, ik.theta, setup.links)
+    sag = None if setup.links is None else softer * sags(setup, path, ik.theta, setup.links)
     offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros((len(path), 3))
-    bent = Bent(setup, path, told_conditions(setup, path, ik.reached), C, feed_directions(setup, path), offset)
+    told, frames = told_conditions(setup, path, ik.reached, led), feed_directions(setup, path, led)
+    bent = Bent(setup, path, told, C, frames, offset, stronger, led)
     conditions, F, unjudged, coupling = forces(bent)
     unjudged += leaning(path, ik)
     checkpoint(0.0, "Deflection")
@@ -175,7 +199,7 @@ def sags(setup: SimulationSetup, path: Toolpath, theta: FloatArray, links: LinkM
 def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...], Coupling | None]:
     """Conditions, force F (m, 3) N in {M}, what it has no model for, and how a coupled run was solved."""
     setup, path = bent.setup, bent.path
-    conditions = bent.told if not setup.engagement else cut_conditions(setup, path, bent.told)
+    conditions = bent.told if not setup.engagement else cut_conditions(setup, path, bent.told, bent.led)
     F = bent.force(conditions, bent.R_MF)
     if not setup.coupling:
         return conditions, F, _reasons(bent, conditions), None
@@ -218,7 +242,7 @@ def tool_frames(p: FloatArray, k: FloatArray, back: FloatArray) -> FloatArray:
     return pose_from_world(np.column_stack([p + back[:, None] * k, tilt_from_axis(k)]))
 
 
-def feed_directions(setup: SimulationSetup, path: Toolpath) -> FloatArray:
+def feed_directions(setup: SimulationSetup, path: Toolpath, led: Led | None = None) -> FloatArray:
     """(m, 3, 3) R_MF, columns feed, feed-normal, axial in {M}."""
-    frames = feed_frame(ways(path), path.k)
+    frames = feed_frame(ways(path) if led is None else led.way, path.k)
     return gathered(len(path), "Ways of the feed", lambda some: np.asarray(setup.T_MW[:3, :3] @ frames[some]))

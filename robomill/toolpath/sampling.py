@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from robomill import budgets
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import ToolpathError
 from robomill.progress import checkpoint
 from robomill.toolpath.path import PER_MOVE, Toolpath
@@ -30,8 +30,14 @@ def resample(path: Toolpath, step: float | FloatArray) -> Toolpath:
     starts = _begins(path)
     total = float(np.maximum(pieces, 1.0).sum() + starts.sum())
     check_samples(path, float(np.min(step)), total, budgets.samples())
+    return divided(path, np.maximum(pieces, 1.0).astype(np.int64), starts)
+
+
+def divided(path: Toolpath, counts: IntArray, starts: BoolArray | None = None) -> Toolpath:
+    """``path`` with every move cut into ``counts`` (m,) equal pieces, and a sample more at the start of those that
+    ``starts`` (m,) names."""
     checkpoint(0.0, "Samples")
-    counts = np.maximum(pieces, 1.0).astype(np.int64)
+    starts = np.zeros(len(path), dtype=bool) if starts is None else starts
     samples = counts + starts
     owner = np.repeat(np.arange(len(path)), samples)
     first = np.repeat(np.cumsum(samples) - samples, samples)

@@ -32,6 +32,7 @@ WORKS = {
     "advise": ("advise", "paper_flute/setup_process"),
     "place": ("place", "paper_flute", "--candidates", "9"),
     "design": ("design", "paper_flute", "--tolerance-mm", "0.2"),
+    "compensate": ("compensate", str(SLOT / "setup.toml"), "--out", "corrected.nc"),
     "samples": ("samples",),
     "reproduce": ("reproduce",),
     "completion": ("completion", "bash"),

@@ -26,10 +26,8 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR, table: 
     """
     if len(program) == 0:
         raise GCodeError("Program: found no motion; expected at least one G0, G1, G2 or G3 move.")
-    is_arc = program.is_kind("arc") & ~program.unplaced
-    is_tap = program.is_kind("tap")
-    counts = _pieces(program, np.flatnonzero(is_arc), chord_error, TABLE_STEP if table else MAX_TILT_STEP)
-    counts[is_tap] = 2
+    is_arc, is_tap = program.is_kind("arc") & ~program.unplaced, program.is_kind("tap")
+    counts = point_counts(program, chord_error, table)
     first = np.cumsum(counts) - counts + 1
     p = np.empty((int(counts.sum()) + 1, 3))
     start, end = _ends(program)
@@ -89,6 +87,14 @@ def _ends(program: Program) -> tuple[FloatArray, FloatArray]:
     tap = program.is_kind("tap")
     start = np.where(tap[:, None], start, known[:-1])
     return start, known[1:]
+
+
+def point_counts(program: Program, chord_error: float = arcs.CHORD_ERROR, table: str = "") -> IntArray:
+    """(m,) how many points each move has on the toolpath."""
+    rows = np.flatnonzero(program.is_kind("arc") & ~program.unplaced)
+    counts = _pieces(program, rows, chord_error, TABLE_STEP if table else MAX_TILT_STEP)
+    counts[program.is_kind("tap")] = 2
+    return counts
 
 
 def _pieces(program: Program, rows: IntArray, chord_error: float, most: float) -> IntArray:

@@ -1,0 +1,37 @@
+"""``robomill compensate``: the program that sends the tool elsewhere, so that it goes where it was meant to go."""
+
+from pathlib import Path
+from typing import Any
+
+from robomill.cli import given
+from robomill.cli.saying import Written, say
+from robomill.errors import ProjectError
+
+
+def run_compensate(arguments: Any) -> int:
+    """Correct the program of a set-up and write it."""
+    from robomill.io.compensated import compensate
+    from robomill.io.results import write_files
+    from robomill.report.compensation_record import compensation_lines, compensation_record
+
+    setup = given.setup(arguments.setup, arguments.allow_outside)
+    place = Path(arguments.out)
+    _check_kept(place, arguments.setup, setup.source)
+    found = compensate(setup, arguments.components, bound_um=arguments.bound_um)
+    files = Written.before([place])
+    write_files(place.parent, {place.name: found.text})
+    record = compensation_record(found)
+    return say(arguments, record, compensation_lines(record), files=files)
+
+
+def _check_kept(place: Path, setup: str, source: Any) -> None:
+    """Refuse to write over the program that is corrected, wherever the set-up has it from."""
+    if place.is_dir():
+        raise ProjectError(f"--out {place}: this is a folder; give the name of a file.")
+    if not place.is_file():
+        return
+    folder = Path(setup) if Path(setup).is_dir() else Path(setup).parent
+    beside = folder / source.name
+    same = beside.is_file() and place.samefile(beside)
+    if same or place.read_bytes() == getattr(source, "text", "").encode("utf-8", "surrogateescape"):
+        raise ProjectError(f"--out {place}: the program to be corrected stands there and would be lost; give another.")

@@ -1,0 +1,373 @@
+"""The corrected program: the tool is sent elsewhere, so that it goes where it was meant to, and what then remains."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from robomill.arrays import FloatArray, digest
+from robomill.errors import CompensationError
+from robomill.frames import Columns
+from robomill.identification.confidence import LEVEL
+from robomill.identification.knowledge import Knowledge
+from robomill.improve.correction import COMPONENTS, Correction, against, correct, corrected_run
+from robomill.improve.written import WriteGCode, Written, writing
+from robomill.lazy import cached_property
+from robomill.progress import step
+from robomill.provenance import Finding, named
+from robomill.simulation.band import deviation_band
+from robomill.simulation.gauge import Readings
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import along
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.source import GCodeSource
+from robomill.units import format_count, format_si, from_si, to_si
+from robomill.values import Tabled, Value
+
+BOUND = 2e-6  # m
+FITTED = 0.9  # of the bound: the rest is for the digits that are written
+FINEST, COARSEST = 0.2e-6, 1e-3  # m: bounds that can be asked for
+WRONG = 1.2  # how much softer or stronger than is known
+FARTHEST = 2e-3  # m: an arm that is pushed further off is not predicted by its springs at rest
+MOST_HELD = 0.05  # of the length cut: so much may have no force that agrees with its place
+TURNED = to_si(5.0, "deg")  # a joint that stands further off than this stands otherwise
+STILL = 1e-7  # rad: a joint that turns no further rests
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Errors(Value):
+    """What a gauge finds on the part, m: largest and root mean square of ``wall`` and ``floor`` errors and of the
+    ``vector`` by which the tip is off, each (2,). NaN where the cut leaves none.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> found = rm.compensate(rm.load_setup("paper_flute"))
+    >>> round(found.before.max * 1e3, 2), found.after.max < 0.01 * found.before.max
+    (0.23, True)
+    """
+
+    wall: FloatArray
+    floor: FloatArray
+    vector: FloatArray
+
+    @property
+    def max(self) -> float:
+        """m: the larger of wall and floor; where no surface is left to measure, that of the tip."""
+        return self._larger(0)
+
+    @property
+    def rms(self) -> float:
+        """m: the same of the root mean squares over the length."""
+        return self._larger(1)
+
+    def _larger(self, which: int) -> float:
+        surfaces = np.array([self.wall[which], self.floor[which]])
+        return float(np.nanmax(surfaces) if np.isfinite(surfaces).any() else self.vector[which])
+
+    def _said(self) -> str:
+        return f"{format_si(self.max, 'mm', 4)} at most, {format_si(self.rms, 'mm', 4)} root mean square"
+
+
+def errors_of(run: SimulationResult) -> Errors:
+    """What a run leaves, against the path that it is of."""
+    gauge = run.gauge
+    return Errors(_size(gauge.walls), _size(gauge.floors), np.array([run.max_deviation, run.rms_deviation]))
+
+
+def _size(found: Readings) -> FloatArray:
+    """(2,) m: largest and root mean square over the length; NaN without any."""
+    if not len(found.error):
+        return np.full(2, np.nan)
+    weight = found.length if found.length.sum() > 0.0 else np.ones(len(found.error))
+    return np.array([np.abs(found.error).max(), np.sqrt(np.average(found.error**2, weights=weight))])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Compensation(Tabled):
+    """A corrected program with what it leaves.
+
+    text          the program; ``source`` is it as the path of a set-up
+    components    what was corrected: normal to the path, axial, feed
+    bound         m: the program keeps so near to the corrected path
+    before        what the program leaves as it is; ``after`` what the corrected one leaves, both ``Errors``
+    softer, stronger   what it leaves if all that gives is 20 % softer, or the force 20 % stronger, than was computed
+                  with: the larger of that and of as much stiffer, or weaker
+    half          m: half the 95 % interval of what remains, by linear propagation; NaN where nobody has said how sure
+                  the compliances are
+    change        m: by how much the correction still changed at each iteration
+    wanted, led   runs along the path as it is, and along the corrected one measured against it
+    c             (m, 3) m in {W}: the correction at the samples of the path, as written
+    unrolled      what was written out: loops and subprograms, canned cycles, ...
+    findings      what a reader must know
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> found = rm.compensate(rm.load_setup("paper_flute"))
+    >>> found.text.splitlines()[6]
+    'N50 G1 X50 Y-0.2295 Z-1.8976 F1800'
+    """
+
+    setup: SimulationSetup
+    components: tuple[str, ...]
+    bound: float
+    text: str
+    before: Errors
+    after: Errors
+    softer: Errors
+    stronger: Errors
+    half: float
+    change: tuple[float, ...]
+    wanted: SimulationResult
+    led: SimulationResult
+    c: FloatArray
+    lines_in: int
+    unrolled: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def iterations(self) -> int:
+        return len(self.change)
+
+    @property
+    def lines_out(self) -> int:
+        return len(self.text.splitlines())
+
+    @property
+    def name(self) -> str:
+        """A name for the program's file."""
+        stem, dot, end = getattr(self.setup.source, "name", "program.nc").rpartition(".")
+        return f"{stem}_corrected.{end}" if dot and isinstance(self.setup.source, GCodeSource) else "corrected.nc"
+
+    @cached_property
+    def source(self) -> GCodeSource:
+        """The corrected program as a source: ``setup.replace(source=...)`` runs it as any other."""
+        given = self.setup.source
+        if isinstance(given, GCodeSource):
+            return replace(given, text=self.text, name=self.name)
+        return GCodeSource(self.text, self.name)
+
+    @cached_property
+    def _digest(self) -> str:
+        return digest((self.setup.digest(), self.components, self.bound, self.text))
+
+    def columns(self) -> Columns:
+        """One row a sample of the path: the correction in {W}, and the deviation before and after in its cut's axes."""
+        path = self.wanted.path
+        found: Columns = {path.block_name: path.block, "cutting": path.cutting, "station_mm": from_si(path.s, "mm")}
+        found |= {f"correction_{axis}_mm": from_si(self.c[:, i], "mm") for i, axis in enumerate("xyz")}
+        for when, run in (("before", self.wanted), ("after", self.led)):
+            parts = from_si(run.delta_in_cut, "mm")
+            found |= {f"{when}_{name}_mm": parts[:, i] for i, name in enumerate(("feed", "normal", "axial"))}
+        return found
+
+    def _said(self) -> str:
+        was, now = (format_si(each.max, "mm", 4) for each in (self.before, self.after))
+        return f"{self.setup.name}: {was} before, {now} after {format_count(self.iterations, 'iteration')}"
+
+    def _facts(self) -> list[tuple[str, str]]:
+        told = [("Before", self.before), ("After", self.after)]
+        told += [("Compliances 20 % wrong", self.softer), ("Force 20 % wrong", self.stronger)]
+        lines = f"{self.lines_in} in, {self.lines_out} out"
+        return [*((name, each._said()) for name, each in told), ("Lines", lines)]
+
+
+def compensation(
+    setup: SimulationSetup,
+    components: Iterable[str],
+    bound: float,
+    write_gcode: WriteGCode,
+    known: Knowledge | None = None,
+) -> Compensation:
+    """The corrected program of a set-up; ``write_gcode`` writes paths that are no program. See ``rm.compensate``."""
+    chosen = checked_components(components)
+    if not FINEST <= bound <= COARSEST:
+        ends = f"{format_si(FINEST, 'um', 1)} to {format_si(COARSEST, 'mm', 0)}"
+        raise CompensationError(f"Bound: found {format_si(bound, 'um', 3)}; expected {ends}.", where="bound")
+    with step(0, 4, "The program as it is"):
+        back = writing(setup, write_gcode)
+        wanted = along(setup, back.moves.wanted)
+        check_trusted(wanted)
+        back.moves = back.moves.finer(wanted)
+        wanted = wanted if back.moves.wanted is wanted.path else along(setup, back.moves.wanted)
+    with step(1, 4, "Correcting the path"):
+        found = correct(setup, wanted, chosen)
+        check_found(found, wanted)
+    with step(2, 4, "Writing the program"):
+        written = back.write(found.c, FITTED * bound)
+        run = corrected_run(wanted, written.q)
+        led = against(run, wanted.path)
+        check_reached(run, wanted)
+    with step(3, 4, "What remains"):
+        return _measured(found, led, written, chosen, (bound, known))
+
+
+def _measured(
+    found: Correction,
+    led: SimulationResult,
+    written: Written,
+    chosen: tuple[str, ...],
+    asked: tuple[float, Knowledge | None],
+) -> Compensation:
+    wanted = found.first
+    bound, known = asked
+    before, after = errors_of(wanted), errors_of(led)
+    if not after.max < before.max:
+        raise CompensationError(
+            f"The path is not corrected: {format_si(before.max, 'mm', 4)} would become "
+            f"{format_si(after.max, 'mm', 4)}, since what is pushed aside here is not what was chosen to be corrected; "
+            "choose other components."
+        )
+    softer, stronger = _wrong(wanted, led, written.q)
+    return Compensation(
+        setup=wanted.setup,
+        components=chosen,
+        bound=bound,
+        text=written.text,
+        before=before,
+        after=after,
+        softer=softer,
+        stronger=stronger,
+        half=_half(led, known),
+        change=found.change,
+        wanted=wanted,
+        led=led,
+        c=written.q - wanted.path.p,
+        lines_in=written.lines_in,
+        unrolled=written.unrolled,
+        findings=_findings(found, led, written),
+    )
+
+
+def checked_components(components: Iterable[str]) -> tuple[str, ...]:
+    """The components in their order. Raises CompensationError for others, and for none."""
+    given = [each.strip() for each in (components.split(",") if isinstance(components, str) else components)]
+    unknown = [each for each in given if each not in COMPONENTS]
+    if unknown or not given:
+        what = f"found {unknown[0]!r}" if unknown else "found none"
+        raise CompensationError(f"Components: {what}; expected some of {', '.join(COMPONENTS)}.", where="components")
+    return tuple(each for each in COMPONENTS if each in given)
+
+
+def check_trusted(run: SimulationResult) -> None:
+    """Raises CompensationError where the prediction itself is not to be trusted."""
+    errors = [finding for finding in run.setup.toolpath.findings if finding.level == "error"]
+    if errors:
+        raise CompensationError(f"The path is not corrected: {errors[0].sentence}")
+    verdict = run.verdict
+    if verdict.level in ("unjudged", "unreached", "missed"):
+        raise CompensationError(
+            f"The path is not corrected, since its prediction is not to be trusted. {verdict.sentence}"
+        )
+
+
+def check_found(found: Correction, wanted: SimulationResult) -> None:
+    """Raises CompensationError where path and force do not agree anywhere near the wanted path."""
+    path = wanted.path
+    size = np.linalg.norm(found.c, axis=1)
+    cut = path.cutting & wanted.conditions.engaged
+    length = float(path.step_length[cut].sum())
+    held = float(path.step_length[found.held & cut].sum())
+    if found.settled and size.max() > FARTHEST:
+        i = int(np.argmax(size))
+        raise CompensationError(
+            f"The path is not corrected: at {path.block_name} {path.block[i]} the tool would be sent "
+            f"{format_si(size[i], 'mm')} beside its path, and at most {format_si(FARTHEST, 'mm', 0)} can be trusted; "
+            "cut less at once, or with a stiffer arm."
+        )
+    if found.settled and held <= MOST_HELD * length:
+        return
+    at = path.block[found.held & cut] if found.settled else path.block[[int(np.argmax(size))]]
+    left = (
+        ""
+        if found.settled
+        else f": after {found.iterations} runs it still changes by {format_si(found.change[-1], 'mm')}"
+    )
+    raise CompensationError(
+        f"The path is not corrected: the correction does not settle ({path.block_name} {named(at.tolist())}){left}. "
+        "The force changes faster with the tool's place than the arm gives way; cut less at once, or couple the force."
+    )
+
+
+def check_reached(run: SimulationResult, wanted: SimulationResult) -> None:
+    """Raises CompensationError where the arm does not follow the corrected path as it follows the wanted one."""
+    path, place = wanted.path, wanted.path.block_name
+    lost = wanted.reached & ~run.reached
+    if lost.any():
+        i = int(np.flatnonzero(lost)[0])
+        raise CompensationError(
+            f"The path is not corrected: at {place} {named(path.block[lost].tolist())} the corrected path is out of "
+            f"reach ({run.ik.reason(i)}); move the part."
+        )
+    if not (np.isfinite(run.delta).all(axis=1) | ~path.cutting).all():
+        lost = path.cutting & ~np.isfinite(run.delta).all(axis=1)
+        raise CompensationError(
+            f"The path is not corrected: at {place} {named(path.block[lost].tolist())} no force is known on the "
+            "corrected path."
+        )
+    turned = np.abs(run.theta - wanted.theta)[:, ~np.array(wanted.setup.robot.chain.prismatic)[-run.theta.shape[1] :]]
+    over = wanted.reached & (turned.max(axis=1, initial=0.0) > TURNED)
+    if over.any():
+        raise CompensationError(
+            f"The path is not corrected: at {place} {named(path.block[over].tolist())} the arm would stand otherwise "
+            "than on the path as it is, close to a singular configuration or a joint's limit; move the part."
+        )
+
+
+def reversals(run: SimulationResult) -> int:
+    """How often a joint turns back while the tool cuts."""
+    turn = np.diff(run.theta, axis=0)[run.path.cutting[1:]]
+    count = 0
+    for each in turn.T:
+        way = np.sign(each[np.abs(each) > STILL])
+        count += int((way[1:] != way[:-1]).sum())
+    return count
+
+
+def _wrong(wanted: SimulationResult, led: SimulationResult, q: FloatArray) -> tuple[Errors, Errors]:
+    """What is left where compliances, or the force, are wrong by 20 % to either side: the larger one."""
+    setup = wanted.setup
+    if not setup.coupling and not setup.add_sag:  # then the deflection is wrong by as much, whichever it is
+        pushed = led.delta - (q - wanted.path.p) @ setup.T_MW[:3, :3].T
+        both = [errors_of(replace(led, delta=led.delta + sign * (WRONG - 1.0) * pushed)) for sign in (1.0, -1.0)]
+        worse = max(both, key=lambda each: each.max)
+        return worse, worse
+    found = []
+    for name in ("softer", "stronger"):
+        runs = [against(corrected_run(wanted, q, **{name: by}), wanted.path) for by in (WRONG, 2.0 - WRONG)]
+        found.append(max(map(errors_of, runs), key=lambda each: each.max))
+    return found[0], found[1]
+
+
+def _half(led: SimulationResult, known: Knowledge | None) -> float:
+    """Half the 95 % interval (m) of what remains across the path or along the axis, where it is widest."""
+    if known is None or not led.judged.any():
+        return float("nan")
+    band = deviation_band(led, known)
+    halves = [band.half_along(led.R_MF[..., i], LEVEL)[led.judged] for i in (1, 2)]
+    return float(np.nanmax(halves))
+
+
+def _findings(found: Correction, led: SimulationResult, written: Written) -> tuple[Finding, ...]:
+    wanted, told = found.first, []
+    if written.unrolled:
+        told.append(Finding("info", f"written out: {', '.join(written.unrolled)}.", code="unrolled"))
+    if found.held.any():
+        lines = named(sorted(set(wanted.path.block[found.held].tolist())))
+        text = (
+            f"{wanted.path.block_name} {lines}: the tool just touches there, and no correction agrees with the force; "
+        )
+        told.append(Finding("warning", text + "what is left is in the numbers.", code="held"))
+    known = {(each.code, each.line) for each in wanted.steadiness}
+    told += [each for each in led.steadiness if (each.code, each.line) not in known]
+    before, after = reversals(wanted), reversals(led)
+    if after > before:
+        text = (
+            f"joints turn back {format_count(after, 'time')} while cutting, {before} as it was: backlash shows there."
+        )
+        told.append(Finding("info", text, code="joint-reversals"))
+    text = "the deflection is taken back as it is predicted; measure one cut before the part."
+    return (*told, Finding("info", text, code="predicted"))

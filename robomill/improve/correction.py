@@ -1,0 +1,276 @@
+"""Where a tool must be sent so that, pushed off, it goes where it was meant to go: a fixed point on path and force.
+
+At every sample of the wanted path p the tool is sent to q = p + c, where it meets the part, is pushed and stands at
+q + delta(q). The correction c is sought with P (c + delta(p + c)) = 0, P being the directions that are corrected, so
+with force, compliance and engagement of the corrected path. Samples at one place share one correction where that does
+for all of them, as two offset lines meet; at a sharp corner each cut has its own, and a short link leads across.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.cutting.tool import DISH
+from robomill.progress import checkpoint
+from robomill.simulation.cut import Led
+from robomill.simulation.places import STEEP
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import along, feed_directions
+from robomill.simulation.samples import ways
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Toolpath
+
+COMPONENTS = ("normal", "axial", "feed")
+AGREED = 0.5e-6  # m: corrections that change by no more have settled
+NEARLY, LONG = 5e-6, 12  # m: after so many runs it is enough if no correction changes by more
+MOST, PATIENCE = 40, 5  # runs, and after how many a place that comes no closer is given up
+MITRE = 2.0  # times the larger deflection of two cuts that meet: no corner is moved further
+LINK = 20e-6  # m: two cuts end and begin in one point where that is no further from where either would
+SLOWEST = 0.1  # least share of a change that is taken where corrections overshoot
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """c (m, 3) m in {W} at the samples of the run ``first`` along the wanted path; ``run`` is the run along the
+    corrected one, ``error`` (m, 3) m in {W} how far its tip is off the wanted path; ``change`` m is by how much
+    the correction still changed in each iteration, save where it is ``held`` (m,) bool: no force agrees with
+    the place there."""
+
+    first: SimulationResult
+    c: FloatArray
+    run: SimulationResult
+    change: tuple[float, ...]
+    held: BoolArray
+
+    @property
+    def iterations(self) -> int:
+        return len(self.change)
+
+    @property
+    def settled(self) -> bool:
+        return _settled(self.change)
+
+    @property
+    def error(self) -> FloatArray:
+        return tip_error(self.run, self.first.path)
+
+
+def _settled(change: Sequence[float]) -> bool:
+    return change[-1] <= (NEARLY if len(change) > LONG else AGREED)
+
+
+def tip_error(run: SimulationResult, wanted: Toolpath) -> FloatArray:
+    """(m, 3) m in {W}: the tip of a run against the ``wanted`` path, sample by sample."""
+    return np.asarray(run.path.p - wanted.p + run.delta @ run.setup.T_MW[:3, :3])
+
+
+def against(run: SimulationResult, wanted: Toolpath) -> SimulationResult:
+    """The run along a corrected path as one that was told to go along the ``wanted`` one: what a gauge reads on it is
+    the error of the part."""
+    setup = run.setup
+    off = np.where(wanted.cutting[:, None], tip_error(run, wanted), 0.0) @ setup.T_MW[:3, :3].T
+    return replace(run, path=wanted, delta=off, R_MF=feed_directions(setup, wanted))
+
+
+def directions(run: SimulationResult, components: tuple[str, ...]) -> FloatArray:
+    """P (m, 3, 3) in {W}: what of a deviation is corrected at each sample.
+
+    Normal to the path is to the left of the feed; axial is across both, so the tool axis where the path is level. In a
+    plunge normal is all around, and axial is along the way: a hole's bottom.
+    """
+    frames = np.einsum("ji,mjk->mik", run.setup.T_MW[:3, :3], run.R_MF)  # columns feed, normal, axial in {W}
+    across, rise = run.conditions.across, run.conditions.along
+    steep = across < STEEP
+    feed, normal, axis = np.moveaxis(frames, 2, 0)
+    way = across[:, None] * feed + rise[:, None] * axis
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    up = np.cross(way, normal)
+    chosen = {name: name in components for name in COMPONENTS}
+    share_way = np.where(steep, chosen["axial"] or chosen["feed"], chosen["feed"])
+    share_up = np.where(steep, chosen["normal"], chosen["axial"])
+    shares = zip((way, normal, up), (share_way, np.full(len(way), chosen["normal"]), share_up), strict=True)
+    return sum(
+        (share[:, None, None] * d[:, :, None] * d[:, None, :] for d, share in shares), np.zeros((len(way), 3, 3))
+    )
+
+
+def correct(setup: SimulationSetup, first: SimulationResult, components: tuple[str, ...]) -> Correction:
+    """The fixed point from the run ``first`` along the wanted path.
+
+    Where a force jumps with the place of the tool (it just touches) there may be none: there the correction is held
+    that came closest, and what it leaves is part of the error.
+    """
+    wanted, to_W, places = first.path, setup.T_MW[:3, :3], Places.along(first)
+    P, seeking = directions(first, components), _Seeking.begin(len(wanted))
+    if {"normal", "axial"} <= set(components):  # where a plunge ends no step may be left, whichever way the cut goes on
+        P[places.then[places.then >= 0]] = np.eye(3)
+    result = first
+    change: list[float] = []
+    while True:
+        checkpoint(min(len(change) / 6.0, 0.95), "Correcting the path")
+        known = result.path.cutting & np.isfinite(result.delta).all(axis=1)
+        asked = places.one_each(P, np.where(known[:, None], result.delta, 0.0) @ to_W, known)
+        seeking = seeking.looked(asked)
+        change.append(seeking.change(asked))
+        if _settled(change) or len(change) >= MOST or not np.isfinite(change[-1]):
+            return Correction(first, seeking.c, result, tuple(change), seeking.held)
+        if len(change) % PATIENCE == 0:
+            seeking = seeking.giving_up(places.place)
+        seeking = seeking.moved(asked)
+        result = corrected_run(first, wanted.p + seeking.c)
+
+
+@dataclass(frozen=True, eq=False)
+class _Seeking:
+    """Corrections c (m, 3) m on their way to a fixed point.
+
+    Of the last change, ``before``, the ``share`` (m, 1) was taken (Aitken). ``least`` (m,) m is the smallest change
+    that each sample was ever asked for, ``best`` its correction then, ``lately`` what it was when last looked at;
+    those that are ``held`` (m,) bool are given up.
+    """
+
+    c: FloatArray
+    share: FloatArray
+    before: FloatArray | None
+    best: FloatArray
+    least: FloatArray
+    lately: FloatArray
+    held: BoolArray
+
+    @classmethod
+    def begin(cls, m: int) -> "_Seeking":
+        never = np.full(m, np.inf)
+        nothing = np.zeros((m, 3))
+        return cls(nothing, np.ones((m, 1)), None, nothing, never, never, np.zeros(m, dtype=bool))
+
+    def change(self, asked: FloatArray) -> float:
+        """m: the largest change that is still ``asked`` of those that are not held."""
+        return float(np.where(self.held, 0.0, np.linalg.norm(asked - self.c, axis=1)).max(initial=0.0))
+
+    def looked(self, asked: FloatArray) -> "_Seeking":
+        """With the best corrections so far."""
+        size = np.linalg.norm(asked - self.c, axis=1)
+        better = size < self.least
+        best = np.where(better[:, None], self.c, self.best)
+        return replace(self, best=best, least=np.minimum(size, self.least))
+
+    def giving_up(self, place: IntArray) -> "_Seeking":
+        """Without those, and all samples at their place, that have not come closer by half since last time."""
+        stuck = (self.least > AGREED) & (self.least > 0.5 * self.lately)
+        stuck = np.bincount(place, stuck)[place] > 0
+        return replace(self, held=self.held | stuck, lately=self.least)
+
+    def moved(self, asked: FloatArray) -> "_Seeking":
+        """After the next change: all of it, but less where the last one overshot."""
+        step, share = asked - self.c, self.share
+        if self.before is not None:
+            turned = self.before - step
+            size = np.einsum("mi,mi->m", turned, turned)
+            along = np.einsum("mi,mi->m", self.before, turned)
+            fitting = np.divide(along, size, out=np.ones(len(step)), where=size > 0.0)
+            share = np.clip(share * np.clip(fitting, SLOWEST, 1.0 / SLOWEST)[:, None], SLOWEST, 1.0)
+        c = np.where(self.held[:, None], self.best, self.c + share * step)
+        return replace(self, c=c, share=share, before=step)
+
+
+def corrected_run(wanted: SimulationResult, p: FloatArray, **wrong: float) -> SimulationResult:
+    """The run of the tool that is sent to p (m, 3) m in {W} to go along the path of the run ``wanted``, in whose
+    direction it feeds; ``wrong`` as in ``along``. A plunge meets the part where the cut meets it that goes on from
+    there: both were meant to be at one place."""
+    path, then = wanted.path, Places.along(wanted).then
+    tips = np.where((then >= 0)[:, None], path.p + (p - path.p)[then], p)
+    way = ways(path)
+    back = np.einsum("mi,mi->m", np.diff(tips, axis=0, prepend=tips[:1]), way) < 0.0
+    back &= path.step_length > 0.0  # a link is no step of the cut
+    led = Led(path.p, np.where(back[:, None], ways(replace(path, p=tips)), way), tips)
+    return along(wanted.setup, replace(path, p=p), led=led, **wrong)
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where samples of a ``path`` stand: ``place`` (m,) counts the points on it; ``then`` (m,) is, for samples on the
+    way down, the first one of the level cut that goes on from there, else -1; ``steep`` (m,) bool are plunges."""
+
+    path: Toolpath
+    place: IntArray
+    then: IntArray
+    steep: BoolArray
+
+    @classmethod
+    def along(cls, run: SimulationResult) -> "Places":
+        path, conditions = run.path, run.conditions
+        place = np.cumsum(np.append(False, (np.diff(path.p, axis=0) != 0.0).any(axis=1)))
+        down = path.cutting & (conditions.along < -DISH)
+        steep = conditions.across < STEEP
+        after = np.append(np.where(down, len(path), np.arange(len(path)))[1:], len(path))
+        then = np.minimum.accumulate(after[::-1])[::-1]  # the first sample behind that does not go down
+        level = np.append(path.cutting & ~down & ~steep, False)
+        return cls(path, place, np.where(down & level[then], then, -1), steep)
+
+    def one_each(self, P: FloatArray, d: FloatArray, known: BoolArray) -> FloatArray:
+        """c (m, 3): what undoes deflections d (m, 3) m in directions P; at one place one for all that are ``known``
+        there, unless that would leave more than ``LINK`` of them beside the path: then each has its own, and a short
+        link leads from one to the next.
+
+        Along the axis a place has that of its highest cut: what is left standing at one spot the tool takes away as it
+        goes on. On the way down to a level cut nothing is sent deeper than that cut: the push ends with the plunge.
+        """
+        own = -np.einsum("mij,mj->mi", P, d)
+        c, k, m = self._shared(P, d, known), self.path.k, len(own)
+        pushed = known & (d != 0.0).any(axis=1) & (self.then < 0)
+        axial = pushed & (np.einsum("mij,mi,mj->m", P, k, k) > 0.5) & (np.bincount(self.place, known)[self.place] > 1)
+        highest = np.full(m, -np.inf)
+        np.maximum.at(highest, self.place[axial], np.einsum("mi,mi->m", own, k)[axial])
+        highest = highest[self.place]
+        up = np.einsum("mi,mi->m", c, k)
+        lifted = np.where(np.isfinite(highest), highest, up)
+        i = np.flatnonzero(self.then >= 0)
+        low, p = self.then[i], self.path.p
+        deepest = np.einsum("mi,mi->m", p[low] - p[i], k[i]) + lifted[low]
+        lifted[i] = np.where(self.steep[i], lifted[low], np.maximum(up[i], deepest))
+        c = c + (lifted - up)[:, None] * k
+        cutting = self.path.cutting  # a rapid arrives where the cut begins
+        arrives = np.flatnonzero(~cutting[:-1] & cutting[1:] & (self.place[:-1] == self.place[1:]))
+        c[arrives] = c[arrives + 1]
+        return np.asarray(c)
+
+    def _shared(self, P: FloatArray, d: FloatArray, known: BoolArray) -> FloatArray:
+        """c (m, 3) m, the same for all samples at a place where that does for them; else each undoes its own deflection
+        in the directions of all of them, for where one cut ends another has its wall."""
+        own = -np.einsum("mij,mj->mi", P, d)
+        count = np.bincount(self.place, known)
+        found = np.zeros((len(count), 3))
+        single = known & (count[self.place] == 1)
+        found[self.place[single]] = own[single]
+        some = np.flatnonzero(known & (count[self.place] > 1))
+        if not len(some):
+            return found[self.place]
+        several, number = np.unique(self.place[some], return_inverse=True)
+        every = np.zeros((len(several), 3, 3))
+        np.add.at(every, number, P[some])
+        inverse = np.asarray(np.linalg.pinv(every, rcond=1e-2, hermitian=True), dtype=np.float64)
+        met = _meeting(inverse, own[some], number)
+        found[several] = met
+        c, k, off = found[self.place], self.path.k[some], met[number] - own[some]
+        beside = np.linalg.norm(off - np.einsum("mi,mi->m", off, k)[:, None] * k, axis=1)
+        most = np.zeros(len(several))
+        np.maximum.at(most, number, beside)
+        linked = most[number] > LINK
+        U = np.einsum("qij,qjk->qik", inverse, every)
+        c[some[linked]] = -np.einsum("mij,mj->mi", U[number[linked]], d[some[linked]])
+        return np.asarray(c)
+
+
+def _meeting(inverse: FloatArray, own: FloatArray, number: IntArray) -> FloatArray:
+    """(q, 3) m: the one correction at each of the places ``number`` (m,) that does what all of its own (m, 3) ask, as
+    two offset lines meet; their mean where they meet too far off, or not at all. ``inverse`` (q, 3, 3) is that of the
+    sum of their directions."""
+    count = np.bincount(number)
+    b, most = np.zeros((len(count), 3)), np.zeros(len(count))
+    np.add.at(b, number, own)
+    np.maximum.at(most, number, np.linalg.norm(own, axis=1))
+    met = np.einsum("qij,qj->qi", inverse, b)
+    near = np.linalg.norm(met, axis=1) <= MITRE * most
+    return np.asarray(np.where(near[:, None], met, b / count[:, None]))

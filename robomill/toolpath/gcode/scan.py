@@ -1,0 +1,81 @@
+"""A line of a program as its words where they stand, so that some can be changed and all others stay as they were."""
+
+import re
+from dataclasses import dataclass, replace
+
+AXES, ROTARY, CENTRES = "XYZ", "ABC", "IJK"
+_PART = re.compile(
+    r"(?P<space>\s+)|(?P<comment>\([^()]*\)|;.*)|(?P<skip>/\d?(?=\s*(?:N|$|[A-Z])))"
+    r"|(?P<named>[A-Z]{2,}\d*\s*=\s*[^\s;]+)"
+    r"|(?P<word>(?P<letter>[A-Z])\s*(?P<number>[-+]?\s*(?:\d+\.?\d*|\.\d+))(?![\d.\[#]))"
+    r"|(?P<corner>,\s*[RC]\s*\d*\.?\d*)"
+    r"|(?P<computed>(?P<of>[A-Z])\s*(?:=\s*[^\s;]+|[-+]?(?:#<[^>]*>|#+\d+|#*\[)))",
+    re.IGNORECASE,
+)
+
+
+@dataclass(frozen=True)
+class Token:
+    """A piece of a line as written: a ``letter`` with its ``value`` (None: computed), or what is no word ("")."""
+
+    text: str
+    letter: str = ""
+    value: float | None = None
+
+    @property
+    def code(self) -> str:
+        """``"G1"`` for G01, ``"M30"``; "" for other words."""
+        return f"{self.letter}{self.value:g}" if self.letter in ("G", "M") and self.value is not None else ""
+
+    @property
+    def is_space(self) -> bool:
+        return not self.letter and not self.text.strip()
+
+    @property
+    def is_comment(self) -> bool:
+        return not self.letter and self.text[:1] in ("(", ";")
+
+    def said(self, number: str) -> "Token":
+        """The same word with another number."""
+        return replace(self, text=f"{self.text[0]}{number}", value=float(number))
+
+
+def scan(line: str) -> list[Token] | None:
+    """The words of a line of G-code in order; None for a line that is made of other things, too."""
+    at, found = 0, []
+    while at < len(line):
+        part = _PART.match(line, at)
+        if part is None:
+            return None
+        end = part.end()
+        if part["computed"] is not None:
+            end = _past_brackets(line, at, end)
+            found.append(Token(line[at:end], part["of"].upper()))
+        elif part["word"] is not None:
+            number = re.sub(r"\s", "", part["number"])
+            found.append(Token(line[at:end], part["letter"].upper(), float(number)))
+        elif part["named"] is not None or part["corner"] is not None:
+            found.append(Token(line[at:end], re.split(r"[=\d\s]", part[0].lstrip(", "))[0].upper() + "="))
+        else:
+            found.append(Token(line[at:end]))
+        at = end
+    return found
+
+
+def _past_brackets(line: str, start: int, end: int) -> int:
+    """Where a value ends whose last bracket was opened before ``end``."""
+    depth = line.count("[", start, end) - line.count("]", start, end)
+    while depth > 0 and end < len(line):
+        depth += {"[": 1, "]": -1}.get(line[end], 0)
+        end += 1
+    return end
+
+
+def joined(tokens: list[Token]) -> str:
+    return "".join(token.text for token in tokens)
+
+
+def without(tokens: list[Token], gone: set[int]) -> list[Token]:
+    """The tokens but those at some places, each with the space before it."""
+    also = {i - 1 for i in gone if i > 0 and tokens[i - 1].is_space}
+    return [token for i, token in enumerate(tokens) if i not in gone | also]

@@ -1,0 +1,56 @@
+"""``robomill compensate``: the file it writes, its record, and what it never writes over."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+import robomill as rm
+from robomill.cli import main
+from robomill.io.samples import samples_dir
+
+SLOT = samples_dir() / "paper_flute"
+
+
+def test_the_program_is_written_and_the_record_is_that_of_the_library(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    out = tmp_path / "new" / "corrected.nc"
+    words = ["compensate", str(SLOT), "--out", str(out), "--components", "normal", "--bound-um", "5", "--json"]
+    assert main(words) == 0
+    record = json.loads(capsys.readouterr().out)
+    found = rm.compensate(rm.load_setup(SLOT), "normal", bound_um=5)
+    assert out.read_text() == found.text
+    assert record["after_mm"]["max"] == pytest.approx(1e3 * found.after.max)
+    assert record["components"] == ["normal"]
+    assert record["files"][0]["path"] == str(out)
+    assert main(["compensate", str(SLOT), "--out", str(out)]) == 0
+    assert "replacing an older one" in capsys.readouterr().out
+
+
+def test_the_source_is_never_written_over(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    folder = tmp_path / "work"
+    shutil.copytree(SLOT, folder)
+    program = (folder / "path.nc").read_text()
+    copy = tmp_path / "copy.nc"
+    copy.write_text(program)
+    for place in (folder / "path.nc", folder / "setup.toml", copy):
+        assert main(["compensate", str(folder / "setup.toml"), "--out", str(place)]) == 2
+        assert "give another" in capsys.readouterr().err
+    assert (folder / "path.nc").read_text() == copy.read_text() == program
+    assert main(["compensate", str(folder), "--out", str(folder)]) == 2
+    assert "folder" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [(("--components", "up"), "expected some of normal, axial, feed"), (("--bound-um", "0"), "Bound")],
+)
+def test_slips_are_told_and_nothing_is_written(
+    words: tuple[str, ...], said: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    out = tmp_path / "x.nc"
+    assert main(["compensate", str(SLOT), "--out", str(out), *words]) == 2
+    assert said in capsys.readouterr().err
+    assert not out.exists()

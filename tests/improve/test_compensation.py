@@ -1,0 +1,225 @@
+"""The corrected program against runs that know nothing of it: its text, read and simulated as any other program."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import CompensationError
+from robomill.improve import correction
+from robomill.improve.compensation import Compensation, checked_components, reversals
+from robomill.io.samples import samples_dir
+
+SLOT = samples_dir() / "paper_flute"
+
+
+@pytest.fixture(scope="module")
+def slot() -> Compensation:
+    return rm.compensate(rm.load_setup(SLOT))
+
+
+@pytest.fixture(scope="module")
+def process() -> Compensation:
+    return rm.compensate(rm.load_setup(SLOT / "setup_process.toml"))
+
+
+@pytest.fixture(scope="module")
+def pocket() -> Compensation:
+    return rm.compensate(rm.load_setup("pocket_arcs"))
+
+
+def tip_of(setup: rm.SimulationSetup, text: str) -> tuple[np.ndarray, rm.SimulationResult]:
+    """(m, 3) m in {W}: where the tool really goes with a program that is simulated as it stands."""
+    run = rm.simulate(setup.replace(source=rm.GCodeSource(text, "corrected.nc")))
+    return np.asarray(run.path.p + run.delta @ setup.T_MW[:3, :3]), run
+
+
+def beside_slot(found: Compensation, setup: rm.SimulationSetup | None = None) -> np.ndarray:
+    """(k, 2) m: how far the tip is off the slot's line (Y 0, Z -2 mm) while it cuts, by an ordinary run of the text."""
+    tip, run = tip_of(found.setup if setup is None else setup, found.text)
+    return np.abs(tip[run.path.cutting] - [0.0, 0.0, -2e-3])[:, 1:]
+
+
+def test_the_slots_tip_runs_along_its_line_within_a_hundredth_of_what_it_was_off(slot: Compensation) -> None:
+    before = rm.simulate(slot.setup).max_deviation
+    assert beside_slot(slot).max() < 0.01 * before
+    assert slot.after.max < 0.01 * slot.before.max
+
+
+def test_the_same_holds_of_a_force_that_follows_the_cut(process: Compensation) -> None:
+    """Its engagement is that of the corrected path: 2 mm deep no more, so a mirror image would miss by a tenth."""
+    off = beside_slot(process)
+    assert off.max() < 0.03 * process.before.max  # where the mill has just touched
+    assert off[8:].max() < 0.01 * process.before.max
+    mirrored = -process.wanted.delta_in_cut[:, 1][process.wanted.path.cutting]
+    assert np.abs(mirrored[-5] - process.c[-5, 1]) > 0.02e-3
+
+
+def test_a_fifth_stays_where_every_joint_gives_a_fifth_more(slot: Compensation) -> None:
+    arm = slot.setup.robot
+    softer = slot.setup.replace(robot=arm.replace(C_theta=1.2 * arm.C_theta))
+    off = beside_slot(slot, softer)
+    assert off.max() == pytest.approx(0.2 * slot.before.max, rel=0.02)
+    assert slot.softer.max == pytest.approx(off.max(), rel=0.01)
+    assert slot.stronger.max == pytest.approx(slot.softer.max)
+
+
+def test_a_fifth_stays_of_a_pocket_too_and_inside_the_model_less_than_a_hundredth(pocket: Compensation) -> None:
+    assert pocket.after.max < 0.01 * pocket.before.max
+    assert pocket.after.rms < 0.01 * pocket.before.rms
+    assert 0.15 < pocket.softer.max / pocket.before.max < 0.25
+
+
+def test_a_coupled_run_of_the_text_finds_it_on_its_line() -> None:
+    setup = rm.load_setup(SLOT / "setup_process.toml").replace(coupling=True)
+    found = rm.compensate(setup)
+    inside = beside_slot(found)[6:-1]  # the mill enters over 4 mm, in steps of 1 mm
+    assert inside.max() < 0.01 * found.before.max
+    assert 0.1 < found.softer.max / found.before.max < 0.25
+
+
+def test_each_iteration_says_how_much_still_changed_and_the_last_one_little(process: Compensation) -> None:
+    assert process.iterations == len(process.change) >= 3
+    assert process.change[0] > 0.2e-3
+    assert process.change[-1] < 0.5e-6
+
+
+def test_lines_keep_numbers_comments_feeds_and_words_and_only_places_change(slot: Compensation) -> None:
+    before, after = slot.source.name, slot.text.splitlines()
+    given = rm.read_program(SLOT / "path.nc").text.splitlines()
+    assert before == "path_corrected.nc"
+    assert slot.lines_in == slot.lines_out == len(given)
+    changed = [(a, b) for a, b in zip(given, after, strict=True) if a != b]
+    assert [a for a, _ in changed] == ["N30 G0 X-50 Y0 Z20", "N40 G0 Z-2"]
+    assert [b.split(" ")[:2] for _, b in changed] == [["N30", "G0"], ["N40", "G0"]]
+
+
+def test_a_retract_goes_straight_up_from_where_the_cut_ended(slot: Compensation) -> None:
+    path = slot.source.read()
+    up = np.flatnonzero(~path.cutting)[-1]
+    np.testing.assert_allclose(path.p[up, :2], path.p[up - 1, :2], atol=1e-9)
+
+
+def test_only_what_is_chosen_is_corrected() -> None:
+    setup = rm.load_setup(SLOT)
+    normal, axial, every = (rm.compensate(setup, which) for which in ("normal", "axial", "normal, axial,feed"))
+    assert np.abs(normal.c[:, 2]).max() < 0.1e-6 < np.abs(normal.c[:, 1]).max()
+    assert np.abs(axial.c[:, 1]).max() < 0.1e-6 < np.abs(axial.c[:, 2]).max()
+    assert every.after.vector[0] < 0.5e-6 < axial.after.vector[0]
+    assert normal.after.wall[0] < 0.5e-6
+    assert normal.after.floor[0] == pytest.approx(normal.before.floor[0], rel=0.01)
+
+
+def test_feed_is_left_alone_unless_asked(slot: Compensation) -> None:
+    assert np.abs(slot.c[:, 0]).max() < 1e-12
+
+
+def test_a_finer_bound_takes_more_lines_and_each_keeps_it(process: Compensation) -> None:
+    coarse = rm.compensate(process.setup, bound_um=20)
+    assert coarse.lines_out <= process.lines_out
+    assert process.after.max < 2e-6
+    assert coarse.after.max < 20e-6
+
+
+def test_arcs_stay_arcs_where_their_correction_is_even() -> None:
+    """Around a circle about joint 1's axis a push along the tool is the same everywhere."""
+    setup = rm.load_setup(SLOT)
+    text = "G21 G90 G17\nG0 X-20 Y0 Z5\nG0 Z-2\nG2 X20 Y0 I20 J0 F600\nG0 Z5\nM2\n"
+    force = rm.PathForce(axial=-20.0)
+    found = rm.compensate(setup.replace(source=rm.GCodeSource(text, "arc.nc"), force=force), "axial", bound_um=20)
+    assert sum(line.startswith("G2 ") for line in found.text.splitlines()) == 1
+    assert found.lines_out < 12
+
+
+def test_paths_that_are_no_program_are_written_as_one() -> None:
+    setup = rm.load_setup(SLOT)
+    path = rm.Toolpath.from_points(p_mm=[[-50, 0, -2], [50, 0, -2]], feed_mm_min=1800)
+    lines = rm.LinesSource(start_mm=[[-50, 0, -2]], end_mm=[[50, 0, -2]], feed_mm_min=[1800])
+    for source in (path, lines):
+        found = rm.compensate(setup.replace(source=source))
+        assert found.name == "corrected.nc"
+        assert beside_slot(found).max() < 0.01 * found.before.max
+
+
+def test_it_is_a_value_and_a_table(slot: Compensation) -> None:
+    again = rm.compensate(slot.setup)
+    assert again == slot
+    assert again.digest() == slot.digest()
+    assert rm.compensate(slot.setup, "normal").digest() != slot.digest()
+    columns = slot.columns()
+    assert np.abs(columns["after_normal_mm"]).max() < 1e-3 < np.abs(columns["before_normal_mm"]).max()
+    assert "0.2295 mm before" in repr(slot)
+
+
+def test_the_band_of_what_remains_is_that_of_the_deflection() -> None:
+    """1 % of every compliance, all independent: by brute force over each."""
+    from robomill.identification.knowledge import Knowledge
+    from robomill.identification.models import Model
+
+    setup = rm.load_setup(SLOT)
+    arm = setup.robot
+    known = Knowledge(Model("joints"), arm.C_theta, np.diag((0.01 * arm.C_theta) ** 2))
+    found = rm.compensate(setup, known=known)
+    each = []
+    for joint in range(arm.n):
+        C = np.array(arm.C_theta)
+        C[joint] *= 1.01
+        moved = tip_of(setup.replace(robot=arm.replace(C_theta=C)), found.text)[0] - tip_of(setup, found.text)[0]
+        each.append(moved)
+    half = 1.959964 * np.sqrt((np.array(each) ** 2).sum(axis=0))[5:, 1:].max()
+    assert found.half == pytest.approx(half, rel=0.02)
+    assert np.isnan(rm.compensate(setup).half)
+
+
+def far(setup: rm.SimulationSetup) -> rm.SimulationSetup:
+    return setup.replace(part_zero_mm=(0, -2600, 2))
+
+
+def unknown(setup: rm.SimulationSetup) -> rm.SimulationSetup:
+    text = setup.source.block_texts()
+    return setup.replace(source=rm.GCodeSource("\n".join(text).replace("S12000 M3", "G96 S100 M3"), "path.nc"))
+
+
+REFUSED: dict[str, tuple[Callable[[rm.SimulationSetup], rm.SimulationSetup], Path, str]] = {
+    "not reached": (far, SLOT, "reached"),
+    "no speed, so no force is known": (unknown, SLOT / "setup_process.toml", "not judged"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_predicted_is_not_corrected(name: str) -> None:
+    change, file, words = REFUSED[name]
+    with pytest.raises(CompensationError, match=words):
+        rm.compensate(change(rm.load_setup(file)))
+
+
+def test_an_arm_that_gives_too_much_is_refused_by_name() -> None:
+    setup = rm.load_setup(SLOT / "setup_process.toml")
+    arm = setup.robot
+    with pytest.raises(rm.RobomillError, match=r"^The path is not corrected"):
+        rm.compensate(setup.replace(robot=arm.replace(C_theta=60.0 * arm.C_theta)))
+
+
+def test_what_does_not_settle_is_refused_by_its_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(correction, "MOST", 2)
+    with pytest.raises(CompensationError, match=r"does not settle \(line 7\): after 2 runs it still changes by 0\.02"):
+        rm.compensate(rm.load_setup(SLOT / "setup_process.toml"))
+
+
+@pytest.mark.parametrize("given", ["", "sideways", ["normal", "up"], []])
+def test_components_are_named(given: str | list[str]) -> None:
+    with pytest.raises(CompensationError, match=r"expected some of normal, axial, feed"):
+        checked_components(given)
+
+
+@pytest.mark.parametrize("bound_um", [0.0, -1.0, float("nan"), 5000.0])
+def test_a_bound_that_no_program_keeps_is_refused(bound_um: float) -> None:
+    with pytest.raises(CompensationError, match="Bound"):
+        rm.compensate(rm.load_setup(SLOT), bound_um=bound_um)
+
+
+def test_joints_that_turn_back_are_counted(slot: Compensation) -> None:
+    """Along a straight slot in front of the arm only joints that see its middle turn back, once each."""
+    assert 0 < reversals(slot.wanted) <= slot.setup.robot.n

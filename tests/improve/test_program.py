@@ -1,0 +1,89 @@
+"""Samples and moves of a program, and pieces against the corrections that they stand for."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.improve.program import Moves
+from robomill.io.samples import samples_dir
+from robomill.toolpath.gcode.reading import interpret
+
+SLOT = rm.load_setup(samples_dir() / "paper_flute")
+TEXT = (
+    "G21 G90\nG0 X0 Y0 Z5\nG0 Z-2\nG1 X20 F600\nG2 X30 Y-10 I0 J-10\nG1 Y-30\nG0 Z5\nG0 X50\nG0 Z-2\nG1 Y0\nG0 Z9\nM2\n"
+)
+
+
+@pytest.fixture(scope="module")
+def moves() -> Moves:
+    return Moves.of_program(SLOT.replace(source=rm.GCodeSource(TEXT, "x.nc")), interpret(TEXT))
+
+
+def test_every_sample_knows_its_move_and_how_much_of_it_is_made(moves: Moves) -> None:
+    path = moves.wanted
+    np.testing.assert_array_equal(path.block, interpret(TEXT).line[moves.owner])
+    ends = np.append(np.diff(moves.owner) > 0, True)
+    np.testing.assert_allclose(moves.share[ends & path.cutting], 1.0)
+    np.testing.assert_allclose(path.p[ends], moves.end[moves.owner[ends]], atol=1e-12)
+    half = path.p[(moves.owner == 2) & (np.abs(moves.share - 0.5) < 1e-9)]
+    np.testing.assert_allclose(half, [[10e-3, 0.0, -2e-3]], atol=1e-12)
+
+
+def test_one_shift_for_all_changes_no_shape(moves: Moves) -> None:
+    c = np.where(moves.wanted.cutting[:, None], [1e-4, -2e-4, 3e-4], 0.0)
+    pieces, ends = moves.corrected(c, 2e-6)
+    assert [len(pieces[j]) for j in pieces] == [2, 1, 1, 2]  # where a rapid has not been moved a link leads in
+    np.testing.assert_allclose(ends[[2, 3, 4]], moves.end[[2, 3, 4]] + [1e-4, -2e-4, 3e-4])
+    assert pieces[3][0].centre is not None
+    np.testing.assert_allclose(pieces[3][0].centre, [20.1e-3, -10.2e-3, -1.7e-3], atol=1e-8)
+
+
+def test_rapids_go_straight_up_and_down_beside_a_cut(moves: Moves) -> None:
+    path = moves.wanted
+    c = np.where(path.cutting[:, None], [1e-4, -2e-4, 3e-4], 0.0)
+    place = (np.diff(path.p, axis=0) == 0.0).all(axis=1)
+    arrives = np.flatnonzero(~path.cutting[:-1] & path.cutting[1:] & place)
+    c[arrives] = c[arrives + 1]
+    _, ends = moves.corrected(c, 2e-6)
+    shift = ends - moves.end
+    np.testing.assert_allclose(shift[[0, 1, 5, 6, 7, 9]][:, :2], np.tile([1e-4, -2e-4], (6, 1)), atol=1e-15)
+    np.testing.assert_allclose(shift[[0, 5, 6, 9], 2], 0.0, atol=1e-15)
+    np.testing.assert_allclose(shift[[1, 7], 2], 3e-4)
+
+
+@pytest.mark.parametrize("bound", [1e-6, 5e-6, 20e-6])
+def test_pieces_stay_within_their_bound_and_are_fewer_the_wider_it_is(moves: Moves, bound: float) -> None:
+    p = moves.wanted.p
+    c = np.where(moves.wanted.cutting[:, None], 2e-4 * np.sin(70.0 * p[:, [1, 0, 0]] + [0.3, 0.1, 0.0]), 0.0)
+    pieces, _ = moves.corrected(c, bound)
+    start, made = p[0], {}
+    for j in range(len(moves.end)):
+        made[j] = []
+        for piece in pieces.get(j, []):
+            made[j].append((start, piece))
+            start = piece.end
+        start = start if j in pieces else moves.end[j]
+    q = moves.places({j: some for j, some in made.items() if some})
+    straight = (moves.sweep[moves.owner] == 0.0) & moves.wanted.cutting
+    assert np.linalg.norm(q - p - c, axis=1)[straight].max() <= bound
+    arc = (moves.owner == 3) & (moves.share > 0.0)
+    off = q - p - c
+    out = p[arc] - [20e-3, -10e-3, -2e-3]
+    out /= np.linalg.norm(out, axis=1, keepdims=True)
+    assert np.abs(np.einsum("mi,mi->m", off[arc], out)).max() <= 1.5 * bound
+    count = sum(map(len, pieces.values()))
+    assert count < len(p)
+    assert bound > 1e-6 or count > 20
+
+
+def test_samples_come_closer_where_a_cut_begins() -> None:
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml")
+    text = setup.source.block_texts()
+    moves = Moves.of_program(setup, interpret("\n".join(text)))
+    finer = moves.finer(rm.simulate(setup))
+    step = finer.wanted.step_length
+    x = finer.wanted.p[:, 0]
+    begins = finer.wanted.cutting & (step > 0.0) & (x < -49e-3)
+    assert step[begins].max() < 0.15e-3
+    assert step[finer.wanted.cutting & (x > -45e-3)].max() == pytest.approx(1e-3)
+    np.testing.assert_array_equal(np.unique(finer.owner), np.unique(moves.owner))

@@ -1,0 +1,59 @@
+"""What is written back is read again before it is given to anybody."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import CompensationError
+from robomill.improve import written
+from robomill.improve.written import writing
+from robomill.io.gcode_out import toolpath_to_gcode
+from robomill.io.samples import samples_dir
+from robomill.toolpath.gcode.rewriting import Rewriter, Rewritten
+
+SLOT = rm.load_setup(samples_dir() / "paper_flute")
+
+
+def test_nothing_corrected_is_the_program_as_it_was_with_its_line_ends() -> None:
+    for ends in ("\n", "\r\n"):
+        text = ends.join([*SLOT.source.block_texts(), ""])
+        back = writing(SLOT.replace(source=rm.GCodeSource(text, "x.nc")), toolpath_to_gcode)
+        found = back.write(np.zeros_like(back.moves.wanted.p), 2e-6)
+        assert found.text == text
+        np.testing.assert_allclose(found.q, back.moves.wanted.p, atol=1e-12)
+        assert found.lines_in == 10
+
+
+def test_a_program_that_would_not_lead_where_it_should_is_never_given_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    honest = Rewriter.write
+
+    def wrong(self: Rewriter, *given: object) -> Rewritten:
+        found = honest(self, *given)  # type: ignore[arg-type]
+        return Rewritten(found.text.replace("X50", "X49.999"), found.made, found.unrolled)
+
+    monkeypatch.setattr(written.Rewriter, "write", wrong)
+    back = writing(SLOT, toolpath_to_gcode)
+    with pytest.raises(CompensationError, match=r"Line 7: written back"):
+        back.write(np.zeros_like(back.moves.wanted.p), 2e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "table", "words"),
+    [
+        ("BEGIN PGM X MM\n1 L X+0 Y+0 Z-2 R0 FMAX M3\n2 L X+40 F500\nEND PGM X MM\n", "", "Heidenhain"),
+        ("G21 G90\nG0 X0 Y0 Z5 A0\nG1 X10 A90 F500\nM2\n", "A", "a table turns the part"),
+    ],
+)
+def test_what_is_not_written_is_refused_by_name(text: str, table: str, words: str) -> None:
+    with pytest.raises(CompensationError, match=words):
+        writing(SLOT.replace(source=rm.GCodeSource(text, "x.nc", table=table)), toolpath_to_gcode)
+
+
+def test_a_location_file_is_written_as_g_code() -> None:
+    text = "PARTNO/X\nUNITS/MM\nFEDRAT/600,MMPM\nGOTO/0,0,-2,0,0,1\nGOTO/20,0,-2,0,0,1\nFINI\n"
+    back = writing(SLOT.replace(source=rm.GCodeSource(text, "x.apt")), toolpath_to_gcode)
+    c = np.where(back.moves.wanted.cutting[:, None], [0.0, 1e-4, 0.0], 0.0)
+    found = back.write(c, 2e-6)
+    path = rm.read_gcode(found.text)
+    np.testing.assert_allclose(path.p[-1], [20e-3, 0.1e-3, -2e-3], atol=1e-9)
+    np.testing.assert_allclose(found.q, back.moves.wanted.p + c, atol=2e-6)

@@ -1,0 +1,156 @@
+"""Programs whose moves are led elsewhere: what is written, read by the interpreter, goes there, whatever its words."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.fitting import Piece
+from robomill.toolpath.gcode.program import ARC, Program
+from robomill.toolpath.gcode.reading import interpret
+from robomill.toolpath.gcode.rewriting import Rewriter, Rewritten
+from robomill.toolpath.gcode.trace import trace
+from robomill.toolpath.text import split_lines
+from robomill.toolpath.tools import Tool
+
+SHIFT = np.array([0.2e-3, -0.3e-3, 0.1e-3])
+PLAIN = {
+    "steps": "G21 G91\nG0 X0 Y0 Z-2\nG1 X20 F600\nG1 Y10\nX-20\nG90\nG0 Z20\nM30\n",
+    "inches": "%\nO100\nG20 G90 G94\nG0 X0 Y0 Z.5\nG1 Z-.1 F20.\nX1. Y.5\nG3 X1.5 Y1. I0. J.5\nG0 Z1.\nM30\n%\n",
+    "other planes": "G21 G90 G18\nG0 X0 Y0 Z5\nG1 Z0 F500\nG2 X20 Z0 R10\nG19\nG3 Y10 Z-10 J0 K-10\nG17\nG1 X40\nM2\n",
+    "origins": "G21 G90\nG10 L2 P2 X5 Y7 Z1\nG55\nG0 X0 Y0 Z5\nG1 Z-2 F500\nG1 X20\nG54\nG1 X40\nG0 Z20\nM2\n",
+    "a turned origin": "G21 G90\nG10 L2 P1 R30\nG54 G0 X0 Y0 Z5\nG1 Z-2 F500\nX20\nG3 X20 Y10 I0 J5\nG0 Z20\nM2\n",
+    "G68": "G21 G90\nG68 X0 Y0 R45\nG0 X0 Y0 Z5\nG1 Z-2 F500\nX20\nG3 X20 Y10 I0 J5\nG69\nG0 Z20\nM30\n",
+    "G92": "G21 G90\nG0 X0 Y0 Z5\nG92 X10 Y10\nG1 Z-2 F500\nG1 X20\nG92.1\nG1 X40\nG0 Z20\nM2\n",
+    "radii": "G21 G90\nG0 X0 Y0 Z5\nG1 Z-2 F500\nG2 X20 Y0 R12\nG2 X0 Y0 R12\nG3 X5 Y5 R-20\nG0 Z20\nM2\n",
+    "full circles": "G21 G90\nG0 X10 Y0 Z5\nG1 Z-2 F500\nG2 I-10 J0\nG3 X10 Y0 I-10\nG0 Z20\nM2\n",
+    "absolute centres": "G21 G90 G90.1\nG0 X10 Y0 Z5\nG1 Z-2 F500\nG2 X-10 Y0 I0 J0\nG0 Z20\nM2\n",
+    "five axes": "G21 G90\nG0 X0 Y0 Z5 A0 B0\nG1 Z-2 F500\nG1 X40 A10 B5\nG1 X60 A0 B0\nG0 Z20\nM2\n",
+    "inverse time": "G21 G90\nG0 X0 Y0 Z5\nG93\nG1 Z-2 F10\nG1 X40 F5\nG3 X40 Y10 I0 J5 F20\nG94\nG1 X0 F500\nM2\n",
+    "feed a turn": "G21 G90 S1000 M3\nG0 X0 Y0 Z5\nG95 G1 Z-2 F.1\nG1 X40\nG0 Z20\nM2\n",
+    "home": "G21 G90\nG0 X0 Y0 Z5\nG1 Z-2 F500\nG1 X40\nG0 Z5\nG91 G28 Z0\nG90\nT2 M6\nG0 X0 Y9 Z5\nG1 Z-2\nX10\nM2\n",
+    "no spaces": "G21G90\nG0X0Y0Z5\nN10G01Z-2.F500\nN20X40.\nN30G02X50.Y-10.I0.J-10.\nN40G00Z20.M09\nN50M30\n",
+    "all words": "G21 G90\nG0 X0 Y0 Z5\n/N10 G1 Z-2 F500 ; down\nN20 G1 X40 (across) M8\nN30 X50 Y2 S500 M3 M30\n",
+}
+UNROLLED = {
+    "subprogram": (
+        "fanuc",
+        "O1000\nG21 G90\nG0 X0 Y0 Z5\nM98 P200 L2\nG0 Z20\nM30\nO200\nG91\nG1 Z-2 F300\nG1 X10\nG1 Z2\nG90\nM99\n",
+    ),
+    "loop": (
+        "auto",
+        "G21 G90\n#1=0\nG0 X0 Y0 Z5\nG1 Z-2 F300\no1 while [#1 LT 3]\n#1=[#1+1]\nG1 X[#1*9] Y#1\no1 endwhile\nM2\n",
+    ),
+    "cycles": (
+        "auto",
+        "G21 G90\nG0 X0 Y0 Z10\nG98 G83 X10 Y10 Z-6 R2 Q2 F100\nX20\nG82 X30 Z-3 R1 P0.5\nG80\nM2\n",
+    ),
+    "corners": (
+        "fanuc",
+        "O1000\nG21 G90\nG0 X0. Y0. Z5.\nG1 Z-2. F500.\nG1 X20.,R3.\nG1 Y20.,C2.\nX0.\nG0 Z20.\nM30\n",
+    ),
+    "Sinumerik": (
+        "sinumerik",
+        "G71 G90 G17\nG0 X0 Y0 Z5\nG1 Z-2 F500\nG1 X20 RND=3\nG1 Y20\nG3 X10 Y30 CR=10\nG1 X=IC(-5) Y30\nM30\n",
+    ),
+    "scaling": (
+        "fanuc",
+        "O1\nG21 G90\nG51 X0 Y0 Z0 P2000\nG0 X0 Y0 Z5\nG1 Z-2 F500\nX20\nG3 X20 Y10 I0 J5\nG50\nG0 Z20\nM30\n",
+    ),
+    "polar": (
+        "fanuc",
+        "O1\nG21 G90\nG0 X20 Y0 Z5\nG1 Z-2 F500\nG16\nG1 X20 Y30\nX20 Y60\nG15\nG1 X0 Y0\nG0 Z20\nM30\n",
+    ),
+    "G41": (
+        "auto",
+        "G21 G90\nT1 M6\nG0 X-9 Y-9\nG1 Z-2 F99\nG41 D1 X0 Y0\nY20\nX20\nG2 X30 Y10 J-10\nG1 Y0\nX0\nG40 X-9 Y-9\nM2\n",
+    ),
+}
+TOOLS = {1: Tool(1, diameter=8e-3), 2: Tool(2, diameter=6e-3)}
+
+
+def halves(program: Program, j: int, shift: np.ndarray, pieces: int) -> Iterator[Piece]:
+    """Move ``j`` in equal pieces, each shifted."""
+    for n in range(pieces):
+        f = (n + 1) / pieces
+        if program.kind[j] != ARC:
+            end = program.start[j] + f * (program.end[j] - program.start[j])
+            yield Piece(n / pieces, f, end + program.lift[j] + shift)
+            continue
+        centre = program.centre[j] + program.lift[j] + shift
+        chords = program.arcs_of(np.array([j])).chords(np.array([pieces]))
+        yield Piece(n / pieces, f, chords[n] + shift, centre, program.sweep[j] / pieces)
+
+
+def rewritten(text: str, dialect: str, shift: np.ndarray, pieces: int = 1) -> tuple[Rewritten, Program]:
+    program, executed, name = trace(text, dialect, TOOLS)
+    feed = np.broadcast_to(program.at_feed, len(program))
+    made = {int(j): list(halves(program, int(j), shift, pieces)) for j in np.flatnonzero(feed)}
+    ends = program.end + program.lift
+    return Rewriter(program, name, made, ends).write(split_lines(text), executed), program
+
+
+def cuts(program: Program) -> np.ndarray:
+    """(k, 3) m where moves at feed end that go anywhere."""
+    feed = np.broadcast_to(program.at_feed, len(program))
+    return np.asarray((program.end + program.lift)[feed & (program.length > 1e-9)])
+
+
+@pytest.mark.parametrize("name", PLAIN)
+def test_nothing_moved_is_nothing_changed(name: str) -> None:
+    found, _ = rewritten(PLAIN[name], "fanuc" if name == "G68" else "auto", np.zeros(3))
+    assert found.text == PLAIN[name]
+    assert found.unrolled == ()
+
+
+@pytest.mark.parametrize("pieces", [1, 3])
+@pytest.mark.parametrize("name", PLAIN)
+def test_every_cut_is_led_aside_whatever_its_words(name: str, pieces: int) -> None:
+    dialect = "fanuc" if name == "G68" else "auto"
+    found, program = rewritten(PLAIN[name], dialect, SHIFT, pieces)
+    again = interpret(found.text.encode(), dialect=dialect, tools=TOOLS)
+    expected = [np.array([piece.end for piece in halves(program, j, SHIFT, pieces)]) for j in range(len(program))]
+    feed = np.flatnonzero(np.broadcast_to(program.at_feed, len(program)) & (program.length > 1e-9))
+    led = np.vstack([expected[j] for j in feed])
+    np.testing.assert_allclose(cuts(again), led, atol=0.3e-6)
+    v_f = np.repeat(program.v_f[feed], pieces)
+    back = np.broadcast_to(again.at_feed, len(again)) & (again.length > 1e-9)
+    np.testing.assert_allclose(again.v_f[back], v_f, rtol=1e-4)
+    assert again.ok
+
+
+@pytest.mark.parametrize("name", UNROLLED)
+def test_what_is_no_plain_move_is_written_out_and_goes_where_it_went(name: str) -> None:
+    dialect, text = UNROLLED[name]
+    for shift in (np.zeros(3), SHIFT):
+        found, program = rewritten(text, dialect, shift)
+        again = interpret(found.text.encode(), dialect=dialect, tools=TOOLS)
+        np.testing.assert_allclose(cuts(again), cuts(program) + shift, atol=0.3e-6)
+        np.testing.assert_allclose(again.dwell_time, program.dwell_time)
+        assert found.unrolled
+
+
+def test_numbers_comments_feeds_and_stops_stay_on_their_lines() -> None:
+    found, _ = rewritten(PLAIN["all words"], "auto", SHIFT, 2)
+    lines = found.text.splitlines()
+    assert lines[2].startswith("/N10 G1 X")
+    assert lines[2].endswith("F500 ; down")
+    assert lines[4] == "N20 G1 X20.2 (across) M8"
+    assert lines[5] == "X40.2"
+    assert lines[6].startswith("N30 X")
+    assert lines[6].endswith("S500 M3")
+    assert lines[7].endswith(" M30")
+    assert not lines[7].startswith("N")
+
+
+def test_fanuc_numbers_keep_their_point() -> None:
+    found, _ = rewritten(UNROLLED["corners"][1], "fanuc", np.array([1e-3, 0.0, 0.0]))
+    numbers = [word for line in found.text.splitlines()[3:] for word in line.split() if word[0] in "XYZIJ"]
+    assert numbers
+    assert all("." in number for number in numbers)
+
+
+def test_a_line_that_computes_what_is_no_place_is_refused_by_its_line() -> None:
+    with pytest.raises(GCodeError, match=r"Line 5: 'S#1' is computed"):
+        rewritten("G21 G90\n#1=500\nG0 X0 Y0 Z5\nG1 Z-2 F500\nG1 X#1 S#1\nM2\n", "auto", SHIFT)
