@@ -3,8 +3,12 @@
 A 3MF is an archive of XML: how large it unpacks and how often its parts are placed is looked at first.
 """
 
+from __future__ import annotations
+
 import io
+import re
 import zipfile
+from array import array
 from collections.abc import Iterator
 from pathlib import PurePath
 from typing import Any, Literal, get_args
@@ -20,6 +24,9 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 MOST_UNPACKED = 300_000_000  # bytes of the models in a 3MF
 MOST_TRIANGLES = 1_600_000  # as in an STL of 80 MB
 MOST_PLACED, DEEPEST = 10_000, 16
+MOST_OTHERS = 100_000  # elements of a 3MF beside corners and triangles
+PIECE, STILL = 1 << 20, 8  # bytes that are unpacked at a time, and how often without any element that begins
+_FACE, _ELEMENTS = re.compile(rb"^[ \t]*f[ \t](.*)$", re.MULTILINE), re.compile(rb"element\s+\w+\s+(\d{1,18})")
 UNITS_OF_3MF = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
 """Units of a 3MF, in mm."""
 
@@ -39,6 +46,7 @@ def solid_of(data: bytes, kind: Kind, label: str) -> tuple[FloatArray, Any]:
         if kind == "3mf":
             solid = trimesh.Trimesh(**_of_3mf(data, label))
         else:
+            _look_over(data, kind, label)
             solid = trimesh.load_mesh(io.BytesIO(data), file_type=kind)
         if kind != "stl":  # corners stand there once for each normal and each colour
             solid.merge_vertices(merge_tex=True, merge_norm=True)
@@ -51,9 +59,22 @@ def solid_of(data: bytes, kind: Kind, label: str) -> tuple[FloatArray, Any]:
         raise SurfaceError(text) from exc
 
 
+def _look_over(data: bytes, kind: Kind, label: str) -> None:
+    """Refuse what has more triangles, or corners, than are read: an OBJ or PLY takes many times its size of memory."""
+    found = [0]
+    if kind == "obj":
+        found += [data.count(b"\nv ") // 2, sum(max(len(face[1].split()) - 2, 0) for face in _FACE.finditer(data))]
+    elif kind == "ply":
+        found += [int(count) // 2 for count in _ELEMENTS.findall(data[: data.find(b"end_header")])]
+    if max(found) > MOST_TRIANGLES:
+        raise SurfaceError(
+            f"{label}: the {kind.upper()} has more than {MOST_TRIANGLES:,} triangles; export it coarser."
+        )
+
+
 def _of_3mf(data: bytes, label: str) -> dict[str, Any]:
     """Vertices in mm and faces of all that the build of a 3MF places."""
-    models = _models(data, label)
+    models, meshes = _models(data, label)
     root = next((name for name in models if name.lower() == "3d/3dmodel.model"), next(iter(models), ""))
     if not root:
         raise SurfaceError(f"{label}: the 3MF holds no model; export the stock again as 3MF.")
@@ -71,7 +92,7 @@ def _of_3mf(data: bytes, label: str) -> dict[str, Any]:
     count = triangles = 0
     for item in (each for each in models[root].iter() if _is(each, "item")):
         for placed, mesh in _placed(objects, root, item, np.eye(4), label):
-            corners, own = _mesh(mesh)
+            corners, own = _mesh(*meshes[mesh])
             triangles += len(own)
             if triangles > MOST_TRIANGLES:
                 raise SurfaceError(f"{label}: the 3MF has more than {MOST_TRIANGLES:,} triangles; export it coarser.")
@@ -83,22 +104,75 @@ def _of_3mf(data: bytes, label: str) -> dict[str, Any]:
     return {"vertices": np.vstack(vertices), "faces": np.vstack(faces)}
 
 
-def _models(data: bytes, label: str) -> dict[str, ElementTree.Element]:
+class _Model:
+    """Takes the elements of a model as they are read: corners and triangles as numbers, the others as a tree."""
+
+    def __init__(self, label: str) -> None:
+        self.label, self.others, self.begun = label, 0, 1
+        self.tree = ElementTree.TreeBuilder()
+        self.meshes: dict[ElementTree.Element, tuple[array[float], array[int]]] = {}
+        self.corners, self.faces = array("d"), array("q")
+
+    def start(self, tag: str, said: dict[str, str]) -> None:
+        """An element begins."""
+        name = tag.rpartition("}")[2]
+        self.begun += 1
+        if name == "vertex":
+            self.corners.extend([float(said["x"]), float(said["y"]), float(said["z"])])
+        elif name == "triangle":
+            self.faces.extend([int(said["v1"]), int(said["v2"]), int(said["v3"])])
+        else:
+            self.others += 1
+            element = self.tree.start(tag, said)
+            if name == "mesh":
+                self.corners, self.faces = self.meshes[element] = array("d"), array("q")
+        if max(len(self.corners), len(self.faces)) > 3 * MOST_TRIANGLES or self.others > MOST_OTHERS:
+            raise SurfaceError(
+                f"{self.label}: the 3MF has more than {MOST_TRIANGLES:,} triangles or corners, or more than "
+                f"{MOST_OTHERS:,} other elements; export it coarser."
+            )
+
+    def end(self, tag: str) -> None:
+        """It ends."""
+        if tag.rpartition("}")[2] not in ("vertex", "triangle"):
+            self.tree.end(tag)
+
+    def doctype(self, _name: str, _public: str, _system: str) -> None:
+        """What may declare entities."""
+        raise SurfaceError(f"{self.label}: the 3MF declares entities, which no model needs; export it again.")
+
+    def close(self) -> tuple[ElementTree.Element, dict[ElementTree.Element, tuple[array[float], array[int]]]]:
+        """The tree, and what its meshes hold."""
+        return self.tree.close(), self.meshes
+
+
+def _models(data: bytes, label: str) -> tuple[dict[str, ElementTree.Element], dict[ElementTree.Element, Any]]:
+    """The models by name, and the corners and triangles of each mesh in them."""
+    left, found = MOST_UNPACKED, {}
+    meshes: dict[ElementTree.Element, Any] = {}
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        entries = [each for each in archive.infolist() if each.filename.lower().endswith(".model")]
-        left, found = MOST_UNPACKED, {}
-        for entry in entries:
+        for entry in (each for each in archive.infolist() if each.filename.lower().endswith(".model")):
+            model = _Model(label)
+            parser = ElementTree.XMLParser(target=model)
+            begun = [0] * STILL
             with archive.open(entry) as stream:
-                text = stream.read(left + 1)
-            left -= len(text)
-            if left < 0:
-                raise SurfaceError(
-                    f"{label}: the 3MF unpacks to more than {MOST_UNPACKED // 1_000_000} MB; export the stock coarser."
-                )
-            if b"<!DOCTYPE" in text or b"<!ENTITY" in text:
-                raise SurfaceError(f"{label}: the 3MF declares entities, which no model needs; export it again.")
-            found[entry.filename] = ElementTree.fromstring(text)
-    return found
+                while piece := stream.read(PIECE):
+                    left -= len(piece)
+                    if left < 0:
+                        raise SurfaceError(
+                            f"{label}: the 3MF unpacks to more than {MOST_UNPACKED // 1_000_000} MB; "
+                            "export the stock coarser."
+                        )
+                    parser.feed(piece)
+                    begun = [*begun[1:], model.begun]
+                    if begun[0] == begun[-1] and begun[0]:
+                        raise SurfaceError(f"{label}: the 3MF holds a word of megabytes; export the stock again.")
+            read: Any = parser.close()
+            found[entry.filename] = read[0]
+            meshes.update(read[1])
+            if sum(len(faces) for _, faces in meshes.values()) > 3 * MOST_TRIANGLES:
+                raise SurfaceError(f"{label}: the 3MF has more than {MOST_TRIANGLES:,} triangles; export it coarser.")
+    return found, meshes
 
 
 def _placed(
@@ -132,9 +206,7 @@ def _matrix(text: str) -> FloatArray:
     return T
 
 
-def _mesh(mesh: ElementTree.Element) -> tuple[FloatArray, Any]:
-    corners = [[float(each.attrib[axis]) for axis in "xyz"] for each in mesh.iter() if _is(each, "vertex")]
-    faces = [[int(each.attrib[key]) for key in ("v1", "v2", "v3")] for each in mesh.iter() if _is(each, "triangle")]
+def _mesh(corners: array[float], faces: array[int]) -> tuple[FloatArray, Any]:
     points, own = np.array(corners, dtype=float).reshape(-1, 3), np.array(faces, dtype=np.int64).reshape(-1, 3)
     if len(own) and not 0 <= own.min() <= own.max() < len(points):
         raise ValueError("a triangle names a corner that is not there")

@@ -13,8 +13,10 @@ import webbrowser
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import cache
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import streamlit
 from anyio import to_thread
@@ -65,6 +67,36 @@ def styled(page: bytes) -> bytes:
     return named.replace(PLACE, body.encode() + PLACE, 1)
 
 
+def is_own(host: str) -> bool:
+    """Whether a browser that asks for ``host`` (its header) means this server, and was not sent here under the name
+    of a foreign site: that site's own pages could then speak with it as theirs.
+
+    A server of this machine alone is asked for by a number, as localhost, or by ``--host-name``; one for others that
+    was told no name may be asked for by any.
+    """
+    name = urlsplit(f"//{host}").hostname or ""
+    said = config.is_manually_set("browser.serverAddress")
+    listens = config.get_option("server.address")
+    if not said and not (listens and is_loopback(listens)):
+        return True
+    known = {"", "localhost", listens, config.get_option("browser.serverAddress") if said else None}
+    return name in known or name.endswith(".localhost") or is_number(name)
+
+
+def is_number(host: str) -> bool:
+    """Whether it is an address in numbers, which no name server answers for."""
+    try:
+        ip_address(host)
+    except ValueError:
+        return False
+    return True
+
+
+def is_loopback(address: str) -> bool:
+    """Whether only this machine reaches a server that listens there."""
+    return address == "localhost" or (is_number(address) and ip_address(address).is_loopback)
+
+
 class Front:
     """ASGI middleware: what never changes is compressed once and kept, pages carry the style, all else goes through.
 
@@ -77,6 +109,12 @@ class Front:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer one request."""
+        if scope["type"] in ("http", "websocket") and not _asked_for_us(scope):
+            if scope["type"] == "http":
+                await PlainTextResponse("This server has another name.", 421)(scope, receive, send)
+            else:
+                await send({"type": "websocket.close", "code": 1008})
+            return
         if scope["type"] != "http" or scope["method"] != "GET":
             await self.app(scope, receive, send)
             return
@@ -113,6 +151,13 @@ class Front:
         headers["vary"] = "Accept-Encoding"
         headers["content-length"] = str(len(body))
         return {**held.start, "headers": headers.raw}, {"type": "http.response.body", "body": body}
+
+
+def _asked_for_us(scope: Scope) -> bool:
+    try:
+        return is_own(Headers(scope=scope).get("host", ""))
+    except ValueError:  # no name, and no number either
+        return False
 
 
 def _is_packed(headers: Headers) -> bool:

@@ -52,6 +52,7 @@ UNUSED = {
     "parallel_scale": "pyvista's",
     "clipping_range": "pyvista's",
     "verbose": "clarabel's",
+    "doctype": "what the reader of XML calls where a file has one",
 }
 
 

@@ -10,6 +10,7 @@ import pytest
 import trimesh
 
 from robomill.errors import SurfaceError
+from robomill.io import solids
 from robomill.io.meshes import read_stl_stock
 
 BOX = trimesh.creation.box((30.0, 20.0, 10.0))
@@ -117,3 +118,25 @@ def test_an_archive_that_unpacks_to_too_much_is_refused(monkeypatch) -> None:
     monkeypatch.setattr("robomill.io.solids.MOST_UNPACKED", 10_000)
     with pytest.raises(SurfaceError, match="unpacks to more than"):
         read_stl_stock(packed(ONE + " " * 100_000, '<item objectid="1"/>'), name="a.3mf")
+
+
+PLY = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face {}\n"
+PLY += "property list uchar int vertex_indices\nend_header\n0 0 0\n"
+
+
+@pytest.mark.parametrize(
+    ("kind", "data", "said"),
+    [
+        ("3mf", packed("<a/>" * 150_000, ""), "100,000 other elements"),
+        ("3mf", packed("<a>" * 150_000, ""), "100,000 other elements"),
+        ("3mf", packed('<vertex x="1" y="1" z="1"/>' * 1_100, ""), "more than 1,000 triangles or corners"),
+        ("3mf", packed(f'<a b="{"x" * 12_000_000}"/>', ""), "a word of megabytes"),
+        ("obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf " + b"1 2 3 " * 400, "more than 1,000 triangles"),
+        ("obj", b"v 0 0 0\n" * 2_100, "more than 1,000 triangles"),
+        ("ply", PLY.format(999_999_999_999).encode(), "more than 1,000 triangles"),
+    ],
+)
+def test_what_inflates_is_refused_before_it_takes_much_memory(monkeypatch, kind, data, said) -> None:
+    monkeypatch.setattr(solids, "MOST_TRIANGLES", 1_000)
+    with pytest.raises(SurfaceError, match=said):
+        read_stl_stock(data, name=f"a.{kind}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import gzip
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,8 @@ from starlette.routing import Route
 from streamlit.web.server.app_discovery import discover_asgi_app
 
 from robomill.io.samples import app_dir
-from robomill.ui.front import MIDDLEWARE, PLACE, TITLE
+from robomill.ui import front
+from robomill.ui.front import MIDDLEWARE, PLACE, TITLE, is_own
 
 INDEX = (Path(streamlit.__file__).parent / "static" / "index.html").read_bytes()
 SCRIPT = b"const long = 'words';\n" * 1000
@@ -133,3 +135,49 @@ def test_a_page_that_a_browser_still_has_is_sent_anew() -> None:
 
 def test_streamlit_run_finds_what_serves_the_app() -> None:
     assert discover_asgi_app(app_dir() / "app.py").import_string == "app:app"
+
+
+@pytest.mark.parametrize(
+    ("listens", "named", "host", "own"),
+    [
+        ("127.0.0.1", "", "127.0.0.1:8501", True),
+        ("127.0.0.1", "", "localhost:8501", True),
+        ("127.0.0.1", "", "LOCALHOST", True),
+        ("127.0.0.1", "", "[::1]:8501", True),
+        ("127.0.0.1", "", "", True),
+        ("127.0.0.1", "", "evil.example:8501", False),
+        ("127.0.0.1", "", "127.0.0.1.evil.example", False),
+        ("127.0.0.1", "", "127.0.0.1@evil.example", False),
+        ("127.0.0.1", "", "localhost.evil.example", False),
+        ("127.0.0.1", "", "[evil", False),
+        ("127.0.0.1", "", "robomill.example.org", False),
+        ("127.0.0.1", "robomill.example.org", "robomill.example.org", True),
+        ("127.0.0.1", "robomill.example.org", "127.0.0.1:8501", True),
+        ("0.0.0.0", "robomill.example.org", "evil.example", False),
+        ("0.0.0.0", "", "pc12.shop.example", True),
+        ("0.0.0.0", "", "192.168.0.7:8501", True),
+    ],
+)
+def test_a_server_answers_to_its_own_names_only(
+    monkeypatch: pytest.MonkeyPatch, listens: str, named: str, host: str, own: bool
+) -> None:
+    said = {"server.address": listens, "browser.serverAddress": named}
+    monkeypatch.setattr(front.config, "get_option", said.get)
+    monkeypatch.setattr(front.config, "is_manually_set", lambda name: bool(said.get(name)))
+    passed: list[str] = []
+    sent: list[Any] = []
+
+    async def app(scope: Any, receive: Any, send: Any) -> None:
+        passed.append(scope["type"])
+
+    async def take(message: Any) -> None:
+        sent.append(message)
+
+    for kind in ("http", "websocket"):
+        scope = {"type": kind, "method": "POST", "path": "/", "headers": [(b"host", host.encode())]}
+        asyncio.run(front.Front(app)(scope, take, take))
+    assert passed == ["http", "websocket"] * own
+    if not own:
+        assert [sent[0]["status"], sent[-1]] == [421, {"type": "websocket.close", "code": 1008}]
+    with contextlib.suppress(ValueError):
+        assert is_own(host) == own

@@ -61,7 +61,8 @@ class Shelf:
         self.settings = settings
         self._lock = threading.RLock()
         self._bytes: float | None = None
-        self._swept = 0.0
+        self._swept = float("-inf")
+        self._began = time.time() - time.monotonic()
 
     def put(
         self, key: str, place: str, about: tuple[str, float], texts: Sequence[str], over: str | None = None
@@ -71,7 +72,7 @@ class Shelf:
         ``about`` is its name and when it was done (s, 0 for now). Raises OvertakenError where another one stands there.
         """
         body = SEPARATOR.join(texts).encode()
-        most = self.settings.entry_MB
+        most = min(self.settings.entry_MB, self.settings.all_MB)
         if len(body) > most * 1e6:
             raise ProjectError(f"This project has {len(body) / 1e6:.0f} MB; at most {most:g} MB are kept.")
         with self._lock, _said("kept"):
@@ -89,8 +90,8 @@ class Shelf:
             data = f"{FIRST}{json.dumps(asdict(head))}\n".encode() + body
             self._write(file, data)
             self._bytes = self._total() + len(data) - before
-            if self._bytes > self.settings.all_MB * 1e6 or abs(time.time() - self._swept) > SWEEP_S:
-                self.sweep()
+            if self._bytes > self.settings.all_MB * 1e6 or self._now() - self._swept > SWEEP_S:
+                self.sweep(file)
         return head
 
     def check(self) -> None:
@@ -139,11 +140,17 @@ class Shelf:
             self._file(key, place).unlink(missing_ok=True)
             self._bytes = None
 
-    def sweep(self) -> None:
-        """Drop what is too old, then the oldest until the rest is within bounds."""
+    def _now(self) -> float:
+        """The time (s) by a clock that nobody sets while the server runs: set to another year, and back, the clock
+        of the machine makes nothing old."""
+        return self._began + time.monotonic()
+
+    def sweep(self, written_now: Path | None = None) -> None:
+        """Drop what is too old, then the oldest until the rest is within bounds; what was ``written_now`` stays,
+        whatever the clock says of it."""
         with self._lock:
-            self._swept = now = time.time()
-            files = sorted(self._files(), key=lambda each: each[1])
+            self._swept = now = self._now()
+            files = sorted(self._files(), key=lambda each: (each[0] == written_now, each[1]))
             total = sum(size for _, _, size in files)
             for file, written, size in files:
                 if now - written > self.settings.days * 86400 or total > self.settings.all_MB * 1e6:

@@ -206,3 +206,34 @@ def test_a_store_that_cannot_be_made_is_found_at_the_beginning_and_a_good_one_is
             Shelf(Settings(folder=folder)).check()
     Shelf(Settings(folder=tmp_path / "work")).check()
     assert not (tmp_path / "work").exists()
+
+
+def test_a_clock_set_a_year_ahead_and_back_makes_nothing_old(shelf: Shelf, monkeypatch: pytest.MonkeyPatch) -> None:
+    put(shelf, "a = 1\n")
+    real = time.time
+    for years in (1, -1, 0):
+        monkeypatch.setattr(time, "time", lambda years=years: real() + years * 365.25 * 86400)
+        put(shelf, f"a = {years}\n", place=SECOND)
+        shelf.sweep()
+        assert shelf.get(KEY, TAB)[1] == ["a = 1\n"]
+        assert shelf.get(KEY, SECOND)[1] == [f"a = {years}\n"]
+
+
+def test_what_was_just_written_stays_where_the_clock_went_back_and_the_store_is_full(tmp_path: Path) -> None:
+    shelf = Shelf(Settings(folder=tmp_path, all_MB=0.01))
+    for k in range(4):
+        put(shelf, "x" * 4000, place=f"tab-{k:016x}")
+    later = time.time() + 86400
+    for file in files(shelf):
+        os.utime(file, (later, later))
+    put(shelf, "y" * 4000, key=OTHER)
+    assert shelf.get(OTHER, TAB)[1] == ["y" * 4000]
+    assert sum(file.stat().st_size for file in files(shelf)) <= 10_000
+
+
+def test_an_entry_larger_than_the_whole_store_is_refused_and_leaves_it_as_it_was(tmp_path: Path) -> None:
+    shelf = Shelf(Settings(folder=tmp_path, all_MB=0.01))
+    put(shelf)
+    with pytest.raises(ProjectError, match=r"at most 0\.01 MB are kept"):
+        put(shelf, "x" * 20_000, place=SECOND)
+    assert shelf.get(KEY, TAB)[1] == ["a = 1\n"]
