@@ -332,8 +332,9 @@ def _wrong(wanted: SimulationResult, led: SimulationResult, q: FloatArray) -> tu
     setup = wanted.setup
     if not setup.coupling and not setup.add_sag:  # then the deflection is wrong by as much, whichever it is
         pushed = led.delta - (q - wanted.path.p) @ setup.T_MW[:3, :3].T
-        both = [errors_of(replace(led, delta=led.delta + sign * (WRONG - 1.0) * pushed)) for sign in (1.0, -1.0)]
-        worse = max(both, key=lambda each: each.max)
+        more = (WRONG - 1.0) * pushed
+        both = [replace(led, delta=led.delta + sign * more) for sign in (1.0, -1.0)]
+        worse = errors_of(max(both, key=lambda run: float(np.abs(run.delta_in_cut[run.judged, 1:]).max(initial=0.0))))
         return worse, worse
     found = []
     for name in ("softer", "stronger"):

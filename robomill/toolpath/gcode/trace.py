@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.toolpath.gcode import flow_rules
 from robomill.toolpath.gcode.dialects import SAMPLE, choose_dialect
 from robomill.toolpath.gcode.interpreter import Interpreter
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.motion_rules import INVERSE_TIME, PER_TURN, rotate
 from robomill.toolpath.gcode.owords import File
-from robomill.toolpath.gcode.program import Program
+from robomill.toolpath.gcode.program import Program, Rows
 from robomill.toolpath.gcode.reading import _machine, _program
 from robomill.toolpath.text import as_plain_bytes
 from robomill.toolpath.tools import Tools
@@ -81,11 +82,14 @@ class _Traced(Interpreter):
     def _run_stretch(self) -> bool:
         index, file, before = self.pc, self.file, len(self.machine.recorder)
         structure = self.file.structure or self.no_words
-        done, self.pc, more = self.stretches.run(self.file.lines, structure, self.pc, self.steps, 1)
+        written = Rows(self.machine)
+        store, text, flow = self.machine.store.arrays, self.file.lines.plain_text, structure.plain
+        done, self.pc = flow_rules.run(self.machine, store, text, flow, self.pc, 1, written)
+        written.keep()
         self._count(done, max(self.pc - 1, 0))
         if done:
             self._write(index, file, before)
-        return more
+        return bool(done)
 
     def step(self, index: int) -> None:
         file, before = self.file, len(self.machine.recorder)
