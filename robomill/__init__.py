@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from robomill.improve.placed import Place as Place
     from robomill.improve.placed import Placement as Placement
     from robomill.improve.placement import place as place
+    from robomill.improve.turning import Turning as Turning
+    from robomill.improve.turning import turn as turn
     from robomill.io.compensated import compensate as compensate
     from robomill.io.drawings import read_drawing as read_drawing
     from robomill.io.force_models import process_force as process_force
@@ -142,6 +144,8 @@ _PUBLIC = {
     "place": "robomill.improve.placement",
     "Compensation": "robomill.improve.compensation",
     "compensate": "robomill.io.compensated",
+    "Turning": "robomill.improve.turning",
+    "turn": "robomill.improve.turning",
     "read_drawing": "robomill.io.drawings",
     "process_force": "robomill.io.force_models",
     "read_forces": "robomill.io.forces",

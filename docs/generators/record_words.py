@@ -200,6 +200,28 @@ WORDS: dict[str, dict[str, str]] = {
         "ways[].refused": "Why the way does not apply; null where it does.",
         "digest": "Fingerprint of the answer.",
     },
+    "turn": {
+        "robomill": "The version that found it.",
+        "name": "What the set-up is called.",
+        "measure": "What is made small, as of `place`.",
+        "spin_deg": "The best turn of the tool about its axis for the whole path.",
+        "rate_deg_mm": "How much it may change along the way of the tool.",
+        **{
+            f"{name}.*": f"{text}, by a full simulation, with the keys of a place of `place`."
+            for name, text in (
+                ("now", "The cut with the spin of the set-up"),
+                ("constant", "At `spin_deg` on the whole path"),
+                ("course", "Along the best course of the spin"),
+            )
+        },
+        "spins.*": "The course: the spin (`spin_deg`) by the way of the tool (`way_mm`), sample by sample.",
+        "map.way_mm": "Way of the tool at the samples of the map.",
+        "map.spin_deg": "The spins tried.",
+        "map.share": "By sample and spin: the share of the tolerance; null beyond the limits and close to singular "
+        "configurations.",
+        "map.deviation_mm": "The same for the deviation of the tip.",
+        "digest": "Fingerprint of the answer.",
+    },
     "place": {
         "robomill": "The version that found it.",
         "name": "What the set-up is called.",

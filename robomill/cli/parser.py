@@ -32,6 +32,7 @@ EXAMPLES = {
     "design": "robomill design paper_flute --tolerance-mm 0.1",
     "place": "robomill place paper_flute --x -300:300 --y -1500:-1100 --yaw -90:90",
     "compensate": "robomill compensate paper_flute --out corrected.nc",
+    "turn": "robomill turn paper_flute --robot fanuc_r2000ic",
     "samples": "robomill samples --copy samples",
     "reproduce": "robomill reproduce",
     "completion": "robomill completion bash",
@@ -45,6 +46,7 @@ NOTES = {
     "that is not known.",
     "advise": "Exits 1 where no way keeps the tolerance.",
     "design": "Exits 1 where the tolerance cannot be met.",
+    "turn": "Exits 1 where the verdict is red along the best course, too, and 2 where nothing is left to turn.",
     "place": "Left out, x and y are today's and 15 % of the arm's length to each side; height and yaw stay. Exits 1 "
     "where the verdict is red at the best place, too.",
     "compensate": "Refused, with the reason, where the prediction itself is not to be trusted.",
@@ -53,7 +55,7 @@ NOTES = {
     "_robomill in a folder of $fpath; for fish, to ~/.config/fish/completions/robomill.fish.",
 }
 # Verbs with a module of their own.
-MODULES = {"simulate", "identify", "serve", "drawing", "advise", "design", "place", "compensate"}
+MODULES = {"simulate", "identify", "serve", "drawing", "advise", "design", "place", "turn", "compensate"}
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
 
@@ -95,6 +97,7 @@ def make_parser() -> argparse.ArgumentParser:
     _simulate_options(told("simulate", "Run a set-up: deviation, groove, verdict."))
     _setup(told("advise", "The same part cut otherwise: with another feed, turned round, in passes, once more."))
     _place_options(told("place", "Where in a box the part should lie so that its cut comes out best."))
+    _turn_options(told("turn", "How the spindle should be turned about its axis along a path: six and seven axes."))
     _design_options(told("design", "The joints to stiffen so that a cut keeps a tolerance, at the least cost."))
     _compensate_options(told("compensate", "Correct a program for the push on its tool, and say what is left."))
     given = told("samples", "List the samples, or copy them to work on.")
@@ -246,6 +249,22 @@ def _design_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--most", type=float, metavar="TIMES", help="how many times as stiff a joint may be made (10)")
 
 
+def _asked_for(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument(
+        "--measure",
+        default="verdict",
+        choices=("verdict", "wall", "floor", "tip", "feed"),
+        help="what is made small: what the verdict judges (default), one of its parts, or the tip's deviation",
+    )
+
+
+def _turn_options(sub: argparse.ArgumentParser) -> None:
+    _setup(sub)
+    _named(sub, "--robot", "another robot than the set-up's: a name or a file", "robot")
+    _asked_for(sub)
+    sub.add_argument("--rate", type=float, metavar="DEG_MM", help="how fast the spin may change, degrees a mm (1)")
+
+
 def _place_options(sub: argparse.ArgumentParser) -> None:
     _setup(sub)
     for axis in "xyz":
@@ -257,12 +276,7 @@ def _place_options(sub: argparse.ArgumentParser) -> None:
         metavar="X,Y,Z:X,Y,Z",
         help="a box, mm, in the robot's base that the stock keeps out of; one --keep-out a box",
     )
-    sub.add_argument(
-        "--measure",
-        default="verdict",
-        choices=("verdict", "wall", "floor", "tip", "feed"),
-        help="what is made small: what the verdict judges (default), one of its parts, or the tip's deviation",
-    )
+    _asked_for(sub)
     sub.add_argument("--room", type=float, metavar="SHARE", help="of its half range a joint keeps to its limits (0.05)")
     sub.add_argument(
         "--candidates", type=partial(whole, 100_000), default=1000, metavar="PLACES", help="places of the map (1000)"

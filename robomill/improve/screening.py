@@ -136,9 +136,13 @@ class Screen:
 
     def _with(self, T_MW: FloatArray, spin: Spin) -> Screened:
         ik = configurations(self.setup, T_MW[:, None] @ self.T_WT, self.near, spin)
+        return Screened(standing(ik), self.errors(self.in_cut(T_MW, ik.theta)))
+
+    def in_cut(self, T_MW: FloatArray, theta: FloatArray) -> FloatArray:
+        """Deviations (k, s, 3) m along feed, left and axial of parts at T_MW (k, 4, 4), the arm at theta (k, s, n)."""
         R_MF = T_MW[:, None, :3, :3] @ self.R_WF
         F = np.einsum("kij,sj->ksi", T_MW[:, :3, :3], self.F) if self.turns else self.F
-        return Screened(standing(ik), self.errors(np.einsum("ksij,ksi->ksj", R_MF, self._delta(T_MW, ik.theta, F))))
+        return np.asarray(np.einsum("ksij,ksi->ksj", R_MF, self._delta(T_MW, theta, F)))
 
     def _delta(self, T_MW: FloatArray, theta: FloatArray, F: FloatArray) -> FloatArray:
         """(k, s, 3) m in {M}."""
@@ -159,6 +163,14 @@ class Screen:
         found = {name: surface.largest(d) for name, surface in self.surfaces.items()}
         judged = d[:, self.judged]
         return found | {"feed": np.abs(judged[..., 0]).max(axis=-1), "tip": np.linalg.norm(judged, axis=-1).max(-1)}
+
+    def shares(self, measure: Asked, d: FloatArray) -> FloatArray:
+        """(k, s) share of its tolerance that each sample uses by its own readings, with deviations d (k, s, 3) m; NaN
+        where there is no deviation, 0 where the sample leaves nothing that is judged."""
+        found = {name: surface.by_sample(d) for name, surface in self.surfaces.items()}
+        found["feed"] = np.where(self.judged, np.abs(d[..., 0]), 0.0)
+        found["tip"] = np.where(self.judged, np.linalg.norm(d, axis=-1), 0.0)
+        return np.where(np.isnan(d).any(axis=-1), np.nan, share_of(measure, self.setup, found))
 
 
 def spin_matters(robot: Robot) -> bool:
@@ -187,11 +199,19 @@ class Surfaces(NamedTuple):
 
     def largest(self, d: FloatArray) -> FloatArray:
         """(k,) m with deviations d (k, s, 3) m; NaN without a reading."""
-        if not len(self.at):
-            return np.full(len(d), np.nan)
+        return np.asarray(self._each(d).max(axis=-1)) if len(self.at) else np.full(len(d), np.nan)
+
+    def by_sample(self, d: FloatArray) -> FloatArray:
+        """(k, s) m with deviations d (k, s, 3) m; 0 where a sample has no reading."""
+        found = np.zeros((d.shape[1], d.shape[0]))
+        np.maximum.at(found, self.at, self._each(d).T)
+        return found.T
+
+    def _each(self, d: FloatArray) -> FloatArray:
+        """(k, q) m."""
         own = np.einsum("kqi,qi->kq", d[:, self.at], self.toward)
         made = np.maximum(np.abs(own + self.low), np.abs(own + self.high))
-        return np.asarray(np.where(np.isnan(self.low), np.maximum(own, 0.0), made).max(axis=-1))
+        return np.asarray(np.where(np.isnan(self.low), np.maximum(own, 0.0), made))
 
 
 def surfaces(read: Readings, d: FloatArray, at: IntArray) -> Surfaces:
@@ -210,12 +230,14 @@ def surfaces(read: Readings, d: FloatArray, at: IntArray) -> Surfaces:
     return Surfaces(sample[first], toward[first], low, high)
 
 
-def screen(result: SimulationResult, also: IntArray | None = None) -> Screen:
-    """From a run without coupling all of whose samples are reached; samples ``also`` are looked at in any case."""
+def screen(result: SimulationResult, also: IntArray | None = None, most: int | None = None) -> Screen:
+    """From a run without coupling all of whose samples are reached; samples ``also`` are looked at in any case, and
+    about ``most`` of them (None: as many as a thousand places can afford)."""
     setup, path = result.setup, result.path
     searched = spin_matters(setup.robot) and not isinstance(setup.spin, float)
     quick = decoupled(setup.robot) is not None and not searched
-    at = _few(result, MOST_SAMPLES if quick else SLOW_SAMPLES, np.zeros(0, dtype=np.int64) if also is None else also)
+    most = most or (MOST_SAMPLES if quick else SLOW_SAMPLES)
+    at = _few(result, most, np.zeros(0, dtype=np.int64) if also is None else also)
     keep = np.zeros(len(path), dtype=bool)
     keep[at] = True
     R_MW = setup.T_MW[:3, :3]

@@ -64,7 +64,7 @@ def placement_lines(record: dict[str, Any]) -> list[str]:
     for name in NAMES:
         place = record[name]
         at = ", ".join(f"{value:.1f}" for value in place["zero_mm"])
-        lines.append(f"{name:9} {at} mm, yaw {place['yaw_deg']:.2f} deg: {_numbers(place)}")
+        lines.append(f"{name:9} {at} mm, yaw {place['yaw_deg']:.2f} deg: {numbers(place)}")
     lines.append(f"verdict   {record['best']['verdict_sentence']}")
     counts = record["candidates"]
     refused = "".join(f", {count} {why}" for why, count in counts["refused"].items())
@@ -72,7 +72,8 @@ def placement_lines(record: dict[str, Any]) -> list[str]:
     return [*lines, *(f"{each['level']:9} {each['message']}" for each in record["findings"])]
 
 
-def _numbers(place: dict[str, Any]) -> str:
+def numbers(place: dict[str, Any]) -> str:
+    """The errors of one place in words."""
     if place["reason"]:
         return f"not reached ({place['reason']})"
     said = [("tip", place["max_deviation_mm"]), ("wall", place["wall_mm"]), ("floor", place["floor_mm"])]

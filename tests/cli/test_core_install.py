@@ -30,6 +30,7 @@ WORKS = {
     "identify": ("identify", "slavkovic_5r", str(TESTS / "one_joint_at_a_time.csv")),
     "simulate": ("simulate", str(SLOT / "setup.toml"), "--out", "result"),
     "advise": ("advise", "paper_flute/setup_process"),
+    "turn": ("turn", "paper_flute", "--robot", "fanuc_r2000ic"),
     "place": ("place", "paper_flute", "--candidates", "9"),
     "design": ("design", "paper_flute", "--tolerance-mm", "0.2"),
     "compensate": ("compensate", str(SLOT / "setup.toml"), "--out", "corrected.nc"),

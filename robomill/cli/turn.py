@@ -1,0 +1,23 @@
+"""``robomill turn``: how the spindle should be turned about its axis, on arms of six and seven axes."""
+
+from typing import Any
+
+from robomill.cli import given
+from robomill.cli.saying import say
+from robomill.errors import SetupError
+
+
+def run_turn(arguments: Any) -> int:
+    """Search; 1 where the cut is red along the best course, too."""
+    from robomill.improve.turning import turn
+    from robomill.report.turning_record import turning_lines, turning_record
+    from robomill.simulation.verdict_words import RED
+
+    setup = given.setup(arguments.setup, arguments.allow_outside)
+    if arguments.robot:
+        if setup.measured_map is not None:
+            raise SetupError("--robot: the set-up's compliances were measured on its own robot ([measured_map]).")
+        setup = setup.replace(robot=given.robot(arguments.robot))
+    found = turn(setup, measure=arguments.measure, rate_deg_mm=arguments.rate)
+    record = turning_record(found)
+    return say(arguments, record, turning_lines(record), int(found.course.level in RED))

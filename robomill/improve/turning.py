@@ -1,0 +1,295 @@
+"""Turning the spindle about its axis, which six and seven axes leave free: what it changes along a path, and the best
+course of the spin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from robomill.arguments import asked
+from robomill.arrays import BoolArray, FloatArray, of_kind
+from robomill.compliance.deflection import deflection, displacement
+from robomill.errors import SetupError
+from robomill.frames import Columns
+from robomill.improve.area import today
+from robomill.improve.placed import Place, place_of
+from robomill.improve.screening import ASKED, MOST_SAMPLES, Asked, Screen, screen, spin_matters, uncoupled
+from robomill.improve.spin_course import best_course
+from robomill.kinematics.choice import every, overshoot, spun
+from robomill.kinematics.choice import turn as within
+from robomill.kinematics.decoupled import LIMIT_SLACK, decoupled
+from robomill.kinematics.dexterity import NEAR, determinant, largest_determinant
+from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.steadiness import hasty_turns
+from robomill.kinematics.transforms import rotation_z, transform
+from robomill.lazy import cached_property
+from robomill.progress import step
+from robomill.provenance import Finding
+from robomill.quantities import Quantity
+from robomill.simulation.mapped import total_compliance
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import compliances, sags, simulate, tool_poses
+from robomill.simulation.setup import SimulationSetup
+from robomill.spelled import one_of
+from robomill.units import format_si, from_si, to_si
+from robomill.values import Tabled
+
+WHO = "Spindle"
+ANGLES = 72
+RATE = to_si(1.0, "deg/mm")  # how fast the spin may change along the path
+TRIED = 3  # constant spins that are simulated in full
+RATE_ASKED = Quantity("Rate", "deg/mm", name="rate", key="rate_deg_mm")
+ONE_SPIN, HASTE = "spin-course", "spin-haste"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Turning(Tabled):
+    """What the turn of the tool about its axis does along a path, and the best course of it.
+
+    ``now``, ``constant`` and ``course`` are full simulations: as it is, at the best ``spin`` (rad) for the whole path,
+    and along the course, at one part zero. ``angle`` (a,) rad and ``station`` (s,) m are the axes of the map, spin and
+    way of the tool; ``share`` (s, a) of the tolerance and ``deviation`` (s, a) m of the tip are NaN beyond the limits
+    and close to singular configurations. ``way`` (m,) m and ``turn`` (m,) rad are the course, spin by the way of the
+    tool, which changes by at most ``rate`` rad/m. ``findings`` are what a reader of the numbers must know.
+
+    ``turned`` is the set-up with the best constant spin; a set-up holds no course, which is for the controller.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> found = rm.turn(rm.load_setup("paper_flute").replace(robot=rm.load_robot("fanuc_r2000ic")))
+    >>> found.course.share <= found.constant.share <= found.now.share
+    True
+    """
+
+    setup: SimulationSetup
+    measure: Asked
+    now: Place
+    constant: Place
+    course: Place
+    spin: float
+    angle: FloatArray
+    station: FloatArray
+    share: FloatArray
+    deviation: FloatArray
+    way: FloatArray
+    turn: FloatArray
+    rate: float
+    findings: tuple[Finding, ...] = ()
+
+    @cached_property
+    def turned(self) -> SimulationSetup:
+        """The set-up with the best constant spin."""
+        return self.setup.replace(spin=self.spin)
+
+    def columns(self) -> Columns:
+        """The course: spin by the way of the tool."""
+        return {"way_mm": from_si(self.way, "mm"), "spin_deg": from_si(self.turn, "deg")}
+
+    def _said(self) -> str:
+        named = (("now", self.now), (f"at {format_si(self.spin, 'deg', 0)}", self.constant), ("turning", self.course))
+        said = ", ".join(f"{format_si(each.max_deviation, 'mm', missing='not reached')} {name}" for name, each in named)
+        return f"{self.setup.name}: {said}"
+
+
+@asked
+def turn(
+    setup: SimulationSetup,
+    *,
+    measure: Asked = "verdict",
+    rate: float | None = None,
+    rate_deg_mm: float | None = None,
+) -> Turning:
+    """How the tool should be turned about its axis along a path, on arms of six and seven axes.
+
+    Parameters
+    ----------
+    setup : SimulationSetup
+        The cut; its spin is "now".
+    measure : str
+        What is made small, as of ``place``: "verdict", "wall", "floor", "tip" or "feed".
+    rate : float, rad/m, or rate_deg_mm
+        How much the spin may change along the way of the tool; 1 degree a mm where it is left out.
+
+    Returns
+    -------
+    Turning
+        A map of the path against the spin, the best constant spin and the best course, before and after.
+
+    Raises
+    ------
+    SetupError
+        Where nothing is left to turn: arms of up to five axes, and tools that lie along the last axis.
+
+    Notes
+    -----
+    The course is found by dynamic programming over 72 angles and both sides of the wrist, of which none is left on the
+    way; shoulder and elbow stand as in a run. Its
+    largest share is the least there is at this rate. It is checked by inverse kinematics and a full simulation along
+    the interpolated course; without the coupling of force and deflection.
+    """
+    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
+    if setup.robot.n < 6:
+        raise SetupError(f"{WHO}: an arm of {setup.robot.n} joints holds the tool in one way; nothing is left to turn.")
+    if not spin_matters(setup.robot):
+        raise SetupError(
+            f"{WHO}: the tool lies along the last axis, which turns it and moves nothing else; nothing is left to turn."
+        )
+    if measure not in ASKED:
+        raise SetupError(f"{WHO}, measure: found {measure!r:.40}; expected {', '.join(ASKED)}.", where="measure")
+    most = one_of(RATE_ASKED, rate, rate_deg_mm, SetupError, WHO, default=RATE)
+    if not (np.isfinite(most) and most > 0.0):
+        raise SetupError(f"{WHO}, rate: found {most!r:.40}; expected a number above 0.", where="rate")
+    return _Turned(uncoupled(setup), measure, float(most)).run(setup)
+
+
+@dataclass(frozen=True, eq=False)
+class _Turned:
+    """A cut without coupling, what is asked of it, and the bound on the rate."""
+
+    setup: SimulationSetup
+    measure: Asked
+    rate: float
+
+    def run(self, asked_of: SimulationSetup) -> Turning:
+        now, base = self._simulated(self.setup)
+        angle = np.asarray(2.0 * np.pi / ANGLES * np.arange(ANGLES), dtype=np.float64)
+        reference = base if now.known else self._reached(angle)
+        looking = screen(reference, most=MOST_SAMPLES)
+        cost, deviation = self._map(looking, angle)
+        share = cost.min(axis=2)
+        constant, spin, result = self._constant(cost, angle, now, base)
+        way = np.cumsum(reference.path.step_length)
+        turned, course = self._course(looking, cost, angle, way), constant
+        said: list[Finding] = []
+        if turned is None:
+            said.append(
+                Finding("info", "No course of the spin leads along the whole path at this rate.", code=ONE_SPIN)
+            )
+        else:
+            after = self._along(result, turned)
+            found = place_of(after, today(self.setup), self.measure)
+            haste = hasty_turns(after.ik)
+            if haste:
+                said.append(Finding("warning", f"Along the course {haste[0].sentence()}", code=HASTE))
+            if found.known and found.share < constant.share and not haste:
+                course = found
+            else:
+                turned = None
+                said.append(Finding("info", "No course of the spin is better than one spin for all.", code=ONE_SPIN))
+        turned = np.full(len(way), spin) if turned is None else turned
+        known = np.isfinite(share)
+        return Turning(
+            setup=asked_of,
+            measure=self.measure,
+            now=now,
+            constant=constant,
+            course=course,
+            spin=spin,
+            angle=angle,
+            station=way[looking.at],
+            share=np.where(known, share, np.nan),
+            deviation=np.where(known, deviation, np.nan),
+            way=way,
+            turn=turned,
+            rate=self.rate,
+            findings=tuple(said),
+        )
+
+    def _simulated(self, setup: SimulationSetup) -> tuple[Place, SimulationResult]:
+        result = simulate(setup)
+        return place_of(result, today(setup), self.measure), result
+
+    def _reached(self, angle: FloatArray) -> SimulationResult:
+        """A run at a spin at which all of the path is reached."""
+        for k, each in enumerate(angle[:: ANGLES // 24]):
+            with step(k, 24, "A spin that reaches the path"):
+                found, result = self._simulated(self.setup.replace(spin=float(each)))
+            if found.known:
+                return result
+        raise SetupError(f"{WHO}: no spin reaches all of the path. {found.reason}")
+
+    def _map(self, looking: Screen, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(s, a, b) share of the tolerance at every sample, spin and branch, infinite where the arm cannot stand, and
+        (s, a) m deviation of the tip in the best branch."""
+        robot = self.setup.robot
+        shares, tips = [], []
+        for k, each in enumerate(angle):
+            with step(k, len(angle), "Spins tried"):
+                T_MT = spun(self.setup.T_MW @ looking.T_WT, float(each))
+                theta, possible = self._standings(looking, T_MT)
+                det = np.abs(determinant(robot, theta)) / largest_determinant(robot)
+                T_MW = np.broadcast_to(self.setup.T_MW, (theta.shape[0], 4, 4))
+                d = looking.in_cut(T_MW, np.where(possible[..., None], theta, np.nan))
+                share = looking.shares(self.measure, d)
+            shares.append(np.where(possible & (det > NEAR) & np.isfinite(share), share, np.inf))
+            tips.append(np.linalg.norm(d, axis=-1))
+        cost = np.stack(shares, axis=0).transpose(2, 0, 1)
+        tip = np.stack(tips, axis=0).transpose(2, 0, 1)
+        return cost, np.take_along_axis(tip, cost.argmin(axis=2)[..., None], axis=2)[..., 0]
+
+    def _standings(self, looking: Screen, T_MT: FloatArray) -> tuple[FloatArray, BoolArray]:
+        """(b, s, n) configurations for poses (s, 4, 4), and whether they are within limits (b, s): with shoulder and
+        elbow as a run has them, and both sides of the wrist."""
+        robot, arm = self.setup.robot, decoupled(self.setup.robot)
+        if arm is None:
+            ik = inverse_kinematics(robot, T_MT, near=looking.near, spin="fixed")
+            return ik.theta[None], ik.reached[None]
+        theta, sound = every(robot, arm, T_MT)
+        theta = within(robot, theta, robot.home)
+        inside = (np.abs(overshoot(robot, theta)) <= LIMIT_SLACK).all(axis=-1)
+        index = looking.reference.ik.branch_index
+        same = np.arange(8) // 2 == np.bincount(index[index >= 0] // 2, minlength=4).argmax()
+        return theta[:, same].transpose(1, 0, 2), (sound & inside)[:, same].T
+
+    def _constant(
+        self, cost: FloatArray, angle: FloatArray, now: Place, base: SimulationResult
+    ) -> tuple[Place, float, SimulationResult]:
+        """The best spin for the whole path by full simulations; today's where no other is better."""
+        largest = cost.max(axis=0).min(axis=1)
+        spins = [float(angle[k]) for k in np.argsort(largest, kind="stable")[:TRIED] if np.isfinite(largest[k])]
+        tried = [(*self._simulated(self.setup.replace(spin=spin)), spin) for spin in spins]
+        if now.known:
+            chosen = base.ik.spin
+            tried.append((now, base, 0.0 if chosen is None else float(chosen[0])))
+        known = [each for each in tried if each[0].known]
+        if not known:
+            raise SetupError(f"{WHO}: no spin reaches all of the path with room to singular configurations.")
+        place, result, spin = min(known, key=lambda each: each[0].share)
+        return place, spin, result
+
+    def _course(self, looking: Screen, cost: FloatArray, angle: FloatArray, way: FloatArray) -> FloatArray | None:
+        """(m,) rad spin at every sample of the path; None where no course leads through."""
+        size = float(angle[1])
+        apart = size / self.rate  # the way in which the spin may change by one angle
+        stage = np.floor(way[looking.at] / apart).astype(np.int64)
+        numbers, which = np.unique(stage, return_inverse=True)
+        worst = np.zeros((len(numbers), *cost.shape[1:]))
+        np.maximum.at(worst, which.ravel(), cost)
+        chosen, _ = best_course(worst, np.diff(numbers))
+        if chosen[0] < 0:
+            return None
+        whole = np.unwrap(angle[chosen])
+        return np.interp(way, (numbers + 0.5) * apart, whole)
+
+    def _along(self, result: SimulationResult, spin: FloatArray) -> SimulationResult:
+        """The run with the arm along a course (m,) rad; its force and its cut are the same."""
+        setup, path = self.setup, result.path
+        turns = transform(rotation_z(spin), np.zeros(3))
+        ik = inverse_kinematics(setup.robot, tool_poses(setup, path) @ turns, near="path", spin="fixed")
+        C_joint, C_spring = compliances(setup, path, ik.theta)
+        C = total_compliance(setup, path, C_joint, C_spring)
+        sag = None if setup.links is None else sags(setup, path, ik.theta, setup.links)
+        offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else 0.0
+        return replace(
+            result,
+            ik=ik,
+            C_joint=C_joint,
+            C_spring=C_spring,
+            C=C,
+            delta_joint=deflection(C_joint, result.F),
+            delta_spring=deflection(C_spring, result.F),
+            delta=displacement(C, result.F) + offset,
+            sag=sag,
+        )

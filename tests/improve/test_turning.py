@@ -1,0 +1,103 @@
+"""Turning the spindle along a path: against full simulations, and within the bound on its rate."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import SetupError
+from robomill.improve.turning import Turning, turn
+from robomill.units import to_si
+
+
+def circle(**changes: object) -> rm.SimulationSetup:
+    """A groove around a circle of 120 mm, of an arm whose tool stands across its last axis."""
+    a = np.linspace(0.0, 2.0 * np.pi, 61)
+    path = rm.Toolpath.from_points(
+        p_mm=np.column_stack([60 * np.cos(a), 60 * np.sin(a), np.full(61, -2.0)]), feed_mm_min=1800
+    )
+    arm = rm.load_robot("fanuc_r2000ic")
+    setup = rm.load_setup("paper_flute").replace(source=path, stock=None, robot=arm, part_zero=(1.2, 0.0, 0.3))
+    return setup.replace(step_mm=7, cell_mm=0.5, **changes)
+
+
+@pytest.fixture(scope="module")
+def found() -> Turning:
+    return turn(circle())
+
+
+def test_the_map_is_what_runs_at_a_constant_spin_say(found: Turning) -> None:
+    for k in (0, 13, 50):
+        run = rm.simulate(circle(spin=float(found.angle[k])))
+        assert np.nanmax(found.share[:, k]) == pytest.approx(run.verdict.share, rel=5e-3)
+        judged = run.judged
+        assert found.deviation[judged, k] == pytest.approx(run.deviation[judged], rel=1e-6)
+
+
+def test_no_constant_spin_is_better_than_the_best(found: Turning) -> None:
+    shares = [rm.simulate(circle(spin=float(angle))).verdict.share for angle in found.angle[::6]]
+    assert found.constant.share <= min(shares) + 1e-9
+    assert rm.simulate(found.turned).verdict.share == pytest.approx(found.constant.share, rel=1e-12)
+    assert found.now.share == rm.simulate(circle()).verdict.share
+
+
+def test_a_course_is_better_than_any_constant_spin_and_no_better_than_its_bound(found: Turning) -> None:
+    assert found.course.share < found.constant.share < found.now.share
+    assert found.course.share >= np.nanmin(found.share, axis=1).max() * 0.99
+
+
+@pytest.mark.parametrize("rate", [0.2, 1.0])
+def test_the_spin_changes_no_faster_than_it_may(rate: float) -> None:
+    one = turn(circle(), rate_deg_mm=rate)
+    moved = np.diff(one.way) > 0.0
+    assert (np.abs(np.diff(one.turn))[moved] <= one.rate * np.diff(one.way)[moved] * (1 + 1e-9) + 1e-12).all()
+    assert one.rate == pytest.approx(to_si(rate, "deg/mm"))
+    assert one.course.share <= one.constant.share
+
+
+def test_the_deviation_along_the_course_is_that_of_the_arm_there(found: Turning) -> None:
+    """Each sample by its own inverse kinematics and compliance, one after the other."""
+    setup = circle()
+    run = rm.simulate(found.turned)
+    sizes = []
+    for i in np.flatnonzero(run.judged):
+        T = np.eye(4)
+        c, s = np.cos(found.turn[i] - found.spin), np.sin(found.turn[i] - found.spin)
+        T[:2, :2] = [[c, -s], [s, c]]
+        ik = rm.inverse_kinematics(setup.robot, run.ik.T_MT[i] @ T, near=run.theta[i], spin="fixed")
+        sizes.append(np.linalg.norm(rm.cartesian_compliance(setup.robot, ik.theta) @ run.F[i]))
+    assert found.course.max_deviation == pytest.approx(max(sizes), rel=1e-6)
+
+
+def test_where_nothing_is_left_to_turn_is_said() -> None:
+    slot = rm.load_setup("paper_flute")
+    with pytest.raises(SetupError, match="an arm of 5 joints holds the tool in one way; nothing is left to turn"):
+        turn(slot)
+    with pytest.raises(SetupError, match="lies along the last axis, which turns it and moves nothing else"):
+        turn(slot.replace(robot=rm.load_robot("kuka_kr500"), part_zero=(1.2, 0.0, 0.3)))
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"measure": "speed"}, "measure: found 'speed'"),
+        ({"rate_deg_mm": 0}, "rate: found 0.0; expected a number above 0"),
+        ({"rate": 1.0, "rate_deg_mm": 1.0}, "are the same; give one of them"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(given: dict, said: str) -> None:
+    with pytest.raises(rm.RobomillError, match=said):
+        turn(circle(), **given)
+
+
+def test_a_path_out_of_reach_at_every_spin_is_refused() -> None:
+    with pytest.raises(SetupError, match="no spin reaches all of the path"):
+        turn(circle(part_zero=(9.0, 0.0, 0.3)))
+
+
+def test_a_turning_is_a_value_with_a_table(found: Turning) -> None:
+    frame = found.to_dataframe()
+    assert list(frame.columns) == ["way_mm", "spin_deg"]
+    assert "turning" in repr(found)
+    assert found == turn(circle())
