@@ -85,3 +85,29 @@ def cost_front(used: FloatArray, cost: FloatArray, chosen: tuple[float, float], 
     fig.layout["xaxis"] = axis("% of the tolerance used", dark=dark, rangemode="tozero", automargin=False)
     fig.layout["yaxis"] = axis("cost (1: one joint twice as stiff)", dark=dark, rangemode="tozero", automargin=False)
     return fig
+
+
+def corrected_lines(
+    station: FloatArray, before: FloatArray, after: FloatArray, names: Sequence[str], unit: str, *, dark: bool
+) -> Chart:
+    """Deviations (k, m) in ``unit`` along the cut, station (m,), before (dashed) and after (whole) the correction; NaN
+    where nothing is cut."""
+    p = palette(dark)
+    colours = (p.accent, p.warm)
+    fig = figure(dark=dark, height=FRONT_HEIGHT, revision="corrected", hovermode="x unified")
+    fig.layout["margin"] = {"l": 62, "r": 16, "t": 34, "b": 48, "autoexpand": False}
+    fig.lay_out(legend={"y": 1.12})
+    for when, values, look in (("before", before, "dot"), ("after", after, "solid")):
+        for name, value, colour in zip(names, values, colours, strict=False):
+            fig.add(
+                "scatter",
+                x=station,
+                y=value,
+                mode="lines",
+                name=f"{name}, {when}",
+                line={"color": colour, "width": 2, "dash": look},
+                hovertemplate="%{y:+.4f} " + unit,
+            )
+    fig.layout["xaxis"] = axis(f"length cut, {unit}", dark=dark, automargin=False)
+    fig.layout["yaxis"] = axis(f"off the path, {unit}", dark=dark, zeroline=True, automargin=False)
+    return fig

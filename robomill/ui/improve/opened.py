@@ -9,6 +9,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.improve.advice import Advice
+from robomill.improve.compensation import Compensation
 from robomill.improve.placed import Placement
 from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces, session
@@ -16,14 +17,56 @@ from robomill.ui.improve import stiffen
 from robomill.ui.improve.remedies import Found, Left, Stiffened, error_words, use
 from robomill.ui.shell import dark
 from robomill.ui.verdict import WORDS
-from robomill.units import format_count, format_many, format_percent, format_short, format_si, from_si, in_lengths
-from robomill.viz.remedies import cost_front, places_map
+from robomill.units import format_count, format_many, format_percent, format_short, format_si, from_si, in_lengths, to_si
+from robomill.viz.remedies import corrected_lines, cost_front, places_map
 
 
 def opened(found: Found, result: SimulationResult, unit: str) -> None:
     """The remedy's own part of the page."""
     if found.left is not None:
         OPENED[found.remedy.name](found.made, found.left, result, unit)
+
+
+def _corrected(found: Compensation, left: Left, result: SimulationResult, unit: str) -> None:
+    here, beside = pieces.split([1, 1.7], "page", gap="large")
+    with here, st.container(border=True):
+        pieces.strong("What the corrected program leaves")
+        rows = [
+            (name, format_si(each.max, unit), f"{format_percent(each.max / result.setup.tolerance)} of the tolerance")
+            for name, each in (
+                ("as it is", found.before),
+                ("corrected", found.after),
+                ("if the arm is 20 % softer or stiffer", found.softer),
+                ("if the force is 20 % off", found.stronger),
+            )
+        ]
+        pieces.facts(rows)
+        words = f"Found after {format_count(found.iterations, 'iteration')}: force and engagement are those of the "
+        pieces.note(words + "corrected path. Along the feed nothing is changed.")
+        for why in found.unrolled:
+            pieces.note(f"Written out: {why}.")
+        for finding in found.findings:
+            pieces.note(finding.sentence)
+        pieces.download("Corrected program", found.text, found.name, "improve.program", type="primary")
+        pieces.note("Run it on the machine in place of the other; here the project keeps the program that was meant.")
+    with beside, st.container(border=True):
+        columns = found.columns()
+        cuts = np.asarray(columns["cutting"], dtype=bool)
+        names = ("normal", "axial")
+        when = [
+            np.array([np.where(cuts, from_si(to_si(columns[f"{time}_{name}_mm"], "mm"), unit), np.nan) for name in names])
+            for time in ("before", "after")
+        ]
+        station = from_si(to_si(columns["station_mm"], "mm"), unit)
+        pieces.strong("Off the path, before and after")
+        pieces.figure(
+            corrected_lines(station, *when, ("across the feed", "along the axis"), unit, dark=dark()),
+            "improve-corrected",
+            table=lambda: columns,
+            alt=f"Deviation along the cut: at most {format_si(found.before.max, unit)} before, "
+            f"{format_si(found.after.max, unit)} with the corrected program.",
+            caption="Measured against the path that was meant; inside the model.",
+        )
 
 
 def _stiffened(found: Stiffened, left: Left, result: SimulationResult, unit: str) -> None:
@@ -149,6 +192,7 @@ def _cut_so(run: SimulationResult) -> None:
 
 
 OPENED: dict[str, Callable[[Any, Left, SimulationResult, str], None]] = {
+    "program": _corrected,
     "stiffen": _stiffened,
     "place": _placed,
     "cut": _cut,

@@ -9,20 +9,23 @@ from typing import Any
 import numpy as np
 
 from robomill.errors import RobomillError
+from robomill.identification.knowledge import Knowledge
 from robomill.improve.advice import Advice, advise
+from robomill.improve.compensation import Compensation
 from robomill.improve.design import STIFFEST, Design, design
 from robomill.improve.placed import Placement
 from robomill.improve.placement import place
+from robomill.io.compensated import compensate
 from robomill.simulation.estimate import run_seconds
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.verdict_words import Level
+from robomill.simulation.verdict_words import TIGHT_FROM, Level
 from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.job import Underway
 from robomill.ui.verdict import WORDS
-from robomill.units import format_many, format_percent, format_share, format_short, format_si, format_value
+from robomill.units import format_count, format_many, format_percent, format_share, format_short, format_si, format_value
 
-RUNS_OF_DESIGN, RUNS_OF_ADVICE, RUNS_OF_PLACES = 4, 20, 25
+RUNS_OF_DESIGN, RUNS_OF_ADVICE, RUNS_OF_PLACES, RUNS_OF_PROGRAM = 4, 20, 25, 12
 LEAST = 0.005  # of the tolerance: what saves less is no remedy
 
 
@@ -77,6 +80,28 @@ def designed(setup: SimulationSetup) -> Stiffened:
         return Stiffened(found, found.after, half=False)
     halved = design(setup, 0.5 * found.share * setup.tolerance)
     return Stiffened(halved, cached.result(setup.replace(robot=halved.setup.robot)), half=True)
+
+
+@cached.shared(
+    lambda setup, known: (cached.by_setup(setup), None if known is None else (known.covariance, known.source)),
+    "The corrected program",
+    lambda setup, known: run_seconds(setup) * RUNS_OF_PROGRAM,
+)
+def corrected(setup: SimulationSetup, known: Knowledge | None) -> Compensation:
+    """The program that is pushed onto the path that was meant."""
+    return compensate(setup, known=known)
+
+
+def _of_program(found: Compensation, now: SimulationResult, unit: str) -> Left:
+    wrong = max(found.softer.max, found.stronger.max)
+    share = wrong / now.setup.tolerance
+    level: Level = "ok" if share < TIGHT_FROM else "tight" if share <= 1.0 else "out"
+    error = f"{format_si(found.after.max, unit, with_unit=False)} to {format_si(wrong, unit)}"
+    lines = f"a new program, {format_count(found.lines_in, 'line')} become {format_count(found.lines_out)}"
+    sure = "the larger: if stiffness or force is 20 % off"
+    if np.isfinite(found.half):
+        sure += f"; ± {format_si(found.half, unit)} by the tests"
+    return Left(share, error, level, lines, sure, None)
 
 
 @cached.shared(cached.by_setup, "Other ways to cut", lambda setup: run_seconds(setup) * RUNS_OF_ADVICE)
@@ -142,6 +167,7 @@ def _of_place(found: Placement, now: SimulationResult, unit: str) -> Left:
 
 
 REMEDIES: tuple[Remedy, ...] = (
+    Remedy("program", "Correct the program", lambda setup: corrected(setup, session.known(setup)), _of_program),
     Remedy("stiffen", "Stiffen joints", designed, _of_design),
     Remedy("place", "Move the part", placed, _of_place),
     Remedy("cut", "Cut otherwise", advised, _of_advice),
@@ -171,7 +197,7 @@ def known(result: SimulationResult, unit: str) -> tuple[list[Found], Underway | 
 def sentence(found: Sequence[Found], result: SimulationResult, unit: str) -> str:
     """What would fix it, in one line."""
     now = result.verdict
-    known = [each for each in found if each.left is not None and each.left.setup is not None]
+    known = [each for each in found if each.left is not None]
     if not known:
         return (
             "What would fix it?" if any(not each.left for each in found) else "Nothing that was tried makes it truer."
