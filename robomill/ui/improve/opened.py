@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
+from robomill.arrays import FloatArray
 from robomill.improve.advice import Advice
 from robomill.improve.compensation import Compensation
 from robomill.improve.placed import Placement
@@ -17,7 +18,16 @@ from robomill.ui.improve import stiffen
 from robomill.ui.improve.remedies import Found, Left, Stiffened, error_words, use
 from robomill.ui.shell import dark
 from robomill.ui.verdict import WORDS
-from robomill.units import format_count, format_many, format_percent, format_short, format_si, from_si, in_lengths, to_si
+from robomill.units import (
+    format_count,
+    format_many,
+    format_percent,
+    format_short,
+    format_si,
+    from_si,
+    in_lengths,
+    to_si,
+)
 from robomill.viz.remedies import corrected_lines, cost_front, places_map
 
 
@@ -53,20 +63,25 @@ def _corrected(found: Compensation, left: Left, result: SimulationResult, unit: 
         columns = found.columns()
         cuts = np.asarray(columns["cutting"], dtype=bool)
         names = ("normal", "axial")
-        when = [
-            np.array([np.where(cuts, from_si(to_si(columns[f"{time}_{name}_mm"], "mm"), unit), np.nan) for name in names])
+        before, after = (
+            np.array([np.where(cuts, _shown(columns[f"{time}_{name}_mm"], unit), np.nan) for name in names])
             for time in ("before", "after")
-        ]
-        station = from_si(to_si(columns["station_mm"], "mm"), unit)
+        )
+        station = _shown(columns["station_mm"], unit)
         pieces.strong("Off the path, before and after")
         pieces.figure(
-            corrected_lines(station, *when, ("across the feed", "along the axis"), unit, dark=dark()),
+            corrected_lines(station, before, after, ("across the feed", "along the axis"), unit, dark=dark()),
             "improve-corrected",
             table=lambda: columns,
             alt=f"Deviation along the cut: at most {format_si(found.before.max, unit)} before, "
             f"{format_si(found.after.max, unit)} with the corrected program.",
             caption="Measured against the path that was meant; inside the model.",
         )
+
+
+def _shown(column: Any, unit: str) -> FloatArray:
+    """A column in mm, in the unit of the screen."""
+    return np.asarray(from_si(to_si(np.asarray(column, dtype=float), "mm"), unit))
 
 
 def _stiffened(found: Stiffened, left: Left, result: SimulationResult, unit: str) -> None:

@@ -23,7 +23,15 @@ from robomill.simulation.verdict_words import TIGHT_FROM, Level
 from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.job import Underway
 from robomill.ui.verdict import WORDS
-from robomill.units import format_count, format_many, format_percent, format_share, format_short, format_si, format_value
+from robomill.units import (
+    format_count,
+    format_many,
+    format_percent,
+    format_share,
+    format_short,
+    format_si,
+    format_value,
+)
 
 RUNS_OF_DESIGN, RUNS_OF_ADVICE, RUNS_OF_PLACES, RUNS_OF_PROGRAM = 4, 20, 25, 12
 LEAST = 0.005  # of the tolerance: what saves less is no remedy
