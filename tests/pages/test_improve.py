@@ -20,6 +20,10 @@ from robomill.ui.project import preset_setup
 from robomill.viz.shares import gain_bars
 
 
+def opened(app: AppTest, remedy: str) -> None:
+    next(g for g in app.get("button_group") if g.key == "improve.remedy").set_value(remedy).run()
+
+
 def test_the_best_joint_can_be_used_and_taken_back(app: AppTest) -> None:
     go(app, "7_Improve")
     assert not app.exception
@@ -27,9 +31,10 @@ def test_the_best_joint_can_be_used_and_taken_back(app: AppTest) -> None:
     result = simulate(before)
     left = np.linalg.norm(result.delta[:, None] - 0.5 * result.delta_joint, axis=-1)[result.judged].max(axis=0)
     best = before.robot.joint_numbers[int(left.argmin())]
+    opened(app, "stiffen")
     assert f"Joint {best} twice as stiff: a wall error of 0.230 mm becomes 0." in words(app)
     assert "Verdict then" in words(app)
-    assert "Stiffen joints: wall error of 0.230 mm becomes 0.1" in words(app)
+    assert "Correct the program: wall error of 0.230 mm becomes 0.000 to 0.046 mm" in words(app)
     app.button(key=f"improve.use.{best}").click().run()
     assert not app.exception
     assert "of the tolerance is used, 77 % before it: within tolerance. Undo leads back." in words(app)
@@ -46,6 +51,7 @@ def test_where_one_joint_is_not_enough_the_best_ones_together_are_told_and_can_b
     share = simulate(before.replace(robot=some_stiffer(before.robot, [2, 4]))).verdict.share
     go(app, "7_Improve")
     assert not app.exception
+    opened(app, "stiffen")
     assert "No joint alone brings the cut within tolerance: joint 3 twice as stiff still uses 104 %" in words(app)
     assert f"Joints 3 and 5 together twice as stiff: within tolerance, {100 * share:.0f} %" in words(app)
     app.button(key="improve.use.3.5").click().run()
@@ -58,6 +64,7 @@ def test_where_not_even_all_joints_are_enough_the_page_says_what_else_there_is(a
     kept = store(app)
     kept.project = kept.project.replace(setup=kept.project.setup.replace(tolerance=0.05e-3))
     go(app, "7_Improve")
+    opened(app, "stiffen")
     assert "No joint alone brings the cut within tolerance" in words(app)
     assert "a smaller cut (Milling), another place of the part (Toolpath)" in words(app)
 
@@ -101,7 +108,7 @@ def test_a_joint_that_makes_it_worse_is_not_said_to_change_nothing() -> None:
 def test_every_remedy_has_a_row_with_what_it_leaves_or_why_it_does_not_apply(app: AppTest) -> None:
     go(app, "7_Improve")
     said = words(app)
-    for title in ("As it is", "Stiffen joints", "Move the part", "Cut otherwise"):
+    for title in ("As it is", "Correct the program", "Stiffen joints", "Move the part", "Cut otherwise"):
         assert title in said
     assert "State a force from the material first." in said
     stiffer = design(store(app).project.setup, 0.5 * 0.22953604512e-3)
@@ -113,6 +120,7 @@ def test_joints_of_least_stiffening_are_used_and_taken_back(app: AppTest) -> Non
     kept.project = kept.project.replace(setup=kept.project.setup.replace(tolerance=0.15e-3))
     before = kept.project.setup
     go(app, "7_Improve")
+    opened(app, "stiffen")
     app.button(key="improve.do.Use these joints").click().run()
     assert not app.exception
     now = store(app).project.setup
@@ -125,7 +133,7 @@ def test_joints_of_least_stiffening_are_used_and_taken_back(app: AppTest) -> Non
 def test_the_part_is_moved_to_where_it_was_found_to_be_better(app: AppTest) -> None:
     go(app, "7_Improve")
     before = simulate(store(app).project.setup)
-    next(g for g in app.get("button_group") if g.key == "improve.remedy").set_value("place").run()
+    opened(app, "place")
     assert not app.exception
     app.button(key="improve.do.Move the part there").click().run()
     assert not app.exception
@@ -140,7 +148,7 @@ def test_another_way_to_cut_is_used(app: AppTest) -> None:
     kept.project = kept.project.replace(setup=setup)
     before = simulate(kept.project.setup)
     go(app, "7_Improve")
-    next(g for g in app.get("button_group") if g.key == "improve.remedy").set_value("cut").run()
+    opened(app, "cut")
     assert not app.exception
     assert "In 2 passes" in words(app)
     app.selectbox(key="improve.way").set_value("2 passes").run()

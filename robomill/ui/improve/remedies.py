@@ -216,10 +216,9 @@ def sentence(found: Sequence[Found], result: SimulationResult, unit: str) -> str
         return "Nothing that was tried makes this cut noticeably truer."
     before = error_words(result, unit)
     name = before.partition(" ")[0]
-    then = left.error.removeprefix(f"{name} ")
-    said = f"{name} error of {before.removeprefix(name).strip()} becomes {then}" if then != left.error else left.error
+    error = f"{name} error of {before.removeprefix(name).strip()}"
     return (
-        f"{best.remedy.title}: {said}, {WORDS[left.level].lower()} "
+        f"{best.remedy.title}: {error} becomes {left.error.removeprefix(f'{name} ')}, {WORDS[left.level].lower()} "
         f"({format_percent(left.share)} of the tolerance, now {format_percent(now.share)})."
     )
 
