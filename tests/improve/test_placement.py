@@ -174,7 +174,7 @@ def test_a_part_that_fits_nowhere_is_told_with_the_nearest_reason() -> None:
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"measure": "speed"}, "measure: found 'speed'; expected verdict, tip, wall, floor, feed"),
+        ({"measure": "speed"}, "measure: found 'speed'; expected verdict, wall, floor, tip, feed"),
         ({"room": 1.0}, "room: found 1.0; expected a share"),
         ({"room": float("nan")}, "room: found nan"),
         ({"candidates": 0}, "candidates: found 0"),
