@@ -111,3 +111,41 @@ def corrected_lines(
     fig.layout["xaxis"] = axis(f"length cut, {unit}", dark=dark, automargin=False)
     fig.layout["yaxis"] = axis(f"off the path, {unit}", dark=dark, zeroline=True, automargin=False)
     return fig
+
+
+def spins_map(
+    station: FloatArray,
+    angle: FloatArray,
+    used: FloatArray,
+    course: tuple[FloatArray, FloatArray],
+    unit: str,
+    *,
+    dark: bool,
+) -> Chart:
+    """Share of the tolerance used (s, a), %, along the cut, station (s,) in ``unit``, by the tool's spin, angle (a,)
+    degrees; blank beyond limits and near singular configurations. ``course`` is the best one, way and spin."""
+    fig = figure(dark=dark, height=PLACES_HEIGHT, revision="spins", showlegend=False)
+    fig.layout["margin"] = {"l": 62, "r": 10, "t": 10, "b": 48, "autoexpand": True}
+    known = used[np.isfinite(used)]
+    fig.add(
+        "heatmap",
+        x=station,
+        y=angle,
+        z=np.asarray(used).T,
+        colorscale=SEQUENTIAL,
+        zmin=float(known.min()) if known.size else 0.0,
+        zmax=float(np.quantile(known, 0.95)) if known.size else 1.0,
+        colorbar=colour_bar("% of tolerance", dark=dark),
+        hovertemplate=f"%{{x:.0f}} {unit} on, spin %{{y:.0f}}°<br>%{{z:.0f}} % of the tolerance<extra></extra>",
+    )
+    fig.add(
+        "scatter",
+        x=course[0],
+        y=course[1],
+        mode="markers",
+        marker={"size": 4, "color": "#FFFFFF"},
+        hovertemplate=f"best course<br>%{{x:.0f}} {unit} on, spin %{{y:.0f}}°<extra></extra>",
+    )
+    fig.layout["xaxis"] = axis(f"way of the tool, {unit}", dark=dark, automargin=True)
+    fig.layout["yaxis"] = axis("spin about the tool, °", dark=dark, automargin=True)
+    return fig

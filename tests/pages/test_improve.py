@@ -12,6 +12,7 @@ from streamlit.testing.v1 import AppTest
 from robomill.improve.design import design
 from robomill.improve.stiffening import Stiffening, some_stiffer
 from robomill.io.projects import load_setup
+from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.simulation.run import simulate
 from robomill.toolpath.source import GCodeSource
@@ -108,9 +109,17 @@ def test_a_joint_that_makes_it_worse_is_not_said_to_change_nothing() -> None:
 def test_every_remedy_has_a_row_with_what_it_leaves_or_why_it_does_not_apply(app: AppTest) -> None:
     go(app, "7_Improve")
     said = words(app)
-    for title in ("As it is", "Correct the program", "Stiffen joints", "Move the part", "Cut otherwise"):
+    for title in (
+        "As it is",
+        "Correct the program",
+        "Stiffen joints",
+        "Move the part",
+        "Turn the spindle",
+        "Cut otherwise",
+    ):
         assert title in said
     assert "State a force from the material first." in said
+    assert "nothing is left to turn." in said
     stiffer = design(store(app).project.setup, 0.5 * 0.22953604512e-3)
     assert f"wall {stiffer.after.verdict.wall.value * 1e3:.3f} mm" in said
 
@@ -157,3 +166,16 @@ def test_another_way_to_cut_is_used(app: AppTest) -> None:
     now = simulate(store(app).project.setup)
     assert now.verdict.share < 0.6 * before.verdict.share
     assert now.path.t[-1] > 1.9 * before.path.t[-1]
+
+
+def test_the_tool_is_turned_about_its_axis_on_an_arm_of_six(app: AppTest) -> None:
+    kept = store(app)
+    setup = kept.project.setup.replace(robot=load_robot("fanuc_r2000ic"), step=10e-3, cell=5e-4)
+    kept.project = kept.project.replace(setup=setup)
+    before = simulate(setup).verdict.share
+    go(app, "7_Improve")
+    assert not app.exception
+    opened(app, "turn")
+    app.button(key="improve.do.Turn it so, all the way").click().run()
+    assert not app.exception
+    assert simulate(store(app).project.setup).verdict.share < before - 0.01

@@ -12,6 +12,7 @@ from robomill.arrays import FloatArray
 from robomill.improve.advice import Advice
 from robomill.improve.compensation import Compensation
 from robomill.improve.placed import Placement
+from robomill.improve.turning import Turning
 from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces, session
 from robomill.ui.improve import stiffen
@@ -28,7 +29,7 @@ from robomill.units import (
     in_lengths,
     to_si,
 )
-from robomill.viz.remedies import corrected_lines, cost_front, places_map
+from robomill.viz.remedies import corrected_lines, cost_front, places_map, spins_map
 
 
 def opened(found: Found, result: SimulationResult, unit: str) -> None:
@@ -176,6 +177,36 @@ def _placed(found: Placement, left: Left, result: SimulationResult, unit: str) -
         )
 
 
+def _turned(found: Turning, left: Left, result: SimulationResult, unit: str) -> None:
+    here, beside = pieces.split([1, 1.7], "page", gap="large")
+    with here, st.container(border=True):
+        pieces.strong("How the tool is turned about its axis")
+        rows = [
+            (
+                name,
+                f"{format_si(each.max_deviation, unit)} at the tip",
+                f"{format_percent(each.share)} of the tolerance",
+            )
+            for name, each in (("now", found.now), ("best, all the way", found.constant), ("turning", found.course))
+        ]
+        pieces.facts(rows)
+        for finding in found.findings:
+            pieces.note(finding.sentence)
+        use(left, "Turn it so, all the way")
+    with beside, st.container(border=True):
+        pieces.strong("Tolerance used, by way and spin")
+        course = np.asarray(from_si(found.way, unit)), np.asarray(from_si(found.turn, "deg"))
+        station, angle = from_si(found.station, unit), from_si(found.angle, "deg")
+        pieces.figure(
+            spins_map(station, angle, from_si(found.share, "%"), course, unit, dark=dark()),
+            "improve-spins",
+            table=found.columns,
+            alt=f"Map of the tolerance used by way and spin: now {format_percent(found.now.share)}, at the best spin "
+            f"{format_percent(found.constant.share)}, turning {format_percent(found.course.share)}.",
+            caption="White: the best course; blank beyond limits and near singular configurations.",
+        )
+
+
 def _cut(found: Advice, left: Left, result: SimulationResult, unit: str) -> None:
     with st.container(border=True):
         pieces.strong("The same part, cut in other ways")
@@ -210,5 +241,6 @@ OPENED: dict[str, Callable[[Any, Left, SimulationResult, str], None]] = {
     "program": _corrected,
     "stiffen": _stiffened,
     "place": _placed,
+    "turn": _turned,
     "cut": _cut,
 }

@@ -13,8 +13,9 @@ from robomill.identification.knowledge import Knowledge
 from robomill.improve.advice import Advice, advise
 from robomill.improve.compensation import Compensation
 from robomill.improve.design import STIFFEST, Design, design
-from robomill.improve.placed import Placement
+from robomill.improve.placed import Place, Placement
 from robomill.improve.placement import place
+from robomill.improve.turning import Turning, turn
 from robomill.io.compensated import compensate
 from robomill.simulation.estimate import run_seconds
 from robomill.simulation.result import SimulationResult
@@ -33,7 +34,7 @@ from robomill.units import (
     format_value,
 )
 
-RUNS_OF_DESIGN, RUNS_OF_ADVICE, RUNS_OF_PLACES, RUNS_OF_PROGRAM = 4, 20, 25, 12
+RUNS_OF_DESIGN, RUNS_OF_ADVICE, RUNS_OF_PLACES, RUNS_OF_PROGRAM, RUNS_OF_SPIN = 4, 20, 25, 12, 60
 LEAST = 0.005  # of the tolerance: what saves less is no remedy
 
 
@@ -124,6 +125,12 @@ def placed(setup: SimulationSetup) -> Placement:
     return place(setup)
 
 
+@cached.shared(cached.by_setup, "Other turns of the spindle", lambda setup: run_seconds(setup) * RUNS_OF_SPIN)
+def turned(setup: SimulationSetup) -> Turning:
+    """The best spin about the tool."""
+    return turn(setup)
+
+
 def error_words(result: SimulationResult, unit: str) -> str:
     """What decides a verdict: ``wall 0.230 mm``."""
     rests = result.verdict.deciding
@@ -165,19 +172,32 @@ def _of_place(found: Placement, now: SimulationResult, unit: str) -> Left:
     best = found.best
     far = best.zero - now.setup.T_MW[:3, 3]
     cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0 if unit == 'mm' else 2)}"
-    errors = {"wall": best.wall, "floor": best.floor}
-    name, value = max(
-        ((n, v) for n, v in errors.items() if v == v), key=lambda e: e[1], default=("tip", best.max_deviation)
-    )
+    error = _error_at(best, unit)
     better = best.share < now.verdict.share - LEAST
     sure = f"best of {format_value(found.allowed, '1', 0)} places, simulated in full"
-    return Left(best.share, f"{name} {format_si(value, unit)}", best.level, cost, sure, found.moved if better else None)
+    return Left(best.share, error, best.level, cost, sure, found.moved if better else None)
+
+
+def _of_spin(found: Turning, now: SimulationResult, unit: str) -> Left:
+    then = found.constant
+    better = then.share < now.verdict.share - LEAST
+    cost = f"the tool turned to {format_si(found.spin, 'deg', 0)} about its axis"
+    sure = "simulated in full"
+    return Left(then.share, _error_at(then, unit), then.level, cost, sure, found.turned if better else None)
+
+
+def _error_at(place: Place, unit: str) -> str:
+    """What is largest of a place's wall and floor; the tip where there is neither."""
+    errors = [(value, name) for name, value in (("wall", place.wall), ("floor", place.floor)) if np.isfinite(value)]
+    value, name = max(errors, default=(place.max_deviation, "tip"))
+    return f"{name} {format_si(value, unit)}"
 
 
 REMEDIES: tuple[Remedy, ...] = (
     Remedy("program", "Correct the program", lambda setup: corrected(setup, session.known(setup)), _of_program),
     Remedy("stiffen", "Stiffen joints", designed, _of_design),
     Remedy("place", "Move the part", placed, _of_place),
+    Remedy("turn", "Turn the spindle", turned, _of_spin),
     Remedy("cut", "Cut otherwise", advised, _of_advice),
 )
 
@@ -252,6 +272,8 @@ def _take(setup: SimulationSetup) -> None:
     changes: dict[str, Any] = {}
     if setup.robot is not old.robot:
         changes["robot"] = setup.robot
+    if setup.spin != old.spin:
+        changes["spin"] = setup.spin
     if (setup.T_MW != old.T_MW).any():
         changes["T_MW"] = setup.T_MW
     if setup.source is not old.source:
