@@ -16,6 +16,7 @@ from robomill.arrays import FARTHEST, FloatArray
 from robomill.errors import ToolpathError
 from robomill.extras import needed
 from robomill.progress import checkpoint
+from robomill.toolpath.chaining import SHORTEST
 from robomill.toolpath.contour import Contour
 from robomill.toolpath.gcode.arcs import CHORD_ERROR, chord_counts
 from robomill.toolpath.sketch import MAX_POINTS, Shape, centre_of, outline
@@ -80,6 +81,8 @@ class Reading:
         if not np.isfinite(points).all():
             raise self.refuse(f"a {shape} on layer {layer:.40} has a point that is no number")
         self.near(points)
+        if shape == "circle" and np.linalg.norm(points[1] - points[0]) < SHORTEST:
+            shape = "line"  # a point, which is left out as those are
         count = _chords(shape, points)
         self.look(count)
         self.room -= count

@@ -95,3 +95,9 @@ def test_the_files_are_what_their_script_draws(monkeypatch) -> None:
     again = drawing_from_bytes(script.dxf().encode(), "bracket.dxf")
     for one, other in zip(again.contours, rm.read_drawing("bracket").contours, strict=True):
         np.testing.assert_allclose(one.points, other.points, atol=1e-12)
+
+
+def test_a_circle_without_a_radius_is_a_point_and_left_out() -> None:
+    page = '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm" viewBox="0 0 9 9">'
+    drawing = drawing_from_bytes(f'{page}<circle r="1e-300"/><line x2="5"/></svg>'.encode(), "a.svg")
+    assert [contour.shape for contour in drawing.contours] == ["line"]
