@@ -69,11 +69,11 @@ def drawing_from_bytes(data: bytes, name: str, unit: str = "") -> Drawing:
     file = Dxf(data, name) if suffix == ".dxf" else Svg(data, name)
     taken = unit or file.unit
     read = file.read(file.scale(taken or "mm"))
-    if not read.pieces:
+    contours, twice, dots = joined(read.pieces)
+    if not contours:
         raise ToolpathError(
             f"{name}: found no lines{_but(read)}; expected lines, arcs, circles or curves to cut along."
         )
-    contours, twice, dots = joined(read.pieces)
     findings = _findings(read, twice, dots, file.unit, unit)
     drawing = Drawing(name, tuple(contours), taken or "mm", frozenset(read.hidden), findings)
     if not taken:

@@ -101,3 +101,9 @@ def test_a_circle_without_a_radius_is_a_point_and_left_out() -> None:
     page = '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm" viewBox="0 0 9 9">'
     drawing = drawing_from_bytes(f'{page}<circle r="1e-300"/><line x2="5"/></svg>'.encode(), "a.svg")
     assert [contour.shape for contour in drawing.contours] == ["line"]
+
+
+def test_a_drawing_of_points_alone_has_no_lines() -> None:
+    page = '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm" viewBox="0 0 9 1e400">'
+    with pytest.raises(ToolpathError, match=r"a\.svg: found no lines"):
+        drawing_from_bytes(f'{page}<circle r="3"/><line x2="5"/></svg>'.encode(), "a.svg")
