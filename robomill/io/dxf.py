@@ -178,7 +178,9 @@ class _DxfReading(Reading):
             if self.looked_at > MOST_ENTITIES:
                 raise self.refuse(f"it holds more than {MOST_ENTITIES:,} entities, blocks opened")
             self.look()
-            own = str(entity.dxf.get("layer", "0"))
+            own = (
+                str(entity.dxf.layer) if entity.dxf.is_supported("layer") else "0"
+            )  # what ezdxf does not know has none
             layer = around if own == "0" and around else own
             if entity.dxftype() != "INSERT":
                 yield entity, layer

@@ -243,3 +243,10 @@ def test_as_many_entities_as_are_said_are_read(monkeypatch) -> None:
         file = drawn(lambda doc, space, count=count: [space.add_line((0, k), (1, k)) for k in range(count)])
         with pytest.raises(ToolpathError, match="more than 300 entities") if refused else nullcontext():
             assert len(file.read(1e-3).pieces) == count
+
+
+def test_an_entity_that_nobody_knows_is_counted_by_its_name() -> None:
+    data = "0\nSECTION\n2\nENTITIES\n0\nLWPO[]LYLINE\n5\nA1\n8\nL\n10\n1\n20\n1\n"
+    data += "0\nLINE\n8\n0\n10\n0\n20\n0\n11\n5\n21\n0\n"
+    read = Dxf(f"{data}0\nENDSEC\n0\nEOF\n".encode(), "x.dxf").read(1e-3)
+    assert (len(read.pieces), dict(read.left_out)) == (1, {"LWPO[]LYLINE": 1})
