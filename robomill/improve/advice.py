@@ -143,9 +143,8 @@ def advise(setup: SimulationSetup, run: Run = simulate) -> Advice:
     --------
     >>> import robomill as rm
     >>> advice = rm.advise(rm.load_setup("paper_flute/setup_process"))
-    >>> once_more = advice.ways[-1]
-    >>> once_more.run.verdict.share < advice.ways[0].run.verdict.share
-    True
+    >>> [(way.name, round(way.share, 2)) for way in advice.ways if "passes" in way.name]
+    [('2 passes', 0.47), ('3 passes', 0.31), ('4 passes', 0.23)]
     """
     if not setup.force.follows_cut:
         raise SetupError(

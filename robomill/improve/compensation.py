@@ -107,8 +107,8 @@ class Compensation(Tabled):
     --------
     >>> import robomill as rm
     >>> found = rm.compensate(rm.load_setup("paper_flute"))
-    >>> found.text.splitlines()[6]
-    'N50 G1 X50 Y-0.2295 Z-1.8976 F1800'
+    >>> found.text.splitlines()[4]
+    'N30 G0 X-50 Y-0.2293 Z20'
     """
 
     setup: SimulationSetup

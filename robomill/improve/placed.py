@@ -51,6 +51,13 @@ class Place(Value):
     tip and the readings ``wall`` (left +), ``floor`` (up +) and ``feed``, m; the verdict's level and sentence; room to
     the joint limits (share of the half range) and the smallest |det(J)| as a share of the arm's largest. NaN where the
     path is not reached, and ``reason`` says why.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> placement = rm.place(rm.load_setup("paper_flute"), x_mm=(-200, 200), y_mm=(-1400, -1200), candidates=50)
+    >>> placement.now
+    <Place 0.0, -1300.0, 2.0 mm, yaw 0.00 deg: 0.251 mm, ok>
     """
 
     zero: FloatArray

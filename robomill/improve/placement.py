@@ -79,12 +79,12 @@ def place(
     ----------
     setup : SimulationSetup
         The cut; its part zero is "now".
-    x, y, z : (2,) m, or x_mm, y_mm, z_mm
+    x, x_mm, y, y_mm, z, z_mm : (2,) m, or mm
         Least and largest coordinate of part zero in {M}. x and y left out: today's, 15 % of the arm's length (all its
         links in a row) to each side; z left out: as it is.
-    yaw : (2,) rad, or yaw_deg
+    yaw, yaw_deg : (2,) rad, or degrees
         Least and largest turn of the part about z_M, as ``part_rotation_z`` has it; left out: as it is.
-    keep_out : (b, 2, 3) m, or keep_out_mm
+    keep_out, keep_out_mm : (b, 2, 3) m, or mm
         Boxes in {M}, lower and upper corner, that the block of the stock keeps out of.
     measure : str
         What is minimised: "verdict" (the largest share of its tolerance that walls or floors use, and the feed where it

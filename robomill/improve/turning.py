@@ -109,7 +109,7 @@ def turn(
         The cut; its spin is "now".
     measure : str
         What is made small, as of ``place``: "verdict", "wall", "floor", "tip" or "feed".
-    rate : float, rad/m, or rate_deg_mm
+    rate, rate_deg_mm : float, rad/m, or degrees a mm
         How much the spin may change along the way of the tool; 1 degree a mm where it is left out.
 
     Returns
@@ -125,9 +125,16 @@ def turn(
     Notes
     -----
     The course is found by dynamic programming over 72 angles and both sides of the wrist, of which none is left on the
-    way; shoulder and elbow stand as in a run. Its
-    largest share is the least there is at this rate. It is checked by inverse kinematics and a full simulation along
-    the interpolated course; without the coupling of force and deflection.
+    way; shoulder and elbow stand as in a run. Its largest share is the least there is at this rate. It is checked by
+    inverse kinematics and a full simulation along the interpolated course; without the coupling of force and
+    deflection.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> found = rm.turn(rm.load_setup("paper_flute").replace(robot=rm.load_robot("fanuc_r2000ic"), step_mm=10))
+    >>> found.constant.share <= found.now.share
+    True
     """
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
     if setup.robot.n < 6:

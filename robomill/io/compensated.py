@@ -55,7 +55,7 @@ def compensate(
     --------
     >>> import robomill as rm
     >>> rm.compensate(rm.load_setup("paper_flute"))
-    <Compensation Reference groove (Slavkovic 2013): 0.2295 mm before, 0.0000 mm after 2 iterations>
+    <Compensation Reference groove (Slavkovic 2013): 0.2295 mm before, 0.0002 mm after 2 iterations>
     """
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
     within = bound if bound_um is None else to_si(bound_um, "um")

@@ -19,7 +19,8 @@ _ANGLE_DECIMALS = 6
 def toolpath_to_gcode(path: Toolpath, *, units: str = "mm", title: str = "") -> str:
     """The program of a path in {W}, in ``units`` ``"mm"`` (G21) or ``"in"`` (G20).
 
-    Read again, it gives the same points, feeds and cutting moves; a start other than zero becomes a first rapid.
+    Read again, it gives the same points, feeds and cutting moves. A start other than zero, or one that a cut begins at,
+    becomes a first rapid; the first move names every axis.
     A tilted tool axis becomes A and B: k = (sin B, -sin A cos B, cos A cos B). Raises ToolpathError for a cut
     without feed, a spindle speed that is not known or an unknown unit.
     """
@@ -44,7 +45,7 @@ def toolpath_to_gcode(path: Toolpath, *, units: str = "mm", title: str = "") -> 
         )
     speeds = np.round(from_si(path.n_s, "1/min"), _FEED_DECIMALS)
     for i in range(len(path)):
-        if i == 0 and not lengths[0].any() and not angles[0].any():
+        if i == 0 and not lengths[0].any() and not angles[0].any() and not path.cutting[1:2].any():
             writer.spindle(int(path.tool[0]), float(speeds[0]), bool(path.ccw[0]))
             continue
         writer.spindle(int(path.tool[i]), float(speeds[i]), bool(path.ccw[i]))
@@ -72,7 +73,7 @@ class _Writer:
         self.digits = DECIMALS[units]
         self.lines: list[str] = []
         self.count = 0
-        self.at: list[float] = [0.0] * 5
+        self.at = [float("nan")] * 5  # nobody knows where the machine stands: the first move says all of it
         self.motion = ""
         self.feed = 0.0
         self.speed, self.ccw = 0.0, False

@@ -328,7 +328,8 @@ class Robot(Tabled):
 
         Compliances (``C_theta``, ``k_theta_kNm_per_rad`` ...) and limits are accepted with n entries (free joints) or
         with all rows. New compliances that are not given with a ``compliance_set`` are the user's: the set in force
-        becomes "user". ``tool_xyz_mm`` moves the tip and keeps the axes of the tool.
+        becomes "user"; a ``compliance_set`` alone puts its numbers in force. ``tool_xyz_mm`` moves the tip and keeps
+        the axes of the tool.
 
         Where changed numbers come from is that they were given in code, unless ``provenance`` says more of their block:
         geometry, lengths, limits, base, tool, compliance, or compliance. and the name of a set.
@@ -346,6 +347,10 @@ class Robot(Tabled):
                 changes[full] = self._filled(changes.pop(short), getattr(self, full))
         if "C_theta_all" in changes and "compliance_set" not in changes:
             changes["compliance_set"] = USER_SET
+        elif "C_theta_all" not in changes and {"compliance_set", "compliance_sets"} & changes.keys():
+            sets = changes.get("compliance_sets", self.compliance_sets)
+            name = changes.get("compliance_set", self.compliance_set)
+            changes |= {"C_theta_all": sets[name]} if name in sets else {}
         said = stated_blocks(changes.get("provenance", {}), RobotError)
         other = Robot(**{**{key: getattr(self, key) for key in known}, **changes, "provenance": self.provenance})
         found = {**other.provenance, **changed_sources(self, other), **said}

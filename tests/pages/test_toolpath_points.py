@@ -18,7 +18,7 @@ def test_points_are_shown_run_and_made_a_table_of_lines(app: AppTest) -> None:
     assert not app.exception
     assert not errors(app)
     assert "3 points from a file" in words(app)
-    assert "2 moves within" in words(app)
+    assert "2 moves, 100.0 × 7.0 mm along X and Z" in words(app)
     app.button_group(key="toolpath.kind").set_value("lines").run()
     assert not app.exception
     source = store(app).project.setup.source

@@ -81,3 +81,10 @@ def test_every_field_of_a_robot_that_holds_numbers_belongs_to_a_block() -> None:
     assert {name for names in BLOCKS.values() for name in names} == numbers
     assert changed_blocks(PAPER, PAPER) == []
     assert TABLES <= {*changed_blocks(rm.load_robot("kuka_kr270"), PAPER)}
+
+
+def test_a_named_set_alone_puts_its_numbers_in_force() -> None:
+    robot = rm.load_robot("slavkovic_5r")
+    other = robot.replace(compliance_set="table_3")
+    assert other.compliance_set == "table_3"
+    assert other.C_theta.tolist() == robot.with_compliance_set("table_3").C_theta.tolist()

@@ -58,7 +58,9 @@ def _corrected(found: Compensation, left: Left, result: SimulationResult, unit: 
             pieces.note(f"Written out: {why}.")
         for finding in found.findings:
             pieces.note(finding.sentence)
-        pieces.download("Corrected program", found.text, found.name, "improve.program", type="primary")
+        pieces.download(
+            "Corrected program", found.text, pieces.named("corrected.nc"), "improve.program", type="primary"
+        )
         pieces.note("Run it on the machine in place of the other; here the project keeps the program that was meant.")
     with beside, st.container(border=True):
         columns = found.columns()
