@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from robomill.arguments import asked
-from robomill.arrays import FloatArray, digest
+from robomill.arrays import FloatArray, digest, of_kind
 from robomill.errors import RobomillError, SetupError
 from robomill.frames import Columns
 from robomill.improve.ways import fed, in_levels, turned_round
@@ -146,6 +146,7 @@ def advise(setup: SimulationSetup, run: Run = simulate) -> Advice:
     >>> [(way.name, round(way.share, 2)) for way in advice.ways if "passes" in way.name]
     [('2 passes', 0.47), ('3 passes', 0.31), ('4 passes', 0.23)]
     """
+    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
     if not setup.force.follows_cut:
         raise SetupError(
             "The force of this set-up is stated and does not follow the cut: no other feed, way or number of passes "

@@ -244,7 +244,8 @@ def _measured(
 
 def checked_components(components: Iterable[str]) -> tuple[str, ...]:
     """The components in their order. Raises CompensationError for others, and for none."""
-    given = [each.strip() for each in (components.split(",") if isinstance(components, str) else components)]
+    listed = components.split(",") if isinstance(components, str) else components
+    given = [str(each).strip() for each in (listed if isinstance(listed, Iterable) else (listed,))]
     unknown = [each for each in given if each not in COMPONENTS]
     if unknown or not given:
         what = f"found {unknown[0]!r}" if unknown else "found none"

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked
-from robomill.arrays import FloatArray, as_floats, digest, frozen
+from robomill.arrays import FloatArray, as_floats, digest, frozen, of_kind
 from robomill.compliance.deflection import shares_along
 from robomill.errors import SetupError
 from robomill.frames import Columns
@@ -194,6 +194,7 @@ def design(
     >>> round(found.share, 3)
     1.0
     """
+    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
     setup = _asked_for(setup, tolerance, tolerance_mm)
     n = setup.robot.n
     ratios = _bounds(bounds, n)

@@ -1,10 +1,12 @@
 """The way in to the corrected program of a set-up."""
 
+import math
 from collections.abc import Iterable
+from numbers import Real
 
 from robomill.arguments import asked
 from robomill.arrays import of_kind
-from robomill.errors import SetupError
+from robomill.errors import CompensationError, SetupError
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.compensation import BOUND, Compensation, compensation
 from robomill.io.gcode_out import toolpath_to_gcode
@@ -58,5 +60,8 @@ def compensate(
     <Compensation Reference groove (Slavkovic 2013): 0.2295 mm before, 0.0002 mm after 2 iterations>
     """
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
+    asked_for = bound if bound_um is None else bound_um
+    if not (isinstance(asked_for, Real) and math.isfinite(asked_for)):
+        raise CompensationError(f"Bound: found {asked_for!r:.40}; expected a number.", where="bound")
     within = bound if bound_um is None else to_si(bound_um, "um")
     return compensation(setup, components, within, toolpath_to_gcode, known)

@@ -67,6 +67,7 @@ def test_the_best_is_the_quickest_within_tolerance(advice: rm.Advice) -> None:
     ("setup", "words"),
     [
         (rm.load_setup("paper_flute"), "does not follow the cut"),
+        ("paper_flute", "load_setup"),
         (SETUP.replace(part_zero_mm=(0, -9000, 0)), "no number"),
     ],
 )

@@ -120,6 +120,11 @@ def test_what_cannot_be_asked_is_refused_in_a_sentence(name: str, given: dict, w
         design(rm.load_setup(name), **given)
 
 
+def test_the_name_of_a_set_up_is_no_set_up() -> None:
+    with pytest.raises(SetupError, match="load_setup"):
+        design("paper_flute")  # type: ignore[arg-type]
+
+
 def test_a_cut_out_of_reach_has_no_number_to_design_for() -> None:
     with pytest.raises(SetupError, match="no number"):
         design(rm.load_setup("paper_flute").replace(part_zero_mm=(0, -9000, 0)), tolerance_mm=0.1)

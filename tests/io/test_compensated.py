@@ -19,3 +19,11 @@ def test_what_is_no_set_up_is_told() -> None:
         rm.compensate("paper_flute")  # type: ignore[arg-type]
     with pytest.raises(rm.RobomillError, match=r"compensate: setup is missing"):
         rm.compensate()  # type: ignore[call-arg]
+
+
+@pytest.mark.parametrize(
+    "given", [{"components": 3}, {"components": [None]}, {"bound_um": "2"}, {"bound": float("nan")}]
+)
+def test_what_is_no_component_and_no_bound_is_told(given: dict) -> None:
+    with pytest.raises(rm.RobomillError, match="Components: found|Bound: found .* expected a number"):
+        rm.compensate(SLOT, **given)
