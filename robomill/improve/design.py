@@ -102,7 +102,7 @@ class Design(Tabled):
         """What to stiffen, or why that does not do."""
         if not self.feasible:
             return f"Cannot be met: {self.reason}."
-        limit, numbers = format_limit(self.setup.tolerance, "mm"), self.setup.robot.joint_numbers
+        limit, numbers = _limits(self.setup, self.measure), self.setup.robot.joint_numbers
         named = [
             f"joint {number} {format_short(ratio, '1', 3)} times"
             for number, ratio in zip(numbers, self.stiffness_ratio, strict=True)
@@ -292,6 +292,16 @@ def linear(result: SimulationResult, found: Judged, x: FloatArray, rest_goes: bo
     rest = found.error - found.along(result.delta_in_cut)
     given = (given + (rest[..., None] * shares[:, None] if rest_goes else 0.0)) / x
     return Errors(found.error - given @ x, given, found.tolerance), found.share
+
+
+def _limits(setup: SimulationSetup, measure: Measure) -> str:
+    """What has to be kept, in words: one tolerance, or those of walls and floors."""
+    wall, floor = setup.tolerance, setup.floor_tolerance
+    if floor is None or floor == wall or measure in ("wall", "tip"):
+        return format_limit(wall, "mm")
+    if measure == "floor":
+        return format_limit(floor, "mm")
+    return f"{format_limit(wall, 'mm')} on walls and {format_limit(floor, 'mm')} on floors"
 
 
 def _asked_for(setup: SimulationSetup, tolerance: float | None, tolerance_mm: float | None) -> SimulationSetup:

@@ -8,6 +8,7 @@ A feed is that of the move that ends at the point; 0 is a rapid. The first point
 """
 
 import io
+import math
 from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any
@@ -24,7 +25,7 @@ from robomill.provenance import Finding
 from robomill.spelled import one_of
 from robomill.toolpath.path import FEED, Toolpath
 from robomill.toolpath.source import PointsSource
-from robomill.units import format_many, from_si, to_si, unit_label
+from robomill.units import format_many, format_short, from_si, to_si, unit_label
 
 SUFFIXES = (".csv", ".parquet")
 ASKED = {"mm": "mm/min", "in": "in/min", "cm": "mm/min", "m": "mm/min"}
@@ -92,6 +93,9 @@ def read_points(
 def points_from_bytes(data: bytes, name: str, unit: str = "", v_f: float | None = None) -> PointsSource:
     """What a person dropped or named, as ``read_points``."""
     check_size(len(data), POINTS, ToolpathError, name)
+    if v_f is not None and not 0.0 < v_f < math.inf:
+        found = format_short(v_f, "mm/min")
+        raise ToolpathError(f"{name}: the feed of all moves is {found}; expected more than 0.", where="feed")
     parquet = data.startswith(b"PAR1") or PurePath(name).suffix.lower() == ".parquet"
     columns, _ = _of_parquet(data, name, _layout(unit)) if parquet else read_columns(data, _layout(unit), name)
     return PointsSource(_path(columns, name, unit, v_f), name)

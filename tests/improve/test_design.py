@@ -120,6 +120,11 @@ def test_what_cannot_be_asked_is_refused_in_a_sentence(name: str, given: dict, w
         design(rm.load_setup(name), **given)
 
 
+def test_walls_and_floors_with_tolerances_of_their_own_are_told_with_both() -> None:
+    found = design(rm.load_setup("two_tools").replace(step=2e-3, cell=4e-4))
+    assert found.sentence.endswith("0.30 mm on walls and 0.40 mm on floors.")
+
+
 def test_the_name_of_a_set_up_is_no_set_up() -> None:
     with pytest.raises(SetupError, match="load_setup"):
         design("paper_flute")  # type: ignore[arg-type]

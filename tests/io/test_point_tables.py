@@ -114,3 +114,9 @@ def test_a_packed_parquet_file_that_inflates_is_refused_before_it_is_read() -> N
 def test_a_parquet_file_that_is_none_is_refused() -> None:
     with pytest.raises(ToolpathError, match="this is no Parquet file"):
         points_from_bytes(b"PAR1 and nothing else", "a.parquet")
+
+
+@pytest.mark.parametrize("feed", [-5.0, 0.0, float("inf"), float("nan")])
+def test_a_feed_of_all_moves_that_is_none_is_refused(feed: float) -> None:
+    with pytest.raises(ToolpathError, match=r"p\.csv: the feed of all moves is .* expected more than 0"):
+        points_from_bytes(b"X_mm,Y_mm,Z_mm\n0,0,0\n10,0,0\n", "p.csv", "", feed)
