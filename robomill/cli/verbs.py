@@ -48,6 +48,7 @@ def run_ik(arguments: Any) -> int:
 
 
 def run_gcode(arguments: Any) -> int:
+    from robomill.errors import ToolpathError
     from robomill.report.plain import gcode_lines
     from robomill.report.records import path_record
     from robomill.simulation.assumptions import assumed_of_program, assumed_of_tools
@@ -57,6 +58,8 @@ def run_gcode(arguments: Any) -> int:
     table = given.points(arguments.file, arguments.unit, arguments.feed)
     source = b"" if table else given.program(arguments.file)
     files = Written.before([Path(arguments.moves)] if arguments.moves else [])
+    if arguments.moves and (table or given.is_apt(source)):
+        raise ToolpathError("--moves: these are the moves of a program of G-code; points and APT have none to write.")
     if table:
         record, assumed, files = path_record(table.path), assumed_of_program(table.path.findings), []
     elif given.is_apt(source):

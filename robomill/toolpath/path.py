@@ -168,7 +168,7 @@ class Toolpath(Tabled):
         length = np.linalg.norm(axis, axis=-1, keepdims=True)
         if not (length > 0.0).all():
             raise ToolpathError("Tool axis: found one without length; expected the way out of the part, e.g. 0, 0, 1.")
-        cuts = feed > 0.0 if cutting is None else np.array(np.broadcast_to(np.asarray(cutting, dtype=bool), (m,)))
+        cuts = feed > 0.0 if cutting is None else np.array(np.broadcast_to(_switches(cutting), (m,)))
         cuts[:1] = False
         return cls(
             p=points,
@@ -177,7 +177,7 @@ class Toolpath(Tabled):
             cutting=cuts,
             block=np.arange(1, m + 1),
             n_s=_each(SPINDLE, speed, m),
-            tool=np.asarray(tool),
+            tool=_numbers_of_tools(tool),
             block_name="point",
         )
 
@@ -256,6 +256,22 @@ class Toolpath(Tabled):
         size = format_many(high - low, "mm", 1, between=" × ")
         length = format_si(float(self.s[-1]), "mm", 1)
         return f"{format_count(len(self), 'point')}, {length} at feed within {size}"
+
+
+def _switches(cutting: ArrayLike) -> BoolArray:
+    """Whether each move cuts, as True and False or 1 and 0."""
+    found = np.asarray(cutting)
+    if found.dtype.kind not in "biuf" or not np.isin(found, (0, 1)).all():
+        raise ToolpathError(f"Cutting: expected True or False for every move, found {np.ravel(found)[:1].tolist()}.")
+    return found.astype(bool)
+
+
+def _numbers_of_tools(tool: ArrayLike) -> IntArray:
+    """Whole numbers from 0."""
+    found = np.asarray(tool)
+    if found.dtype.kind not in "iuf" or not (np.isfinite(found) & (found >= 0) & (found == np.round(found))).all():
+        raise ToolpathError(f"Tool: expected whole numbers from 0, found {np.ravel(found)[:1].tolist()}.")
+    return found.astype(np.int64)
 
 
 def _points(given: Any, in_mm: bool) -> FloatArray:

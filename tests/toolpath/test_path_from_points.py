@@ -58,6 +58,9 @@ def test_a_tool_axis_of_any_length_is_one_of_length_1() -> None:
         ({"p_mm": P[:, :2], "feed_mm_min": 600}, "three numbers .* found 4 x 2"),
         ({"p_mm": P[0], "feed_mm_min": 600}, "three numbers .* found 3"),
         ({"p_mm": [], "feed_mm_min": 600}, "three numbers .* found 0"),
+        ({"p_mm": P, "feed_mm_min": 600, "cutting": ["no"] * 4}, "Cutting: expected True or False"),
+        ({"p_mm": P, "feed_mm_min": 600, "tool": 1.5}, "Tool: expected whole numbers from 0"),
+        ({"p_mm": P, "feed_mm_min": 600, "tool": "T1"}, "Tool: expected whole numbers from 0"),
         ({"p_mm": P * np.nan, "feed_mm_min": 600}, "finite"),
     ],
 )
