@@ -84,7 +84,7 @@ UNITS: dict[str, Unit] = {
     "m3": Unit("m³", 1.0, 3),
     "mm3": Unit("mm³", 1e-9, 1),
     "cm3/min": Unit("cm³/min", 1e-6 / 60.0, 1),
-    "in3/min": Unit("in³/min", 25.4e-3**3 / 60.0, 2, 1),
+    "in3/min": Unit("in³/min", 25.4e-3**3 / 60.0, 2),
     "mm2": Unit("mm²", 1e-6, 2),
     "ft2": Unit("ft²", 0.3048**2, 3),
     "ft3": Unit("ft³", 0.3048**3, 2),
