@@ -70,8 +70,8 @@ WORDS = [
 def test_written_and_read_again() -> None:
     path = read_gcode("\n".join(word.replace("S0", "S1") for word in WORDS))
     again = read_gcode(toolpath_to_gcode(path))
-    assert again.ccw[1:].tolist() == path.ccw.tolist()  # behind the rapid to where the first cut begins
-    assert again.dwell[1:] == pytest.approx(path.dwell)
+    assert again.ccw.tolist() == path.ccw.tolist()
+    assert again.dwell == pytest.approx(path.dwell)
 
 
 def test_titles_hold_no_brackets_and_unknown_speeds_are_refused() -> None:

@@ -17,7 +17,7 @@ def test_a_path_is_begun_where_it_begins(start: tuple[float, float, float]) -> N
     again = read_gcode(toolpath_to_gcode(path))
     cut = np.flatnonzero(again.cutting)
     np.testing.assert_allclose(again.p[cut[0] - 1], start_m, atol=1e-12)
-    assert len(again) == 3
+    assert len(again) == (3 if any(start) else 2)  # a reader's path begins at zero
 
 
 def test_the_first_move_names_every_axis_also_those_at_zero() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import arcs
-from robomill.toolpath.gcode.program import Program
+from robomill.toolpath.gcode.program import TRAVERSE, Program
 from robomill.toolpath.path import Toolpath, far_off
 from robomill.units import to_si
 
@@ -35,7 +35,7 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR, table: 
     single = counts == 1
     p[first[single]] = end[single]
     p[first[is_tap]], p[first[is_tap] + 1] = end[is_tap], start[is_tap]
-    for rows in _blocks(np.flatnonzero(~single & ~is_tap), counts):
+    for rows in _blocks(np.flatnonzero((counts > 1) & ~is_tap), counts):
         owner, step = arcs.steps(counts[rows])
         fraction = (step / counts[rows][owner])[:, None]
         points = start[rows][owner] + fraction * (end[rows] - start[rows])[owner]
@@ -90,11 +90,20 @@ def _ends(program: Program) -> tuple[FloatArray, FloatArray]:
 
 
 def point_counts(program: Program, chord_error: float = arcs.CHORD_ERROR, table: str = "") -> IntArray:
-    """(m,) how many points each move has on the toolpath."""
+    """(m,) how many points each move has on the toolpath: none for a first rapid to where the path begins anyway."""
     rows = np.flatnonzero(program.is_kind("arc") & ~program.unplaced)
     counts = _pieces(program, rows, chord_error, TABLE_STEP if table else MAX_TILT_STEP)
     counts[program.is_kind("tap")] = 2
+    if len(program) > 1 and _stays(program):
+        counts[0] = 0
     return counts
+
+
+def _stays(program: Program) -> bool:
+    """Whether the first move is a rapid that only names the zero that a path begins at."""
+    still = (program.end[0] == program.start[0]).all() and (program.rotary[0] == program.rotary0[0]).all()
+    unmarked = not (program.dwell[:1].any() or program.lift[:1].any() or program.away[:1].any())
+    return bool(program.kind[0] == TRAVERSE and still and unmarked)
 
 
 def _pieces(program: Program, rows: IntArray, chord_error: float, most: float) -> IntArray:
