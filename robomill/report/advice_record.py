@@ -11,15 +11,15 @@ from robomill.units import from_si
 
 def advice_record(found: Advice) -> dict[str, Any]:
     """Every way with its time and what it leaves, the one there is first."""
-    setup = found.ways[0].run.setup if found.ways[0].run else None
+    setup = found.setup
     return {
         "robomill": __version__,
-        "name": setup.name if setup else None,
-        "robot": setup.robot.name if setup else None,
-        "tolerance_mm": float(from_si(setup.tolerance, "mm")) if setup else None,
+        "name": setup.name,
+        "robot": setup.robot.name,
+        "tolerance_mm": float(from_si(setup.tolerance, "mm")),
         "best": found.best.name,
         "ways": [_way(way) for way in found.ways],
-        "assumed": [each.record() for each in assumed_of_setup(setup)] if setup else [],
+        "assumed": [each.record() for each in assumed_of_setup(setup)],
         "digest": found.digest(),
     }
 

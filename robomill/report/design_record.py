@@ -1,5 +1,6 @@
 """A design of stiffer joints as a JSON-ready record in display units, and as lines for a person."""
 
+import math
 from typing import Any
 
 from robomill import __version__
@@ -53,14 +54,12 @@ def design_lines(record: dict[str, Any]) -> list[str]:
         lines.append(f"joint {number}   {ratio:8.3f} times as stiff   {C:.3e} rad/(N m)")
     lines.append(f"cost      {record['cost']:.3f} (1 is one joint made twice as stiff)")
     for name, values in (("before", record["before"]), ("then", record)):
-        told = [f"{what} {_mm(values[key])}" for what, key in NAMES]
-        lines.append(f"{name:9} {', '.join(told)}")
+        lines.append(f"{name:9} {deviation_words(values)}")
     lines.append(f"verdict   {record['verdict_sentence']}")
     return lines
 
 
-NAMES = (("tip", "max_deviation_mm"), ("wall", "wall_mm"), ("floor", "floor_mm"))
-
-
-def _mm(value: float | None) -> str:
-    return "none" if value is None else f"{value:.4f} mm"
+def deviation_words(record: dict[str, Any]) -> str:
+    """The deviations of a record: of the tip, and of walls and floors where there are any."""
+    named = (("tip", "max_deviation_mm"), ("wall", "wall_mm"), ("floor", "floor_mm"))
+    return ", ".join(f"{name} {'none' if math.isnan(record[key]) else f'{record[key]:.4f} mm'}" for name, key in named)

@@ -2,10 +2,9 @@
 
 from typing import Any
 
-import numpy as np
-
 from robomill import __version__
 from robomill.improve.placed import WHY, Place, Placement
+from robomill.report.design_record import deviation_words
 from robomill.report.records import shown
 from robomill.simulation.assumptions import assumed_of_setup
 
@@ -76,5 +75,4 @@ def numbers(place: dict[str, Any]) -> str:
     """The errors of one place in words."""
     if place["reason"]:
         return f"not reached ({place['reason']})"
-    said = [("tip", place["max_deviation_mm"]), ("wall", place["wall_mm"]), ("floor", place["floor_mm"])]
-    return ", ".join(f"{name} {'none' if np.isnan(value) else f'{value:.4f} mm'}" for name, value in said)
+    return deviation_words(place)

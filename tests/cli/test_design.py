@@ -1,6 +1,7 @@
 """``robomill design``: its answer for people and programs, and its exit codes."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -54,3 +55,15 @@ def test_what_cannot_be_asked_exits_2_with_a_sentence(
     said = capsys.readouterr()
     assert said.out == ""
     assert len(said.err.strip().splitlines()) == 1
+
+
+def test_a_cut_that_leaves_no_wall_says_none_of_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A face cut by a mill wider than the part: floors, and no wall."""
+    path = rm.Toolpath.from_points(p_mm=[[-20, 0, -1], [20, 0, -1]], feed_mm_min=600)
+    stock = rm.Stock(lower_mm=[-10, -3, -5], upper_mm=[10, 3, 0])
+    setup = rm.load_setup("paper_flute").replace(source=path, stock=stock)
+    rm.write_setup(tmp_path / "face.toml", setup)
+    main(["design", str(tmp_path / "face.toml"), "--tolerance-mm", "0.2"])
+    said = capsys.readouterr().out
+    assert "wall none, floor 0." in said
+    assert "nan" not in said

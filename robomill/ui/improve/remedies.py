@@ -13,6 +13,7 @@ from robomill.identification.knowledge import Knowledge
 from robomill.improve.advice import Advice, advise
 from robomill.improve.compensation import Compensation
 from robomill.improve.design import STIFFEST, Design, design
+from robomill.improve.judged import judged
 from robomill.improve.placed import Place, Placement
 from robomill.improve.placement import place
 from robomill.improve.turning import Turning, turn
@@ -31,7 +32,6 @@ from robomill.units import (
     format_share,
     format_short,
     format_si,
-    format_value,
 )
 
 RUNS_OF_DESIGN, RUNS_OF_ADVICE, RUNS_OF_PLACES, RUNS_OF_PROGRAM, RUNS_OF_SPIN = 4, 20, 25, 12, 60
@@ -84,10 +84,11 @@ class Stiffened:
 @cached.shared(cached.by_setup, "Stiffer joints", lambda setup: run_seconds(setup) * RUNS_OF_DESIGN)
 def designed(setup: SimulationSetup) -> Stiffened:
     """The cheapest stiffer joints that keep the tolerance; where it is kept, that halve what is used of it."""
-    found = design(setup)
-    if found.cost > 0.0 or not found.feasible:
+    share = judged(cached.result(setup)).share
+    if not share <= 1.0:
+        found = design(setup)
         return Stiffened(found, found.after, half=False)
-    halved = design(setup, 0.5 * found.share * setup.tolerance)
+    halved = design(setup, 0.5 * share * setup.tolerance)
     return Stiffened(halved, cached.result(setup.replace(robot=halved.setup.robot)), half=True)
 
 
@@ -131,12 +132,16 @@ def turned(setup: SimulationSetup) -> Turning:
     return turn(setup)
 
 
+def _decides(result: SimulationResult) -> tuple[str, float]:
+    """The name of what decides a verdict, and its size, m."""
+    rests = result.verdict.deciding
+    return ("tip", result.max_deviation) if rests is None else (rests[0], abs(rests[1].value))
+
+
 def error_words(result: SimulationResult, unit: str) -> str:
     """What decides a verdict: ``wall 0.230 mm``."""
-    rests = result.verdict.deciding
-    if rests is None:
-        return f"tip {format_si(result.max_deviation, unit)}"
-    return f"{rests[0]} {format_si(abs(rests[1].value), unit)}"
+    name, size = _decides(result)
+    return f"{name} {format_si(size, unit)}"
 
 
 def _of_design(found: Stiffened, now: SimulationResult, unit: str) -> Left:
@@ -174,7 +179,7 @@ def _of_place(found: Placement, now: SimulationResult, unit: str) -> Left:
     cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0 if unit == 'mm' else 2)}"
     error = _error_at(best, unit)
     better = best.share < now.verdict.share - LEAST
-    sure = f"best of {format_value(found.allowed, '1', 0)} places, simulated in full"
+    sure = f"best of {format_count(found.allowed, 'place')}, simulated in full"
     return Left(best.share, error, best.level, cost, sure, found.moved if better else None)
 
 
@@ -188,9 +193,9 @@ def _of_spin(found: Turning, now: SimulationResult, unit: str) -> Left:
 
 def _error_at(place: Place, unit: str) -> str:
     """What is largest of a place's wall and floor; the tip where there is neither."""
-    errors = [(value, name) for name, value in (("wall", place.wall), ("floor", place.floor)) if np.isfinite(value)]
-    value, name = max(errors, default=(place.max_deviation, "tip"))
-    return f"{name} {format_si(value, unit)}"
+    sizes = [(abs(value), name) for name, value in (("wall", place.wall), ("floor", place.floor)) if np.isfinite(value)]
+    size, name = max(sizes, default=(place.max_deviation, "tip"))
+    return f"{name} {format_si(size, unit)}"
 
 
 REMEDIES: tuple[Remedy, ...] = (
@@ -218,27 +223,20 @@ def known(result: SimulationResult, unit: str) -> tuple[list[Found], Underway | 
             every.append(Found(remedy, why="is being computed"))
         except RobomillError as refusal:
             every.append(Found(remedy, why=str(refusal)))
-    order = sorted(range(len(every)), key=lambda k: every[k].left.share if every[k].left else 10.0 + k)  # type: ignore[union-attr]
-    return [every[k] for k in order], waits
+    return sorted(every, key=lambda each: np.inf if each.left is None else each.left.share), waits
 
 
 def sentence(found: Sequence[Found], result: SimulationResult, unit: str) -> str:
     """What would fix it, in one line."""
-    now = result.verdict
-    known = [each for each in found if each.left is not None]
-    if not known:
-        return (
-            "What would fix it?" if any(not each.left for each in found) else "Nothing that was tried makes it truer."
-        )
-    best = known[0]
-    left = best.left
-    if left is None or not left.share < now.share - LEAST:
+    now, left = result.verdict, found[0].left
+    if left is None:
+        return "What would fix it?"
+    if not left.share < now.share - LEAST:
         return "Nothing that was tried makes this cut noticeably truer."
-    before = error_words(result, unit)
-    name = before.partition(" ")[0]
-    error = f"{name} error of {before.removeprefix(name).strip()}"
+    name, size = _decides(result)
     return (
-        f"{best.remedy.title}: {error} becomes {left.error.removeprefix(f'{name} ')}, {WORDS[left.level].lower()} "
+        f"{found[0].remedy.title}: {name} error of {format_si(size, unit)} becomes "
+        f"{left.error.removeprefix(f'{name} ')}, {WORDS[left.level].lower()} "
         f"({format_percent(left.share)} of the tolerance, now {format_percent(now.share)})."
     )
 
@@ -264,10 +262,11 @@ def use(left: Left, title: str) -> None:
     if left.setup is None:
         pieces.note("It leaves no less than there is now: nothing to use.")
         return
-    inputs.button(title, f"improve.do.{title}", "check", _take, left.setup, type="primary", help="Undo takes it back.")
+    inputs.button(title, f"improve.do.{title}", "check", take, left.setup, type="primary", help="Undo takes it back.")
 
 
-def _take(setup: SimulationSetup) -> None:
+def take(setup: SimulationSetup) -> None:
+    """Put into the project what a remedy has changed of its set-up."""
     old = session.project().setup
     changes: dict[str, Any] = {}
     if setup.robot is not old.robot:
