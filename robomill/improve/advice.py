@@ -16,7 +16,7 @@ from robomill.improve.ways import fed, in_levels, turned_round
 from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import simulate
+from robomill.simulation.run import Simulate, simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PointsSource
@@ -26,7 +26,6 @@ from robomill.values import Tabled
 SLOWEST, FASTEST, HALVED = 0.1, 4.0, 7  # times the feed, and how often the way between is halved
 MOST_LEVELS = 4
 ALLOWANCE = 0.1  # of the depth: what roughing leaves for a last pass
-Run = Callable[[SimulationSetup], SimulationResult]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +65,7 @@ class Way:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Advice(Tabled):
-    """Ways to cut the same part, the one there is first (``ways[0]``); each number is that of a run.
+    """Ways to cut the same part as ``setup`` does, which is the first (``ways[0]``); each number is that of a run.
 
     Examples
     --------
@@ -76,6 +75,7 @@ class Advice(Tabled):
     ['now', 'feed', 'turned round']
     """
 
+    setup: SimulationSetup
     ways: tuple[Way, ...]
 
     @property
@@ -114,7 +114,7 @@ class Advice(Tabled):
 
 
 @asked
-def advise(setup: SimulationSetup, run: Run = simulate) -> Advice:
+def advise(setup: SimulationSetup, run: Simulate = simulate) -> Advice:
     """The same part cut otherwise: the largest feed that keeps the tolerance, the other way round, in passes, with a
     last pass for what roughing leaves, and once more.
 
@@ -165,7 +165,7 @@ def advise(setup: SimulationSetup, run: Run = simulate) -> Advice:
     for k, (name, title, path) in enumerate(asked_for, 1):
         with step(k, len(asked_for) + 1, title):
             found.append(_way(name, title, partial(_run_along, setup, path, run)))
-    return Advice(tuple(found))
+    return Advice(setup, tuple(found))
 
 
 def _ways(now: SimulationResult) -> Iterator[tuple[str, str, Callable[[], Toolpath]]]:
@@ -188,7 +188,7 @@ def _along(setup: SimulationSetup, path: Toolpath) -> SimulationSetup:
     return setup.replace(source=source, stock=setup.stock_block, provenance=said)
 
 
-def _run_along(setup: SimulationSetup, path: Callable[[], Toolpath], run: Run) -> SimulationResult:
+def _run_along(setup: SimulationSetup, path: Callable[[], Toolpath], run: Simulate) -> SimulationResult:
     return run(_along(setup, path()))
 
 
@@ -199,7 +199,7 @@ def _way(name: str, title: str, run: Callable[[], SimulationResult], factor: flo
         return Way(name, title, None, str(refusal))
 
 
-def _feed(now: SimulationResult, run: Run) -> Way:
+def _feed(now: SimulationResult, run: Simulate) -> Way:
     """The largest feed that keeps the tolerance, by halving between one that does and one that does not."""
     setup, path = now.setup, now.setup.toolpath
 

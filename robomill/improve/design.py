@@ -18,9 +18,11 @@ from robomill.improve.sensitivity import stiffened
 from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.provenance import Provenance
+from robomill.quantities import quantities
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
+from robomill.spelled import one_of
 from robomill.units import format_limit, format_short, format_si
 from robomill.values import Tabled
 
@@ -115,10 +117,11 @@ class Design(Tabled):
 
     def front(self, count: int = 25) -> Front:
         """What costs how much, from the cut as it is to the least deviation within the bounds."""
-        errors, start = linear(self.before, judged(self.before, self.measure), np.ones(len(self.weight)))
+        now = judged(self.before, self.measure)
+        errors = linear(self.before, now, np.ones(len(self.weight)))
         low, high = 1.0 / self.bounds[:, 1], 1.0 / self.bounds[:, 0]
         least = least_share(errors, low, high).value
-        levels = np.linspace(max(least * (1.0 + 1e-6), 1e-9), max(start, least * (1.0 + 1e-6)), count)
+        levels = np.linspace(max(least * (1.0 + 1e-6), 1e-9), max(now.share, least * (1.0 + 1e-6)), count)
         points = [
             (level, least_cost(replace(errors, bound=errors.bound * level), self.weight, low, high)) for level in levels
         ]
@@ -205,7 +208,7 @@ def design(
     _check(before, measure)
     search = _Search(setup, measure, weights, 1.0 / ratios[:, 1], 1.0 / ratios[:, 0])
     x = np.clip(np.ones(n), search.low, search.high)
-    result = before if (x == 1.0).all() else _with(setup, x)
+    result = before if (x == 1.0).all() else search.at(x)
     x, result, residual, rounds = search.settled(x, result)
     if judged(result, measure).share > 1.0:
         x, result, residual = search.on_the_way(x, result, residual)
@@ -223,23 +226,29 @@ class _Search:
     low: FloatArray
     high: FloatArray
 
+    def at(self, x: FloatArray) -> SimulationResult:
+        """The cut with these compliances."""
+        setup = self.setup
+        return simulate(setup.replace(robot=stiffened(setup.robot, 1.0 / x), provenance=setup.provenance))
+
     def settled(self, x: FloatArray, result: SimulationResult) -> tuple[FloatArray, SimulationResult, float, int]:
         """Solve about a run, run what was found, and again, until it stays: x, its run, residual, how often."""
         aim, residual = WITHIN, float("nan")
         for rounds in range(ROUNDS):
             with step(rounds, ROUNDS, "Joints that keep the tolerance"):
-                errors, share = linear(result, judged(result, self.measure), x, rounds < ROUNDS // 2)
+                now = judged(result, self.measure)
+                errors = linear(result, now, x, rounds < ROUNDS // 2)
                 errors = replace(errors, bound=errors.bound * aim)
                 found = least_cost(errors, self.weight, self.low, self.high)
                 best = _nearest(errors, self.weight, self.low, self.high) if found is None else found
                 residual = best.residual
                 stays = bool(np.abs(np.log(best.x / x)).max() < SETTLED)
-                if stays and (share <= 1.0 or found is None):
+                if stays and (now.share <= 1.0 or found is None):
                     return x, result, residual, rounds
                 if stays:  # what is left is not linear: aim lower by what it is beyond
-                    aim *= WITHIN / share
+                    aim *= WITHIN / now.share
                     continue
-                x, result = best.x, _with(self.setup, best.x)
+                x, result = best.x, self.at(best.x)
         return x, result, residual, ROUNDS
 
     def on_the_way(
@@ -247,7 +256,7 @@ class _Search:
     ) -> tuple[FloatArray, SimulationResult, float]:
         """Where the errors do not go as the solver was told: between x and the stiffest there is, the first that keeps
         the tolerance (no least cost is proved for it: the residual is NaN); else the better of the two."""
-        stiffest = _with(self.setup, self.low)
+        stiffest = self.at(self.low)
         share = judged(stiffest, self.measure).share
         if share > 1.0:
             better = share < judged(result, self.measure).share * (1.0 - SETTLED)
@@ -256,7 +265,7 @@ class _Search:
         for k in range(HALVED):
             with step(k, HALVED, "Between there and the stiffest joints"):
                 middle = 0.5 * (near + kept)
-                run = _with(self.setup, _between(x, self.low, middle))
+                run = self.at(_between(x, self.low, middle))
                 if judged(run, self.measure).share <= 1.0:
                     kept, found = middle, run
                 else:
@@ -275,9 +284,8 @@ def _nearest(errors: Errors, weight: FloatArray, low: FloatArray, high: FloatArr
     return least if cheap is None else cheap
 
 
-def linear(result: SimulationResult, found: Judged, x: FloatArray, rest_goes: bool = True) -> tuple[Errors, float]:
-    """What is judged of a run as it goes with the joints' compliances, x (n,) times what they were first; and the share
-    of the tolerance that is used now.
+def linear(result: SimulationResult, found: Judged, x: FloatArray, rest_goes: bool = True) -> Errors:
+    """What is judged of a run as it goes with the joints' compliances, x (n,) times what they were first.
 
     An error goes as its own sample's deviation does. What another pass has left or taken there, the rest of it, goes
     with the size of that deviation (``rest_goes``; of the largest, where nothing pushes), so that it vanishes where
@@ -291,7 +299,7 @@ def linear(result: SimulationResult, found: Judged, x: FloatArray, rest_goes: bo
     shares[~shares.any(axis=1)] = shares_along(parts[result.worst], result.delta[result.worst])
     rest = found.error - found.along(result.delta_in_cut)
     given = (given + (rest[..., None] * shares[:, None] if rest_goes else 0.0)) / x
-    return Errors(found.error - given @ x, given, found.tolerance), found.share
+    return Errors(found.error - given @ x, given, found.tolerance)
 
 
 def _limits(setup: SimulationSetup, measure: Measure) -> str:
@@ -313,11 +321,10 @@ def _asked_for(setup: SimulationSetup, tolerance: float | None, tolerance_mm: fl
         )
     if tolerance is None and tolerance_mm is None:
         return setup
-    named = {"tolerance": tolerance} if tolerance_mm is None else {"tolerance_mm": tolerance_mm}
-    if tolerance is not None and tolerance_mm is not None:
-        raise SetupError("Tolerance: found in m and in mm; give one of them.", where="tolerance")
+    declared = quantities(SimulationSetup)["tolerance"]
+    asked_for = one_of(declared, tolerance, tolerance_mm, SetupError, "Design")
     said = {**setup.provenance, "tolerance": Provenance("user", "asked for")}
-    return setup.replace(**named, floor_tolerance=None, provenance=said)
+    return setup.replace(tolerance=asked_for, floor_tolerance=None, provenance=said)
 
 
 def _bounds(bounds: ArrayLike, n: int) -> FloatArray:
@@ -343,10 +350,6 @@ def _check(result: SimulationResult, measure: Measure) -> None:
         raise SetupError(f"The cut leaves no {measure} to judge; take another measure.", where="measure")
 
 
-def _with(setup: SimulationSetup, x: FloatArray) -> SimulationResult:
-    return simulate(setup.replace(robot=stiffened(setup.robot, 1.0 / x), provenance=setup.provenance))
-
-
 def _reason(result: SimulationResult, found: Judged, x: FloatArray, ratios: FloatArray) -> str:
     """Why the tolerance is not kept; "" where it is."""
     verdict = result.verdict
@@ -354,7 +357,7 @@ def _reason(result: SimulationResult, found: Judged, x: FloatArray, ratios: Floa
         return "a wall that should stand is cut away, however stiff the joints are"
     if found.share <= 1.0:
         return ""
-    errors, _ = linear(result, found, x)
+    errors = linear(result, found, x)
     q = int(np.argmax(found.shares(found.error)))
     error, tolerance = errors.at(x)[q], float(found.tolerance[q])
     way = error / np.linalg.norm(error)

@@ -1,6 +1,6 @@
 """What each joint alone, made stiffer, would leave of a cut's errors: ranked by what the verdict judges."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,8 +9,7 @@ from robomill.arrays import FloatArray, IntArray, frozen
 from robomill.improve.sensitivity import stiffened
 from robomill.progress import step
 from robomill.robot.model import Robot
-from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import simulate
+from robomill.simulation.run import Simulate, simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.verdict_words import Verdict
 
@@ -64,7 +63,7 @@ def one_stiffer(robot: Robot, joint: int, factor: float = TWICE) -> Robot:
 
 def stiffer_joints(
     setup: SimulationSetup,
-    run: Callable[[SimulationSetup], SimulationResult] = simulate,
+    run: Simulate = simulate,
     factor: float = TWICE,
 ) -> Stiffening:
     """Every joint in turn, each by a run of the same simulation: exact for what it computes, coupling and sag included;
@@ -83,9 +82,7 @@ def stiffer_joints(
     return _together(found, setup, run)
 
 
-def _together(
-    found: Stiffening, setup: SimulationSetup, run: Callable[[SimulationSetup], SimulationResult]
-) -> Stiffening:
+def _together(found: Stiffening, setup: SimulationSetup, run: Simulate) -> Stiffening:
     """``found`` with the joints that have to be stiffer together."""
     if found.before.level != "out" or any(verdict.level != "out" for verdict in found.after):
         return found

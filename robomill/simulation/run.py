@@ -1,5 +1,6 @@
 """One run, end to end: path -> poses -> joints -> compliance -> force -> deflection -> surfaces."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -35,6 +36,9 @@ from robomill.simulation.tools import farther, held
 from robomill.simulation.turning import turns_in_cut
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sampling import check_samples
+
+Simulate = Callable[[SimulationSetup], SimulationResult]
+"""What runs a set-up: ``simulate``, or something that keeps its results."""
 
 
 @asked

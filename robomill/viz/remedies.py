@@ -1,4 +1,4 @@
-"""Pictures of remedies: where a part lies best, and what stiffer joints cost."""
+"""Pictures of remedies: places of the part, turns of the tool, a corrected path, the cost of stiffer joints."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from robomill.arrays import FloatArray
 from robomill.viz.chart import Chart
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, figure, palette, say
 
-PLACES_HEIGHT, FRONT_HEIGHT = 420, 300  # px
+MAP_HEIGHT, FRONT_HEIGHT = 420, 300  # px
 
 
 def places_map(
@@ -22,22 +22,7 @@ def places_map(
 ) -> Chart:
     """Share of the tolerance used (nx, ny), %, with part zero at x (nx,), y (ny,) in ``unit``; blank where no place is
     allowed. ``marks`` are places by name."""
-    p = palette(dark)
-    fig = figure(dark=dark, height=PLACES_HEIGHT, revision="places", showlegend=False)
-    fig.layout["margin"] = {"l": 62, "r": 10, "t": 10, "b": 48, "autoexpand": True}
-    known = used[np.isfinite(used)]
-    fig.add(
-        "heatmap",
-        x=x,
-        y=y,
-        z=np.asarray(used).T,
-        colorscale=SEQUENTIAL,
-        reversescale=False,
-        zmin=float(known.min()) if known.size else 0.0,
-        zmax=float(np.quantile(known, 0.95)) if known.size else 1.0,
-        colorbar=colour_bar("% of tolerance", dark=dark),
-        hovertemplate=f"X %{{x:.0f}}, Y %{{y:.0f}} {unit}<br>%{{z:.0f}} % of the tolerance<extra></extra>",
-    )
+    fig = _used_map(x, y, used, "places", f"X %{{x:.0f}}, Y %{{y:.0f}} {unit}", dark=dark)
     for name, at_x, at_y in marks:
         fig.add(
             "scatter",
@@ -55,7 +40,26 @@ def places_map(
         say(fig, f"<b>{name}</b>", at_x, at_y, "#FFFFFF", size=13, yshift=16, bgcolor="rgba(0,0,0,.55)", borderpad=2)
     fig.layout["xaxis"] = axis(f"part zero X, {unit}", dark=dark, constrain="domain", automargin=True)
     fig.layout["yaxis"] = axis(f"Y, {unit}", dark=dark, scaleanchor="x", constrain="domain", automargin=True)
-    fig.layout["plot_bgcolor"] = p.panel
+    fig.layout["plot_bgcolor"] = palette(dark).panel
+    return fig
+
+
+def _used_map(x: FloatArray, y: FloatArray, used: FloatArray, name: str, where: str, *, dark: bool) -> Chart:
+    """Share of the tolerance used (nx, ny), %, over x and y; ``where`` says a place to whoever points at it."""
+    fig = figure(dark=dark, height=MAP_HEIGHT, revision=name, showlegend=False)
+    fig.layout["margin"] = {"l": 62, "r": 10, "t": 10, "b": 48, "autoexpand": True}
+    known = used[np.isfinite(used)]
+    fig.add(
+        "heatmap",
+        x=x,
+        y=y,
+        z=np.asarray(used).T,
+        colorscale=SEQUENTIAL,
+        zmin=float(known.min()) if known.size else 0.0,
+        zmax=float(np.quantile(known, 0.95)) if known.size else 1.0,
+        colorbar=colour_bar("% of tolerance", dark=dark),
+        hovertemplate=f"{where}<br>%{{z:.0f}} % of the tolerance<extra></extra>",
+    )
     return fig
 
 
@@ -124,20 +128,7 @@ def spins_map(
 ) -> Chart:
     """Share of the tolerance used (s, a), %, along the cut, station (s,) in ``unit``, by the tool's spin, angle (a,)
     degrees; blank beyond limits and near singular configurations. ``course`` is the best one, way and spin."""
-    fig = figure(dark=dark, height=PLACES_HEIGHT, revision="spins", showlegend=False)
-    fig.layout["margin"] = {"l": 62, "r": 10, "t": 10, "b": 48, "autoexpand": True}
-    known = used[np.isfinite(used)]
-    fig.add(
-        "heatmap",
-        x=station,
-        y=angle,
-        z=np.asarray(used).T,
-        colorscale=SEQUENTIAL,
-        zmin=float(known.min()) if known.size else 0.0,
-        zmax=float(np.quantile(known, 0.95)) if known.size else 1.0,
-        colorbar=colour_bar("% of tolerance", dark=dark),
-        hovertemplate=f"%{{x:.0f}} {unit} on, spin %{{y:.0f}}°<br>%{{z:.0f}} % of the tolerance<extra></extra>",
-    )
+    fig = _used_map(station, angle, used, "spins", f"%{{x:.0f}} {unit} on, spin %{{y:.0f}}°", dark=dark)
     fig.add(
         "scatter",
         x=course[0],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -11,12 +11,12 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.improve.advice import Advice
 from robomill.improve.compensation import Compensation
-from robomill.improve.placed import Placement
+from robomill.improve.placed import Place, Placement
 from robomill.improve.turning import Turning
 from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, pieces, session
+from robomill.ui import inputs, pieces
 from robomill.ui.improve import stiffen
-from robomill.ui.improve.remedies import Found, Left, Stiffened, error_words, use
+from robomill.ui.improve.remedies import Found, Left, Stiffened, error_words, take, use
 from robomill.ui.shell import dark
 from robomill.ui.verdict import WORDS
 from robomill.units import (
@@ -134,24 +134,25 @@ def _stiffened(found: Stiffened, left: Left, result: SimulationResult, unit: str
         stiffen.ranking(ranked, joints, unit, dark())
 
 
+def _places(places: Mapping[str, Place], unit: str) -> None:
+    """What full simulations say of places, by name."""
+    pieces.facts(
+        [
+            (
+                name,
+                f"{format_si(place.max_deviation, unit)} at the tip",
+                f"{format_percent(place.share)} of the tolerance",
+            )
+            for name, place in places.items()
+        ]
+    )
+
+
 def _placed(found: Placement, left: Left, result: SimulationResult, unit: str) -> None:
     here, beside = pieces.split([1, 1.7], "page", gap="large")
     with here, st.container(border=True):
         pieces.strong("Where the part lies")
-        rows = [
-            (
-                name,
-                f"{format_si(each.max_deviation, unit)} at the tip",
-                f"{format_percent(each.share)} of the tolerance",
-            )
-            for name, each in (
-                ("now", found.now),
-                ("best", found.best),
-                ("median", found.median),
-                ("worst", found.worst),
-            )
-        ]
-        pieces.facts(rows)
+        _places({"now": found.now, "best": found.best, "median": found.median, "worst": found.worst}, unit)
         pieces.note(
             f"Best at X, Y, Z {format_many(found.best.zero, unit, 1 if unit == 'mm' else 3)}, turned by "
             f"{format_si(found.best.yaw, 'deg', 1)}. {format_count(found.tried, 'place')} looked at, "
@@ -183,15 +184,7 @@ def _turned(found: Turning, left: Left, result: SimulationResult, unit: str) -> 
     here, beside = pieces.split([1, 1.7], "page", gap="large")
     with here, st.container(border=True):
         pieces.strong("How the tool is turned about its axis")
-        rows = [
-            (
-                name,
-                f"{format_si(each.max_deviation, unit)} at the tip",
-                f"{format_percent(each.share)} of the tolerance",
-            )
-            for name, each in (("now", found.now), ("best, all the way", found.constant), ("turning", found.course))
-        ]
-        pieces.facts(rows)
+        _places({"now": found.now, "best, all the way": found.constant, "turning": found.course}, unit)
         for finding in found.findings:
             pieces.note(finding.sentence)
         use(left, "Turn it so, all the way")
@@ -231,12 +224,9 @@ def _cut(found: Advice, left: Left, result: SimulationResult, unit: str) -> None
         name = inputs.pick("Way", "improve.way", better, look=inputs.LISTED)
         way = next(each for each in found.ways if each.name == name)
         if way.run is not None:
-            inputs.button("Cut it this way", "improve.way.use", "check", _cut_so, way.run, help="Undo takes it back.")
-
-
-def _cut_so(run: SimulationResult) -> None:
-    setup = run.setup
-    session.change(source=setup.source, stock=setup.stock, engagement=setup.engagement)
+            inputs.button(
+                "Cut it this way", "improve.way.use", "check", take, way.run.setup, help="Undo takes it back."
+            )
 
 
 OPENED: dict[str, Callable[[Any, Left, SimulationResult, str], None]] = {
