@@ -39,11 +39,17 @@ if TYPE_CHECKING:
     from robomill.improve.compensation import Compensation as Compensation
     from robomill.improve.design import Design as Design
     from robomill.improve.design import design as design
+    from robomill.improve.draws import Tornado as Tornado
+    from robomill.improve.draws import Uncertainty as Uncertainty
+    from robomill.improve.path_sensitivity import PathSensitivity as PathSensitivity
+    from robomill.improve.path_sensitivity import sensitivity as sensitivity
     from robomill.improve.placed import Place as Place
     from robomill.improve.placed import Placement as Placement
     from robomill.improve.placement import place as place
     from robomill.improve.turning import Turning as Turning
     from robomill.improve.turning import turn as turn
+    from robomill.improve.uncertainty import uncertainty as uncertainty
+    from robomill.improve.unsure import Spread as Spread
     from robomill.io.compensated import compensate as compensate
     from robomill.io.drawings import read_drawing as read_drawing
     from robomill.io.force_models import process_force as process_force
@@ -146,6 +152,12 @@ _PUBLIC = {
     "compensate": "robomill.io.compensated",
     "Turning": "robomill.improve.turning",
     "turn": "robomill.improve.turning",
+    "PathSensitivity": "robomill.improve.path_sensitivity",
+    "sensitivity": "robomill.improve.path_sensitivity",
+    "Spread": "robomill.improve.unsure",
+    "Tornado": "robomill.improve.draws",
+    "Uncertainty": "robomill.improve.draws",
+    "uncertainty": "robomill.improve.uncertainty",
     "read_drawing": "robomill.io.drawings",
     "process_force": "robomill.io.force_models",
     "read_forces": "robomill.io.forces",

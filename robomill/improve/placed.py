@@ -168,12 +168,18 @@ class Placement(Tabled):
         return [*said, ("Places", f"{self.allowed} allowed, {self.reached} reached, {self.tried} tried")]
 
 
+def errors_of(result: SimulationResult) -> dict[str, float]:
+    """m: the largest errors of a run by their names, as ``share_of`` takes them; NaN where there are none."""
+    verdict = result.verdict
+    named = {name: abs(getattr(verdict, name).value) for name in ("wall", "floor", "feed", "end")}
+    return named | {"tip": result.max_deviation}
+
+
 def place_of(result: SimulationResult, at: FloatArray, measure: Asked) -> Place:
     """What a run says of the place (4,) it was made at."""
     verdict, stands = result.verdict, standing(result.ik)
     missed = bool(result.missed.any())
-    errors = {name: np.array(getattr(verdict, name).value) for name in ("wall", "floor", "feed", "end")}
-    errors = {name: np.abs(value) for name, value in errors.items()} | {"tip": np.array(result.max_deviation)}
+    errors = {name: np.array(value) for name, value in errors_of(result).items()}
     reason = ""
     if missed:
         lost = int(np.flatnonzero(result.missed)[0])

@@ -84,10 +84,10 @@ def held(setup: SimulationSetup, path: Toolpath) -> Iterator[Held]:
         springs = setup.springs
         if len(kinds) > 1 and (n > 0 or longer):
             springs = tuple(spring.of_tool(made.cutters[int(n)], float(longer)) for spring in springs)
-        yield Held(_reaching(setup.robot, float(longer)), springs, steps)
+        yield Held(reaching(setup.robot, float(longer)), springs, steps)
 
 
-def _reaching(robot: Robot, farther: float) -> Robot:
+def reaching(robot: Robot, farther: float) -> Robot:
     """The robot with a tool whose tip stands ``farther`` (m) along its axis, away from the spindle."""
     if farther == 0.0:
         return robot
