@@ -17,7 +17,7 @@ from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
 from robomill.spelled import in_units, made
 from robomill.toolpath.path import Toolpath
-from robomill.units import format_count, format_many, format_si
+from robomill.units import format_count, format_many, format_short, format_si
 from robomill.values import Value
 
 AXES = "XYZ"
@@ -145,7 +145,7 @@ def stock_grid(stock: Stock, cell: float, budget: int | None = None) -> Cells:
     if not along * across <= budget:
         fits, needed = fitting_cell(length, width, budget), along * across
         raise SurfaceError(
-            f"Cell size: {format_si(cell, 'mm', 4)} needs {needed / 1e6:.4g} million cells for this stock; at most"
+            f"Cell size: {format_short(cell, 'mm', 4)} needs {needed / 1e6:.4g} million cells for this stock; at most"
             f" {budget / 1e6:.4g} million fit, so use {format_si(fits, 'mm', 4)} or more."
         )
     nx, ny = int(along), int(across)
