@@ -29,6 +29,7 @@ Value = TypeVar("Value")
 SHOWN_ROWS = 1500
 ROW = 36  # pixels of a row of a table
 DIGITS = "%.12g"  # of a number in a file: what comes after is rounding
+AT_HAND = 2_000_000  # letters of a text: 2 ms to look through
 CELL_S = 1e-6  # s that a cell of a table takes to be written
 # What a file holds that is taken away, by the end of its name.
 MIME = {
@@ -113,20 +114,23 @@ def table(rows: Sequence[Sequence[str]], kinds: str, head: Sequence[str] = (), s
     """A table with a row of titles; ``strong`` is the row in force.
 
     ``kinds`` has a letter a column: q what is asked (s where that is short), n a number, v a value in words, w text,
-    b a bar, a blank for a remark, which stands under its q in a narrow window.
+    b a bar, a blank for a remark, which stands under its q in a narrow window. Where a table with text (w) has no
+    room for its columns, each row is a paragraph in which every cell stands under its title.
     """
+    titled = "w" in kinds and all(head)
+    named = [f' data-title="{html.escape(title, quote=True)}"' if titled else "" for title in head or kinds]
 
     def row(tag: str, cells: Sequence[str], style: str = "") -> str:
         inner = "".join(
-            f'<{tag} class="{kind}">{as_html(cell)}</{tag}>' for kind, cell in zip(kinds, cells, strict=True)
+            f'<{tag} class="{kind}"{title}>{as_html(cell)}</{tag}>'
+            for kind, title, cell in zip(kinds, named, cells, strict=True)
         )
         return f"<tr{style}>{inner}</tr>"
 
-    bold = ' style="font-weight:600"'
-    body = "".join(row("td", cells, bold if i == strong else "") for i, cells in enumerate(rows))
+    body = "".join(row("td", cells, ' class="rm-strong"' if i == strong else "") for i, cells in enumerate(rows))
     top = row("th", head) if head else ""
-    remarks = " rm-remarks" if kinds[0] == "q" and kinds[-1] == " " else ""
-    st.html(f'<div style="overflow-x:auto"><table class="rm-facts{remarks}">{top}{body}</table></div>')
+    remarks = " rm-remarks" if kinds[0] == "q" and kinds[-1] == " " else " rm-titled" if titled else ""
+    st.html(f'<div class="rm-wide"><table class="rm-facts{remarks}">{top}{body}</table></div>')
 
 
 def bar(share: float, look: str) -> Html:
@@ -319,7 +323,9 @@ def download(
     making: Making | None = None,
     **more: Any,
 ) -> None:
-    """A download that is made only when it is asked for; what it holds is told from the end of its name.
+    """A download that is made only when it is asked for; what it holds is told from the end of its name. A text that
+    is there already has an address that stays: while a page runs again and again, because something is computed beside
+    it, what is made when it is asked for can be asked for at an address of the run before, and never comes.
 
     Where ``making`` it takes longer than anyone waits, a button has it made beside the page; then it can be taken.
     """
@@ -329,5 +335,6 @@ def download(
             return
         label, more = f"Save {file_name.removeprefix(named(''))}", {"type": "primary"} | more
     more = {"icon": ":material/download:", "on_click": "ignore"} | more
-    made = data if callable(data) else lambda: data  # not looked through at every run
+    there = callable(data) or (isinstance(data, str) and len(data) <= AT_HAND)
+    made: Any = data if there else lambda: data  # what is long is not looked through at every run
     st.download_button(label, made, file_name, MIME[file_name.rpartition(".")[2]], key, **more)

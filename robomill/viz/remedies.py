@@ -1,14 +1,20 @@
 """Pictures of remedies: places of the part, turns of the tool, a corrected path, the cost of stiffer joints."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.viz.along import Along
 from robomill.viz.chart import Chart
 from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, figure, palette, say
 
 MAP_HEIGHT, FRONT_HEIGHT = 420, 300  # px
+NEAR_TOLERANCE = 0.5  # of it: deviations beyond are drawn with it
+CORRECTED = ("across the feed", "along the axis")
+HALF_TURN = 180.0  # deg
+WHOLE = 100.0  # % of the tolerance
 
 
 def places_map(
@@ -30,14 +36,14 @@ def places_map(
             y=[at_y],
             mode="markers",
             marker={
-                "symbol": "circle-open" if name == "now" else "star",
+                "symbol": "star" if name == "best" else "circle-open",
                 "size": 15,
                 "color": "#FFFFFF",
                 "line": {"width": 2.5, "color": "#FFFFFF"},
             },
             hovertemplate=f"{name}<br>X %{{x:.0f}}, Y %{{y:.0f}} {unit}<extra></extra>",
         )
-        say(fig, f"<b>{name}</b>", at_x, at_y, "#FFFFFF", size=13, yshift=16, bgcolor="rgba(0,0,0,.55)", borderpad=2)
+        _named(fig, name, at_x, at_y, yshift=18)
     fig.layout["xaxis"] = axis(f"part zero X, {unit}", dark=dark, constrain="domain", automargin=True)
     fig.layout["yaxis"] = axis(f"Y, {unit}", dark=dark, scaleanchor="x", constrain="domain", automargin=True)
     fig.layout["plot_bgcolor"] = palette(dark).panel
@@ -48,18 +54,23 @@ def _used_map(x: FloatArray, y: FloatArray, used: FloatArray, name: str, where: 
     """Share of the tolerance used (nx, ny), %, over x and y; ``where`` says a place to whoever points at it."""
     fig = figure(dark=dark, height=MAP_HEIGHT, revision=name, showlegend=False)
     fig.layout["margin"] = {"l": 62, "r": 10, "t": 10, "b": 48, "autoexpand": True}
+    used = np.asarray(used)
     known = used[np.isfinite(used)]
     fig.add(
         "heatmap",
         x=x,
         y=y,
-        z=np.asarray(used).T,
+        z=used.T,
         colorscale=SEQUENTIAL,
         zmin=float(known.min()) if known.size else 0.0,
         zmax=float(np.quantile(known, 0.95)) if known.size else 1.0,
         colorbar=colour_bar("% of tolerance", dark=dark),
         hovertemplate=f"{where}<br>%{{z:.0f}} % of the tolerance<extra></extra>",
     )
+    if known.size and known.min() < WHOLE < known.max() and min(used.shape) > 1:
+        level = {"start": WHOLE, "end": WHOLE, "size": 1, "coloring": "none"}
+        line = {"color": "#FFFFFF", "width": 2}
+        fig.add("contour", x=x, y=y, z=used.T, contours=level, line=line, hoverinfo="skip", showscale=False)
     return fig
 
 
@@ -92,51 +103,59 @@ def cost_front(used: FloatArray, cost: FloatArray, chosen: tuple[float, float], 
 
 
 def corrected_lines(
-    station: FloatArray, before: FloatArray, after: FloatArray, names: Sequence[str], unit: str, *, dark: bool
+    station: FloatArray,
+    before: FloatArray,
+    after: FloatArray,
+    tolerance: float,
+    unit: str,
+    *,
+    dark: bool,
 ) -> Chart:
-    """Deviations (k, m) in ``unit`` along the cut, station (m,), before (dashed) and after (whole) the correction; NaN
-    where nothing is cut."""
+    """Deviations (2, m) along the cut, station (m,), before (dotted) and after (whole) the correction, with the
+    tolerance on the sides that they come near to; all in ``unit``, NaN where nothing is cut."""
     p = palette(dark)
-    colours = (p.accent, p.warm)
-    fig = figure(dark=dark, height=FRONT_HEIGHT, revision="corrected", hovermode="x unified")
-    fig.layout["margin"] = {"l": 62, "r": 16, "t": 34, "b": 48, "autoexpand": False}
-    fig.lay_out(legend={"y": 1.12})
+    plot = Along.begin(station, unit, "corrected", dark=dark, height=FRONT_HEIGHT + 40)
     for when, values, look in (("before", before, "dot"), ("after", after, "solid")):
-        for name, value, colour in zip(names, values, colours, strict=False):
-            fig.add(
-                "scatter",
-                x=station,
-                y=value,
-                mode="lines",
-                name=f"{name}, {when}",
-                line={"color": colour, "width": 2, "dash": look},
-                hovertemplate="%{y:+.4f} " + unit,
-            )
-    fig.layout["xaxis"] = axis(f"length cut, {unit}", dark=dark, automargin=False)
-    fig.layout["yaxis"] = axis(f"off the path, {unit}", dark=dark, zeroline=True, automargin=False)
-    return fig
+        for name, value, colour in zip(CORRECTED, values, (p.accent, p.warm), strict=True):
+            line = {"color": colour, "width": 2.2, "dash": look}
+            plot.curve(value, f"{name}, {when}", line, "%{y:+.4f} " + unit)
+    ends = float(np.nanmin(before, initial=0.0)), float(np.nanmax(before, initial=0.0))
+    for side in (-1, 1):
+        if side * ends[side > 0] > NEAR_TOLERANCE * tolerance:
+            plot.level(side * tolerance, p.muted, "solid")
+            say(plot.fig, "tolerance", 1, side * tolerance, p.muted, xref="paper", xanchor="right", yshift=9)
+    plot.zero()
+    return plot.done(f"Off the path, {unit}")
 
 
 def spins_map(
     station: FloatArray,
     angle: FloatArray,
     used: FloatArray,
-    course: tuple[FloatArray, FloatArray],
+    courses: Mapping[str, tuple[FloatArray, FloatArray]],
     unit: str,
     *,
     dark: bool,
 ) -> Chart:
     """Share of the tolerance used (s, a), %, along the cut, station (s,) in ``unit``, by the tool's spin, angle (a,)
-    degrees; blank beyond limits and near singular configurations. ``course`` is the best one, way and spin."""
+    degrees; blank beyond limits and near singular configurations. ``courses`` are way and spin by name."""
     fig = _used_map(station, angle, used, "spins", f"%{{x:.0f}} {unit} on, spin %{{y:.0f}}°", dark=dark)
-    fig.add(
-        "scatter",
-        x=course[0],
-        y=course[1],
-        mode="markers",
-        marker={"size": 4, "color": "#FFFFFF"},
-        hovertemplate=f"best course<br>%{{x:.0f}} {unit} on, spin %{{y:.0f}}°<extra></extra>",
-    )
+    for (name, (way, spin)), dash in zip(courses.items(), ("dot", "solid"), strict=False):
+        if not len(way):
+            continue
+        jumps = np.append(np.abs(np.diff(spin)) > HALF_TURN, False)  # over 360 degrees: the line breaks there
+        fig.lines(
+            way,
+            np.where(jumps, np.nan, spin),
+            {"color": "#FFFFFF", "width": 2.5, "dash": dash},
+            hovertemplate=f"{name}<br>%{{x:.0f}} {unit} on, spin %{{y:.0f}}°<extra></extra>",
+        )
+        _named(fig, name, float(way[0]), float(spin[0]), xanchor="left", yshift=14 if dash == "solid" else -14)
     fig.layout["xaxis"] = axis(f"way of the tool, {unit}", dark=dark, automargin=True)
-    fig.layout["yaxis"] = axis("spin about the tool, °", dark=dark, automargin=True)
+    fig.layout["yaxis"] = axis("spin about the tool, °", dark=dark, automargin=True, dtick=60)
     return fig
+
+
+def _named(fig: Chart, name: str, x: float, y: float, **where: Any) -> None:
+    """A name on a map, white on dark."""
+    say(fig, f"<b>{name}</b>", x, y, "#FFFFFF", size=13, bgcolor="rgba(0,0,0,.6)", borderpad=2, **where)

@@ -88,21 +88,23 @@ def gain_bars(gain: FloatArray, unit: str, digits: int, joints: Sequence[int], *
     p, colours = palette(dark), joint_colours(7, dark)
     order = np.argsort(-gain, kind="stable")
     top, low = float(np.nanmax(gain, initial=0.0)) or 1.0, float(np.nanmin(gain, initial=0.0))
+    none = 0.5 * 10.0**-digits  # a loss below it is written as 0, and on the right of its bar
     fig = figure(dark=dark, height=height, revision="gains", bargap=0.25, showlegend=False)
     fig.layout["margin"] = {"l": 58, "r": 24, "t": 6, "b": 44, "autoexpand": False}
     fig.add(
         "bar",
         y=[f"joint {joints[i]}" for i in order],
-        x=gain[order],
+        x=np.where((gain < 0.0) & (gain > -none), 0.0, gain)[order],
         orientation="h",
         marker={"color": [colours[i % 7] for i in order]},
         text=[_amount(gain[i], top, unit, digits) for i in order],
         textposition="outside",
         cliponaxis=False,
         textfont={"color": p.text, "size": 12.5},
-        hovertemplate=f"%{{y}}: %{{x:.4g}} {unit}<extra></extra>",
+        hovertemplate=f"%{{y}}: %{{customdata:.4g}} {unit}<extra></extra>",
+        customdata=gain[order],
     )
-    span = [1.3 * low if low < 0 else 0.0, 1.16 * top]
+    span = [1.3 * low - 0.1 * top if low < -none else 0.0, 1.16 * top]
     fig.layout["xaxis"] = axis(unit, dark=dark, nticks=6, range=span, automargin=False)
     fig.layout["xaxis"]["title"]["standoff"] = 6
     fig.layout["yaxis"] = axis("", dark=dark, autorange="reversed", ticks="", automargin=False) | {"title": None}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,10 +13,11 @@ from robomill.improve.advice import Advice
 from robomill.improve.compensation import Compensation
 from robomill.improve.placed import Place, Placement
 from robomill.improve.turning import Turning
+from robomill.provenance import Finding
 from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces
 from robomill.ui.improve import stiffen
-from robomill.ui.improve.remedies import Found, Left, Stiffened, error_words, take, use
+from robomill.ui.improve.remedies import Found, Left, Stiffened, error_at, error_words, take, use
 from robomill.ui.shell import dark
 from robomill.ui.verdict import WORDS
 from robomill.units import (
@@ -31,6 +32,9 @@ from robomill.units import (
 )
 from robomill.viz.remedies import corrected_lines, cost_front, places_map, spins_map
 
+LEVEL = "White line: all of the tolerance is used."
+COLUMNS = (1, 1.7)  # a remedy in words, and its picture
+
 
 def opened(found: Found, result: SimulationResult, unit: str) -> None:
     """The remedy's own part of the page."""
@@ -39,25 +43,22 @@ def opened(found: Found, result: SimulationResult, unit: str) -> None:
 
 
 def _corrected(found: Compensation, left: Left, result: SimulationResult, unit: str) -> None:
-    here, beside = pieces.split([1, 1.7], "page", gap="large")
+    here, beside = pieces.split(COLUMNS, "remedy")
     with here, st.container(border=True):
         pieces.strong("What the corrected program leaves")
         rows = [
-            (name, format_si(each.max, unit), f"{format_percent(each.max / result.setup.tolerance)} of the tolerance")
+            (name, format_si(each.max, unit), format_percent(each.max / result.setup.tolerance))
             for name, each in (
-                ("as it is", found.before),
-                ("corrected", found.after),
-                ("if the arm is 20 % softer or stiffer", found.softer),
-                ("if the force is 20 % off", found.stronger),
+                ("As it is", found.before),
+                ("Corrected", found.after),
+                ("Corrected, the arm 20 % softer or stiffer", found.softer),
+                ("Corrected, the force 20 % off", found.stronger),
             )
         ]
-        pieces.facts(rows)
+        pieces.table(rows, " nn", ("Program", "Off the path", "Of tolerance"))
         words = f"Found after {format_count(found.iterations, 'iteration')}: force and engagement are those of the "
         pieces.note(words + "corrected path. Along the feed nothing is changed.")
-        for why in found.unrolled:
-            pieces.note(f"Written out: {why}.")
-        for finding in found.findings:
-            pieces.note(finding.sentence)
+        _told(found.findings)
         pieces.download(
             "Corrected program", found.text, pieces.named("corrected.nc"), "improve.program", type="primary"
         )
@@ -72,14 +73,22 @@ def _corrected(found: Compensation, left: Left, result: SimulationResult, unit: 
         )
         station = _shown(columns["station_mm"], unit)
         pieces.strong("Off the path, before and after")
+        limit = float(from_si(result.setup.tolerance, unit))
         pieces.figure(
-            corrected_lines(station, before, after, ("across the feed", "along the axis"), unit, dark=dark()),
+            corrected_lines(station, before, after, limit, unit, dark=dark()),
             "improve-corrected",
             table=lambda: columns,
             alt=f"Deviation along the cut: at most {format_si(found.before.max, unit)} before, "
             f"{format_si(found.after.max, unit)} with the corrected program.",
             caption="Measured against the path that was meant; inside the model.",
         )
+
+
+def _told(findings: Sequence[Finding]) -> None:
+    """What a reader of a remedy must know, each as a sentence of its own."""
+    for finding in findings:
+        words = finding.sentence
+        pieces.note(f"{words[:1].upper()}{words[1:]}")
 
 
 def _shown(column: Any, unit: str) -> FloatArray:
@@ -89,7 +98,7 @@ def _shown(column: Any, unit: str) -> FloatArray:
 
 def _stiffened(found: Stiffened, left: Left, result: SimulationResult, unit: str) -> None:
     made, joints = found.design, result.setup.robot.joint_numbers
-    here, beside = pieces.split([1, 1.7], "page", gap="large")
+    here, beside = pieces.split(COLUMNS, "remedy")
     with here, st.container(border=True):
         pieces.strong(
             "The least stiffening that halves the error" if found.half else "The least stiffening that does it"
@@ -97,10 +106,10 @@ def _stiffened(found: Stiffened, left: Left, result: SimulationResult, unit: str
         if not made.feasible:
             pieces.said("warning", made.sentence, "warning")
         rows = [
-            (f"joint {number}", f"{format_short(ratio, '1', 3)} times as stiff", "as it is" if ratio < 1.001 else "")
+            (f"joint {number}", "as it is" if ratio < 1.001 else f"{format_short(ratio, '1', 3)} times as stiff")
             for number, ratio in zip(joints, made.stiffness_ratio, strict=True)
         ]
-        pieces.facts(rows)
+        pieces.table(rows, "qn")
         pieces.note(
             f"Cost {format_short(made.cost, '1', 3)}, where 1 is one joint made twice as stiff. Errors are linear in "
             "the compliance of each joint, so the least is found for certain, by a convex program."
@@ -125,7 +134,7 @@ def _stiffened(found: Stiffened, left: Left, result: SimulationResult, unit: str
     ranked = pieces.attempt(stiffen.found, result.setup)
     if ranked is None:
         return
-    one, two = pieces.split([1, 1.7], "joints", gap="large")
+    one, two = pieces.split(COLUMNS, "joints")
     with one, st.container(border=True):
         pieces.strong("Each joint alone twice as stiff")
         pieces.note(stiffen.sentence(ranked, joints, unit), stiffen.together(ranked, joints))
@@ -136,20 +145,15 @@ def _stiffened(found: Stiffened, left: Left, result: SimulationResult, unit: str
 
 def _places(places: Mapping[str, Place], unit: str) -> None:
     """What full simulations say of places, by name."""
-    pieces.facts(
-        [
-            (
-                name,
-                f"{format_si(place.max_deviation, unit)} at the tip",
-                f"{format_percent(place.share)} of the tolerance",
-            )
-            for name, place in places.items()
-        ]
-    )
+    rows = [
+        (name, error_at(place, unit), format_percent(place.share), format_si(place.max_deviation, unit))
+        for name, place in places.items()
+    ]
+    pieces.table(rows, " nnn", ("Place" if "worst" in places else "Spin", "Error", "Of tolerance", "Tip"))
 
 
 def _placed(found: Placement, left: Left, result: SimulationResult, unit: str) -> None:
-    here, beside = pieces.split([1, 1.7], "page", gap="large")
+    here, beside = pieces.split(COLUMNS, "remedy")
     with here, st.container(border=True):
         pieces.strong("Where the part lies")
         _places({"now": found.now, "best": found.best, "median": found.median, "worst": found.worst}, unit)
@@ -159,15 +163,15 @@ def _placed(found: Placement, left: Left, result: SimulationResult, unit: str) -
             f"{format_count(found.reached)} within reach, {format_count(found.allowed)} with room to limits and away "
             "from singular configurations."
         )
-        for finding in found.findings:
-            pieces.note(finding.sentence)
+        _told(found.findings)
         use(left, "Move the part there")
     with beside, st.container(border=True):
         x, y = (from_si(axis, unit) for axis in found.axes[:2])
+        stays = bool(np.allclose(found.now.zero[:2], found.best.zero[:2], atol=1e-6))
         marks = [
             (name, float(from_si(each.zero[0], unit)), float(from_si(each.zero[1], unit)))
-            for name, each in (("now", found.now), ("best", found.best))
-        ]
+            for name, each in (("now and best" if stays else "now", found.now), ("best", found.best))
+        ][: 1 if stays else 2]
         used = from_si(found.plane, "%")
         pieces.strong("Tolerance used, by where part zero lies")
         pieces.figure(
@@ -176,30 +180,59 @@ def _placed(found: Placement, left: Left, result: SimulationResult, unit: str) -
             table=found.columns,
             alt=f"Map of the tolerance used over {format_count(found.tried, 'place')}: now "
             f"{format_percent(found.now.share)}, at the best place {format_percent(found.best.share)}.",
-            caption="At the best height and turn of each point; blank where the arm does not get, or has no room.",
+            caption="At the best height and turn of each point; blank where the arm does not get, or has no room. "
+            + level_words(used),
         )
 
 
 def _turned(found: Turning, left: Left, result: SimulationResult, unit: str) -> None:
-    here, beside = pieces.split([1, 1.7], "page", gap="large")
+    here, beside = pieces.split(COLUMNS, "remedy")
     with here, st.container(border=True):
         pieces.strong("How the tool is turned about its axis")
-        _places({"now": found.now, "best, all the way": found.constant, "turning": found.course}, unit)
-        for finding in found.findings:
-            pieces.note(finding.sentence)
+        was = "" if result.ik.spin is None else f", {format_si(float(result.ik.spin[0]), 'deg', 0)}"
+        best = format_si(found.spin, "deg", 0)
+        _places({f"now{was}": found.now, f"best, {best} all the way": found.constant, "turning": found.course}, unit)
+        _told(found.findings)
         use(left, "Turn it so, all the way")
     with beside, st.container(border=True):
         pieces.strong("Tolerance used, by way and spin")
-        course = np.asarray(from_si(found.way, unit)), np.asarray(from_si(found.turn, "deg"))
-        station, angle = from_si(found.station, unit), from_si(found.angle, "deg")
+        drawn = over_spin(found, result, unit)
         pieces.figure(
-            spins_map(station, angle, from_si(found.share, "%"), course, unit, dark=dark()),
+            spins_map(*drawn, unit, dark=dark()),
             "improve-spins",
             table=found.columns,
             alt=f"Map of the tolerance used by way and spin: now {format_percent(found.now.share)}, at the best spin "
             f"{format_percent(found.constant.share)}, turning {format_percent(found.course.share)}.",
-            caption="White: the best course; blank beyond limits and near singular configurations.",
+            caption="Only where it cuts; blank beyond limits and near singular configurations. "
+            + level_words(drawn[2]),
         )
+
+
+def level_words(used: FloatArray) -> str:
+    """What the line on a map of shares (a, b) of the tolerance, %, is; "" where none is drawn."""
+    known = used[np.isfinite(used)]
+    return LEVEL if known.size and known.min() < 100.0 < known.max() else ""
+
+
+def over_spin(
+    found: Turning, result: SimulationResult, unit: str
+) -> tuple[FloatArray, FloatArray, FloatArray, dict[str, tuple[FloatArray, FloatArray]]]:
+    """Way (s,) in ``unit``, spin (a,) deg and share of the tolerance (s, a), %, where something is judged, and the
+    courses by name: as it is, where a run says it, and the best. The best one does not lie at the end of the angles."""
+    low = -180.0 if np.cos(found.spin) > 0.0 else 0.0
+
+    def shown(spin: FloatArray) -> FloatArray:
+        return np.asarray(np.mod(from_si(spin, "deg") - low, 360.0) + low)
+
+    cuts = (found.share > 0.0).any(axis=1)
+    angle = shown(found.angle)
+    order = np.argsort(angle)
+    share = np.asarray(from_si(found.share, "%"))[np.ix_(cuts, order)]
+    cutting = np.asarray(result.path.cutting, dtype=bool)
+    way = np.asarray(from_si(found.way, unit))[cutting]
+    turns = {"now": result.ik.spin, "best": found.turn}
+    courses = {name: (way, shown(turn)[cutting]) for name, turn in turns.items() if turn is not None}
+    return np.asarray(from_si(found.station, unit))[cuts], angle[order], share, courses
 
 
 def _cut(found: Advice, left: Left, result: SimulationResult, unit: str) -> None:
@@ -208,20 +241,21 @@ def _cut(found: Advice, left: Left, result: SimulationResult, unit: str) -> None
         rows = []
         for way in found.ways:
             if way.run is None:
-                rows.append([way.title, "–", "–", "–", way.refused])
+                rows.append([way.title, "–", "–", "–", "–", way.refused])
                 continue
             verdict = way.run.verdict
             used = format_percent(way.share) if np.isfinite(way.share) else "–"
             rate = format_si(way.removal_rate, in_lengths("cm3/min", unit), 1) if np.isfinite(way.removal_rate) else "–"
             rows.append(
-                [way.title, f"{way.seconds:.1f} s", rate, f"{error_words(way.run, unit)}, {used}", WORDS[verdict.level]]
+                [way.title, f"{way.seconds:.1f} s", rate, error_words(way.run, unit), used, WORDS[verdict.level]]
             )
         best = list(found.ways).index(found.best)
-        head = ("Way", "Time at feed", "Removed", "Error, of tolerance", "Verdict")
-        pieces.table(rows, "wnnnv", head, strong=best)
+        head = ("Way", "Time at feed", "Removed", "Error", "Of tolerance", "Verdict")
+        pieces.table(rows, "wnnnnv", head, strong=best)
         pieces.note("Bold: the quickest way within tolerance; the truest where none is. Each is a run of its own.")
         better = {way.name: way.title for way in found.ways[1:] if way.run is not None}
-        name = inputs.pick("Way", "improve.way", better, look=inputs.LISTED)
+        truest = min(found.ways[1:], key=lambda way: way.share if np.isfinite(way.share) else np.inf).name
+        name = inputs.pick("Way", "improve.way", better, truest if truest in better else None, inputs.LISTED)
         way = next(each for each in found.ways if each.name == name)
         if way.run is not None:
             inputs.button(

@@ -32,10 +32,12 @@ from robomill.units import (
     format_share,
     format_short,
     format_si,
+    to_si,
 )
 
 RUNS_OF_DESIGN, RUNS_OF_ADVICE, RUNS_OF_PLACES, RUNS_OF_PROGRAM, RUNS_OF_SPIN = 4, 20, 25, 12, 60
 LEAST = 0.005  # of the tolerance: what saves less is no remedy
+TURNED = to_si(0.5, "deg")  # what turns the part by less is not said to turn it
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +110,7 @@ def _of_program(found: Compensation, now: SimulationResult, unit: str) -> Left:
     level: Level = "ok" if share < TIGHT_FROM else "tight" if share <= 1.0 else "out"
     error = f"{format_si(found.after.max, unit, with_unit=False)} to {format_si(wrong, unit)}"
     lines = f"a new program, {format_count(found.lines_in, 'line')} become {format_count(found.lines_out)}"
-    sure = "the larger: if stiffness or force is 20 % off"
+    sure = f"{format_si(wrong, unit)} if stiffness or force is 20 % off"
     if np.isfinite(found.half):
         sure += f"; ± {format_si(found.half, unit)} by the tests"
     return Left(share, error, level, lines, sure, None)
@@ -176,9 +178,12 @@ def _time(seconds: float) -> str:
 def _of_place(found: Placement, now: SimulationResult, unit: str) -> Left:
     best = found.best
     far = best.zero - now.setup.T_MW[:3, 3]
-    cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0 if unit == 'mm' else 2)}"
-    error = _error_at(best, unit)
+    error = error_at(best, unit)
     better = best.share < now.verdict.share - LEAST
+    cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0 if unit == 'mm' else 2)}"
+    turn = best.yaw - found.now.yaw
+    cost += f", turned by {format_si(turn, 'deg', 0)}" if abs(turn) > TURNED else ""
+    cost = cost if better else "no place is better than where it lies"
     sure = f"best of {format_count(found.allowed, 'place')}, simulated in full"
     return Left(best.share, error, best.level, cost, sure, found.moved if better else None)
 
@@ -186,12 +191,14 @@ def _of_place(found: Placement, now: SimulationResult, unit: str) -> Left:
 def _of_spin(found: Turning, now: SimulationResult, unit: str) -> Left:
     then = found.constant
     better = then.share < now.verdict.share - LEAST
-    cost = f"the tool turned to {format_si(found.spin, 'deg', 0)} about its axis"
+    was = "" if now.ik.spin is None else f", now {format_si(float(now.ik.spin[0]), 'deg', 0)}"
+    cost = f"the tool turned to {format_si(found.spin, 'deg', 0)} about its axis{was}"
+    cost = cost if better else "no turn is better than what it has"
     sure = "simulated in full"
-    return Left(then.share, _error_at(then, unit), then.level, cost, sure, found.turned if better else None)
+    return Left(then.share, error_at(then, unit), then.level, cost, sure, found.turned if better else None)
 
 
-def _error_at(place: Place, unit: str) -> str:
+def error_at(place: Place, unit: str) -> str:
     """What is largest of a place's wall and floor; the tip where there is neither."""
     sizes = [(abs(value), name) for name, value in (("wall", place.wall), ("floor", place.floor)) if np.isfinite(value)]
     size, name = max(sizes, default=(place.max_deviation, "tip"))

@@ -21,7 +21,6 @@ from robomill.viz.shares import gain_bars
 LEAST = 0.005  # of the tolerance; what saves less is not offered
 ERRORS = {"wall": "wall error", "floor": "floor error", "feed": "error along the feed", "end": "error of an end wall"}
 AXES = {"wall": 1, "floor": 2, "feed": 0, "end": 0}  # of feed, feed-normal and axial
-ASKED = "Which joint is worth stiffening?"
 
 
 def _seconds(setup: SimulationSetup) -> float:
@@ -36,14 +35,14 @@ def found(setup: SimulationSetup) -> Stiffening:
 
 
 def meanwhile(result: SimulationResult) -> str:
-    """What one knows before any joint was made stiffer: which joints make the error that decides."""
+    """Which joints make the error that decides; "" where none stands out."""
     name, share = made_by(result)
     numbers = result.setup.robot.joint_numbers
     first = [int(j) for j in np.argsort(-share, kind="stable")[:2] if share[j] > LEAST]
     if not first:
-        return ASKED
+        return ""
     parts = " and ".join(f"{format_percent(share[j])} from joint {numbers[j]}" for j in first)
-    return f"The {name} at line {result.path.block[decides_at(result)]} comes {parts}. {ASKED}"
+    return f"The {name} at line {result.path.block[decides_at(result)]} comes {parts}."
 
 
 def made_by(result: SimulationResult) -> tuple[str, FloatArray]:

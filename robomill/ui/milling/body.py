@@ -143,6 +143,8 @@ def _numbers(result: SimulationResult, i: int, spread: AlloySpread | None) -> No
     linked.where(result, i, spread)
     pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
     pieces.tiles(tiles(result, verdict_tiles(result, session.project().view.length)))
+    if result.worst >= 0:
+        st.page_link("pages/7_Improve.py", label="What would fix it?", icon=":material/build:")
 
 
 @st.fragment

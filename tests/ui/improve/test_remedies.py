@@ -1,6 +1,11 @@
 """What the table of remedies says of each."""
 
+import dataclasses
+
+import numpy as np
+
 import robomill as rm
+from robomill.ui.improve.opened import level_words, over_spin
 from robomill.ui.improve.remedies import REMEDIES
 
 
@@ -11,3 +16,34 @@ def test_a_wall_to_the_right_is_as_large_as_one_to_the_left() -> None:
     assert found.best.wall < -abs(found.best.floor)
     remedy = next(each for each in REMEDIES if each.name == "place")
     assert remedy.left(found, rm.simulate(setup), "mm").error == f"wall {-found.best.wall * 1e3:.3f} mm"
+
+
+def test_a_part_that_lies_best_is_not_said_to_be_moved_by_nothing() -> None:
+    setup = rm.load_setup("paper_flute").replace(step_mm=5, cell_mm=0.5)
+    found = rm.place(setup, x_mm=(-100, 100), y_mm=(-1400, -1300), candidates=20)
+    stays = dataclasses.replace(found, best=found.now)
+    remedy = next(each for each in REMEDIES if each.name == "place")
+    left = remedy.left(stays, rm.simulate(setup), "mm")
+    assert (left.cost, left.setup) == ("no place is better than where it lies", None)
+    turned = dataclasses.replace(found.best, yaw=found.now.yaw + np.deg2rad(30.0))
+    assert remedy.left(dataclasses.replace(found, best=turned), rm.simulate(setup), "mm").cost.endswith("turned by 30°")
+
+
+def test_a_map_of_spins_shows_only_what_is_judged_and_its_best_spin_inside() -> None:
+    setup = rm.load_setup("paper_flute").replace(robot=rm.load_robot("fanuc_r2000ic"), step_mm=10, cell_mm=0.5)
+    found, run = rm.turn(setup), rm.simulate(setup)
+    station, angle, share, courses = over_spin(found, run, "mm")
+    assert share.shape == (len(station), len(angle)) == (int((found.share > 0.0).any(axis=1).sum()), len(found.angle))
+    assert (np.diff(angle) > 0.0).all()
+    best = np.rad2deg(found.spin)
+    assert angle[0] + 45.0 < (best + 180.0) % 360.0 - 180.0 < angle[-1] - 45.0
+    k = int(np.argmin(np.abs((angle - best + 180.0) % 360.0 - 180.0)))
+    j = int(np.argmin(np.abs((np.rad2deg(found.angle) - best + 180.0) % 360.0 - 180.0)))
+    np.testing.assert_allclose(share[:, k], 100.0 * found.share[(found.share > 0.0).any(axis=1), j])
+    assert set(courses) == {"now", "best"}
+    np.testing.assert_allclose(np.cos(np.deg2rad(courses["now"][1])), np.cos(run.ik.spin[run.path.cutting]), atol=1e-12)
+
+
+def test_a_level_is_named_only_where_it_is_drawn() -> None:
+    assert level_words(np.array([[40.0, np.nan, 120.0]])) == "White line: all of the tolerance is used."
+    assert level_words(np.array([[40.0, np.nan, 90.0]])) == level_words(np.array([[np.nan]])) == ""
