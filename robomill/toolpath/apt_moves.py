@@ -4,6 +4,9 @@ Vendors write the words of a cycle in two ways (ISO 4343:1978 by place, ISO 4343
 
     CYCLE/DRILL, 20, MMPM, 100, 2                      CYCLE/DRILL, DEPTH, 20, MMPM, 100, CLEAR, 2
     CYCLE/DRILL, 20, 100, MMPM, 2                      CYCLE/DEEP, FEDTO, -20, MMPM, 100, RAPTO, 2, STEP, 5
+
+SolidWorks CAM begins cycles with CYCLE/INIT, pecks with CYCLE/DEEP2, ..., 1STPECK, 5, SUBPECK, 2, and leaves the radius
+of arcs to the point where they begin.
 """
 
 import math
@@ -20,10 +23,13 @@ from robomill.units import format_si, to_si
 NUMBER = re.compile(r"[-+]?(?:\d++\.?+\d*+|\.\d++)(?:[eE][-+]?\d++)?+$")  # of any length at once: it never goes back
 _FEED_UNITS = ("MMPM", "IPM", "PERMIN", "MMPR", "IPR", "PERREV", "PITCH")
 _NAMED = frozenset(
-    ("DEPTH", "FEDTO", "CLEAR", "RAPTO", "RTRCTO", "RETURN", "STEP", "DWELL", "ORIENT", "ORIANT", *_FEED_UNITS)
+    (
+        *("DEPTH", "FEDTO", "CLEAR", "RAPTO", "RTRCTO", "RETURN", "STEP", "1STPECK", "SUBPECK", "DWELL", "ORIENT"),
+        *("ORIANT", *_FEED_UNITS),
+    )
 )
 """Words of a cycle that a number follows."""
-_KINDS = frozenset(["DRILL", "FACE", "CSINK", "REAM", "BORE", "TAP", "DEEP", "BRKCHP", "THRU"])
+_KINDS = frozenset(["DRILL", "FACE", "CSINK", "REAM", "BORE", "TAP", "DEEP", "DEEP2", "BRKCHP", "THRU"])
 _OUT_AT_FEED = frozenset({"REAM", "BORE", "TAP"})
 OFF_CIRCLE = 1e-3
 """Start and end of an arc may be off its radius by this share, or"""
@@ -33,11 +39,14 @@ MAX_PECKS = 10_000
 
 @dataclass(frozen=True)
 class Arc:
-    """An arc about ``axis`` (unit vector), counter-clockwise as seen from its tip; ``angle`` (rad) where it is said."""
+    """An arc about ``axis`` (unit vector), counter-clockwise as seen from its tip; ``angle`` (rad) where it is said.
+
+    A ``radius`` of None is that of the point where the arc begins.
+    """
 
     centre: FloatArray
     axis: FloatArray
-    radius: float
+    radius: float | None
     angle: float | None
     turns: int
 
@@ -49,16 +58,17 @@ class Arc:
             out.append(point - self.centre - height * self.axis)
             along.append(height)
         sizes = [float(np.linalg.norm(v)) for v in out]
-        if max(abs(size - self.radius) for size in sizes) > max(OFF_CIRCLE * self.radius, OFF_CIRCLE_LEAST):
+        radius = sizes[0] if self.radius is None else self.radius
+        if max(abs(size - radius) for size in sizes) > max(OFF_CIRCLE * radius, OFF_CIRCLE_LEAST) or radius <= 0.0:
             shown = " and ".join(format_si(size, "mm", 4) for size in sizes)
-            radius = format_si(self.radius, "mm", 4)
-            raise GCodeError.at(line, f"the arc's ends lie {shown} from its centre; expected its radius, {radius}.")
+            meant = "one radius" if self.radius is None else f"its radius, {format_si(self.radius, 'mm', 4)}"
+            raise GCodeError.at(line, f"the arc's ends lie {shown} from its centre; expected {meant}.")
         cross = float(np.cross(out[0], out[1]) @ self.axis)
         sweep = math.atan2(cross, float(out[0] @ out[1])) % (2.0 * math.pi)
         if sweep < 1e-8 or 2.0 * math.pi - sweep < 1e-8:
             sweep = 2.0 * math.pi
         sweep = self._turned(sweep + 2.0 * math.pi * (self.turns - 1), line)
-        counts = chord_counts(np.array([sweep]), np.array([self.radius]), CHORD_ERROR)
+        counts = chord_counts(np.array([sweep]), np.array([radius]), CHORD_ERROR)
         t = np.linspace(0.0, 1.0, int(counts[0]) + 1)[1:, None]
         angle = t * sweep
         first = out[0] / sizes[0]
@@ -81,22 +91,23 @@ class Arc:
 
 
 def arc_of(values: list[str], unit: str, line: int) -> Arc:
-    """CIRCLE/ and MOVARC/ x,y,z, i,j,k, r [, ...] [, ANGLE, degrees] [, TIMES, n]; also with CENTER, AXIS, RADIUS."""
+    """CIRCLE/, MOVARC/ x,y,z, i,j,k [, r] [, ...] [, ANGLE, degrees] [, TIMES, n]; also with CENTER, AXIS, RADIUS."""
     words = [v for v in values if v.upper() not in ("CENTER", "AXIS", "RADIUS")]
     named = {words[i].upper(): words[i + 1] for i in range(len(words) - 1) if words[i].upper() in ("ANGLE", "TIMES")}
     count = next((i for i, v in enumerate(words) if v.upper() in ("ANGLE", "TIMES")), len(words))
     numbers = _floats(words[:count], line)
-    if len(numbers) < 7:
+    if len(numbers) < 6:
         raise GCodeError.at(line, "an arc needs its centre, axis and radius: x,y,z,i,j,k,r.")
     size = math.sqrt(sum(v * v for v in numbers[3:6]))
-    if size < 1e-9 or numbers[6] <= 0.0:
+    if size < 1e-9 or (len(numbers) > 6 and numbers[6] <= 0.0):
         raise GCodeError.at(line, "an arc needs an axis i,j,k and a radius above 0.")
     angle = math.radians(_floats([named["ANGLE"]], line)[0]) if "ANGLE" in named else None
     turns = round(_floats([named["TIMES"]], line)[0]) if "TIMES" in named else 1
     if not 1 <= turns <= 10_000:
         raise GCodeError.at(line, f"an arc turns {turns} times; expected 1 to 10000.")
     centre = np.array([to_si(v, unit) for v in numbers[:3]])
-    return Arc(centre, np.array(numbers[3:6]) / size, to_si(numbers[6], unit), angle, turns)
+    radius = to_si(numbers[6], unit) if len(numbers) > 6 else None
+    return Arc(centre, np.array(numbers[3:6]) / size, radius, angle, turns)
 
 
 @dataclass(frozen=True)
@@ -107,6 +118,7 @@ class Drilling:
     feed: float
     clear: float
     out: float
+    first: float
     step: float
     dwell: float
     feed_out: bool
@@ -115,19 +127,19 @@ class Drilling:
         """(height above the point, feed, dwell before), in order; a feed of 0 is a rapid."""
         moves = [(self.out, 0.0, 0.0), (self.clear, 0.0, 0.0)]
         if self.step > 0.0:
-            pecks = math.ceil((self.clear + self.depth) / self.step)
-            for peck in range(1, min(pecks, MAX_PECKS)):
-                moves += [(self.clear - peck * self.step, self.feed, 0.0), (self.clear, 0.0, 0.0)]
-                moves.append((self.clear - peck * self.step, 0.0, 0.0))
+            pecks = math.ceil((self.clear + self.depth - self.first) / self.step) + 1
+            for peck in range(min(pecks, MAX_PECKS) - 1):
+                down = self.clear - self.first - peck * self.step
+                moves += [(down, self.feed, 0.0), (self.clear, 0.0, 0.0), (down, 0.0, 0.0)]
         moves.append((-self.depth, self.feed, 0.0))
         moves.append((self.clear, self.feed if self.feed_out else 0.0, self.dwell))
         return [*moves, (self.out, 0.0, 0.0)]
 
 
 def drilling_of(values: list[str], unit: str, speed: float, line: int) -> Drilling | None:
-    """CYCLE/...; None for OFF. ``speed`` is the spindle's (1/s). Raises GCodeError for what is not read."""
+    """CYCLE/...; None for OFF and INIT. ``speed`` is the spindle's (1/s). Raises GCodeError for what is not read."""
     words = [v.upper() for v in values]
-    if words[:1] in (["OFF"], ["NOMORE"]):
+    if words[:1] in (["OFF"], ["NOMORE"], ["INIT"]):
         return None
     kinds = [word for word in words if word in _KINDS]
     if not kinds or words[0] not in _KINDS:
@@ -143,10 +155,12 @@ def drilling_of(values: list[str], unit: str, speed: float, line: int) -> Drilli
         raise GCodeError.at(line, text)
     near = max(rapid, clear - rapid, 0.0)
     away = max(near, clear, named.get("RTRCTO", 0.0), named.get("RETURN", 0.0))
-    lengths = [to_si(v, unit) for v in (depth, near, away, max(named.get("STEP", 0.0), 0.0))]
+    step = max(named.get("STEP", named.get("SUBPECK", 0.0)), 0.0)
+    first = max(named.get("1STPECK", step), 0.0) or step
+    down, near, away, first, step = (to_si(v, unit) for v in (depth, near, away, first, step))
     feed = feed_of(named[feeds[0]], feeds[0], unit, speed)
     leaves = bool(_OUT_AT_FEED & set(kinds))
-    return Drilling(lengths[0], feed, lengths[1], lengths[2], lengths[3], max(named.get("DWELL", 0.0), 0.0), leaves)
+    return Drilling(down, feed, near, away, first, step, max(named.get("DWELL", 0.0), 0.0), leaves)
 
 
 def _said_of(words: list[str], kind: str, line: int) -> tuple[dict[str, float], list[float]]:

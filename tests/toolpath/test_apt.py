@@ -309,3 +309,27 @@ def test_a_remark_that_goes_on_below_is_one() -> None:
     path = read_apt(f"UNITS/MM\n{rows}$$ a remark $\nFEDRAT/100,MMPM\nGOTO/0,0,0\nGOTO/1,0,0\nFINI\n")
     assert len(path) == 2
     assert not path.findings
+
+
+def test_arcs_without_a_radius_have_that_of_their_start() -> None:
+    """As SolidWorks CAM and Creo write them: centre and axis, and the circle goes through the point before."""
+    arc = "UNITS/MM\nFEDRAT/600\nFROM/10,0,0\nCIRCLE/0,0,0,0,0,-1\nGOTO/{}\nFINI\n"
+    path = read_apt(arc.format("0,10,0"))
+    np.testing.assert_allclose(np.hypot(*path.p[:, :2].T), 10e-3, atol=1e-8)
+    assert path.p[1, 1] < 0.0  # clockwise, three quarters round
+    np.testing.assert_allclose(path.p[-1] * 1e3, [0, 10, 0], atol=1e-9)
+    with pytest.raises(
+        GCodeError, match="Line 5: the arc's ends lie 10.0000 mm and 9.0000 mm from its centre; expected one radius"
+    ):
+        read_apt(arc.format("0,9,0"))
+
+
+def test_cycles_of_solidworks_cam() -> None:
+    """CYCLE/INIT says nothing; DEEP2 pecks 5 first and then 2 at a time, from 3 above the hole to 10 below it."""
+    path = read_apt(
+        "UNIT/MM\nSPINDL/2000,RPM,CLW\nRAPID/\nGOTO/15,15,25\nCYCLE/INIT\n"
+        "CYCLE/DEEP2,FEDTO,10,1STPECK,5.,SUBPECK,4.,MMPM,200,RAPTO,3.,RTRCTO,25.\nGOTO/15,15,0\nCYCLE/OFF\nFINI\n"
+    )
+    feeds = [round(float(z) * 1e3, 6) for z, cut in zip(path.p[:, 2], path.cutting) if cut]
+    assert feeds == [-2, -6, -10]
+    assert path.p[-1, 2] * 1e3 == pytest.approx(25)

@@ -173,6 +173,12 @@ class Compensation:
         machine.p[self.axes[0]], machine.p[self.axes[1]] = u, v
         self.programmed = (programmed[0], programmed[1], w)
 
+    def stand_beside(self, machine: Machine, start: list[float]) -> None:
+        """The tool stands beside the contour's first point ``start``, where moves of its own have led it."""
+        u, v, _ = self.current(machine)
+        self._stand(machine, u, v, list(machine.p), (start[self.axes[0]], start[self.axes[1]]))
+        self.corner = (u, v)
+
     # --- straight moves
     def straight(self, machine: Machine, block: Block, full: list[float]) -> None:
         """G0 or G1 to the programmed point ``full`` (x, y, z, a, b, c)."""

@@ -37,6 +37,7 @@ NAMED = {
     120: "G12 mills a circular pocket (Haas), which is not read; let the CAM system write its moves out.",
     130: "G13 mills a circular pocket (Haas), which is not read; let the CAM system write its moves out.",
     1500: "G150 mills a pocket (Haas), which is not read; let the CAM system write its moves out.",
+    470: "G47 engraves text (Haas), which is not read; let the CAM system write its moves out.",
     510: "G51 scales coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
     511: "G51.1 mirrors coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
     682: "G68.2 tilts the working plane, which is not read; post the program with the tool's direction.",
@@ -64,7 +65,7 @@ _SINUMERIK_TEXT = (
     ("workpiece", r"\n[ \t]*(?:n\d+[ \t]*)?workpiece[ \t]*\("),
     ("cycle8", r"\n[ \t]*(?:n\d+[ \t]*)?cycle8\d+[ \t]*\("),
 )
-_HEIDENHAIN = (("begin pgm", r"\n[ \t]*\d*[ \t]*begin pgm\b"),)
+_HEIDENHAIN = (("begin pgm", r"\n[ \t]*n?\d*[ \t]*begin pgm\b"),)
 _GRBL = (("$", r"\n[ \t]*\$(?:[a-z#$]{0,2}[ \t]*(?=\n)|h|\d+=|n\d*=|j=|rst=)"),)
 _SINUMERIK = (
     *_words("g710", "g700", "g500", "g601", "g641", "g642", "g643", "g644", "g645", "m17"),
@@ -145,6 +146,10 @@ class Dialect:
                     "G43.4 (tool centre point control) is read as G43: points are tip points",
                 )
             raw = _take_corner(raw, machine)
+            if "." in raw and _POINT.search(raw):  # Z. is Z0.
+                raw = _VERBATIM_OR_CODE.sub(
+                    lambda part: part[0] if part[0][0] in '(;<"' else _POINT.sub(r"\g<1>0.", part[0]), raw
+                )
             code = "O" + raw[1:] if raw[:1] == ":" else raw
             if _dwells(code, machine.motion):
                 code = _IN_MS.sub(_in_seconds, code)
@@ -169,6 +174,8 @@ class Dialect:
 
     def meant_otherwise(self, block: Block) -> None:
         """Refuse G words that LinuxCNC knows and that mean something else on this control."""
+        if block.twice and self.strict:
+            raise block.refuse(block.twice)
         if self.name == "fanuc" and modal.DIAMETER in block.g:
             raise block.refuse(f"{g_name(block.g[modal.DIAMETER])} of a Fanuc control is not read; remove the word.")
         if self.name == "sinumerik" and block.g.get(modal.COORDINATES) in (580, 590):
@@ -274,6 +281,7 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
     return Dialect("linuxcnc", marked=False)
 
 
+_POINT = re.compile(r"(?<![A-Za-z_])([A-Za-z]\s*[-+]?)\.(?![\d.])")
 _TIP = re.compile(r"\bG43\.[45]\b", re.IGNORECASE)
 _SMOOTHING = re.compile(
     r"\bG0?5\.1\s*Q[0123]\b(?:\s*[RXYZ]\d+\.?)*|\bG0?5\s*P(?:10000|[0123])\b|\bG0?8\s*P[01]\b|"

@@ -21,6 +21,7 @@ FEW, RARE = 3, 0.1
 SAMPLE = 2_000_000
 """Bytes at the start of a program in which that is looked for."""
 _COORDINATE = re.compile(rb"(?<![A-Za-z_#\[(<\"=])[XYZIJxyzij](-?\d{1,9}(?:\.\d*)?)(?![\w.\[])")
+_COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
 QUARTER = 90.0 + 1e-6
 """degrees that a tool which leans is led through, or stands from upright, without a doubt."""
 LONG_DWELL = 60.0
@@ -29,10 +30,12 @@ LONG_DWELL = 60.0
 
 def doubt_points(findings: Findings, data: bytes) -> None:
     """Note whole numbers without a point where others have one (X10.): many controls count them in thousandths."""
-    words = [number for number in _COORDINATE.findall(data[:SAMPLE]) if not float(number) % 1.0 and float(number)]
+    sample = _COMMENT.sub(b"", data[:SAMPLE])
+    words = [number for number in _COORDINATE.findall(sample) if not float(number) % 1.0 and float(number)]
     whole = sum(b"." not in number for number in words)
     if not whole or len(words) - whole < FEW or whole > max(RARE * len(words), 1.0):
         return
+    data = _COMMENT.sub(lambda comment: b" " * len(comment[0]), data)
     for found in _COORDINATE.finditer(data):
         if b"." not in found[1] and int(found[1]) != 0:
             line = data.count(b"\n", 0, found.start()) + 1

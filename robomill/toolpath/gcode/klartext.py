@@ -11,14 +11,15 @@ from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.corners import LEGS, ROUND
 from robomill.toolpath.gcode.dialects import plain_numbers
-from robomill.toolpath.gcode.klartext_values import NUMBER, KlartextValues
+from robomill.toolpath.gcode.klartext_approach import KlartextApproach, centre_of
+from robomill.toolpath.gcode.klartext_values import NUMBER
 from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.sinumerik import named_tool
 from robomill.toolpath.gcode.tool_axis import angles_of
 from robomill.toolpath.gcode.words import Block
 
-_NUMBERED = re.compile(r"^\s*(/?)\s*(?:\d+(?![\d.,])\s*)?(/?)\s*")
-_LABEL = re.compile(r"^[ \t]*\d*[ \t]*LBL[ \t]+(\"[^\"\n]+\"|\d+)", re.MULTILINE | re.IGNORECASE)
+_NUMBERED = re.compile(r"^\s*(/?)\s*(?:N?\d+(?![\d.,])\s*)?(/?)\s*")
+_LABEL = re.compile(r"^[ \t]*N?\d*[ \t]*LBL[ \t]+(\"[^\"\n]+\"|\d+)", re.MULTILINE | re.IGNORECASE)
 _WORD = re.compile(rf"(?<![A-Z])(I?)(PR|PA|T[XYZ]|[XYZABC])[ \t]*({NUMBER})")
 _FEED = re.compile(rf"(?<![A-Z])F[ \t]*(MAX|AUTO|{NUMBER})")
 _RADIUS = re.compile(rf"(?<![A-Z])R[ \t]*({NUMBER})")
@@ -36,6 +37,7 @@ _CORNER = re.compile(rf"(RND ?R?|CHF ?L?) ?({NUMBER})(?: ?F.*)?")
 _SILENT = re.compile(
     r"BLK FORM|TOOL DEF|FUNCTION (?:RESET )?TCPM|FUNCTION MODE MILL|PLANE RESET|M1(?:07|08|16|17|20|24|26|27|38)\b"
 )
+_UPRIGHT = re.compile(r"PLANE SPATIAL(?: SP[ABC][-+]?0*\.?0*(?![\d.]))+(?: (?:STAY|SEQ[-+]|TABLE ROT|COORD ROT))*$")
 MAX_CODE, MAX_LINES = 1000, 100
 """Characters of a line and lines of a block that can be read."""
 _PLANES = {frozenset({0, 1}): 17, frozenset({0, 2}): 18, frozenset({1, 2}): 19}
@@ -47,29 +49,29 @@ Words = dict[str, tuple[str, float]]
 """By letter: "I" where it counts as a step, and the value."""
 
 
-class Klartext(KlartextValues):
+class Klartext(KlartextApproach):
     """Reads what stands in a dialogue; what is left of a line goes on to the reader of words."""
 
-    pole: tuple[int, float, float] | None = None
     heading: tuple[float, float] | None = None
     leaving: tuple[float, float] | None = None
-    side = "0"
     modal_cycle = False
 
     def klartext_line(self, index: int) -> str | None:
         """Line ``index``, and those that continue it, in LinuxCNC's words; None where it is done."""
         line = index + 1
-        code, self.pc, skipped = self._joined(index)
+        code, self.pc, skipped = self.joined_block(index)
         if skipped:
             self.machine.findings.add("block-delete", "info", line, "block delete (/) is off: these lines are executed")
-        if not code or code[0] == "*" or (code[0] == "(" and code[-1] == ")"):
+        if not code or code[0] in "*(":
             return None
         first = code.split(" ", 1)[0]
         if first in ("L", "LN", "LP", "C", "CR", "CP", "CT") or _FEED.match(code) or _M.match(code):
             return self._move("L" if first[0] in "FM" else first, code, line)
         if first == "CC":
-            self._set_pole(code, line)
+            self.set_pole(code, line)
             return None
+        if first in ("APPR", "DEP"):
+            return self.approach(code, line)
         if first in ("RND", "CHF") or re.match(r"RND|CHF", first):
             raise GCodeError.at(line, f"{first[:3]} is read behind a straight cut (L) alone.")
         if code.startswith("TOOL CALL"):
@@ -89,7 +91,12 @@ class Klartext(KlartextValues):
             return "M2"
         if first == "STOP":
             return "M0"
-        if _SILENT.match(code):
+        if self.tool_defined(code, line):
+            return None
+        if _UPRIGHT.match(code):
+            for number in (120, 121, 122):
+                self.set_q(f"Q{number}", 0.0, line)
+        if _SILENT.match(code) or _UPRIGHT.match(code):
             name = " ".join(code.split(" ")[:2])
             self.machine.findings.add("harmless-word", "ignored", line, f"{name} is left out: it moves nothing")
             return None
@@ -100,7 +107,7 @@ class Klartext(KlartextValues):
             raise GCodeError.at(line, text)
         raise GCodeError.at(line, f"{' '.join(code.split(' ')[:3])} is of Heidenhain's and is not read; {_LET}.")
 
-    def _joined(self, index: int) -> tuple[str, int, bool]:
+    def joined_block(self, index: int) -> tuple[str, int, bool]:
         """The block at ``index`` in capitals, without number and comment; what comes next; whether / stands before."""
         lines, skipped = self.file.lines, False
         parts: list[str] = []
@@ -126,9 +133,9 @@ class Klartext(KlartextValues):
         compensation = self.machine.compensation
         if compensation is not None and compensation.programmed is not None:
             return list(compensation.programmed_point(self.machine))
-        return list(self.machine.p)
+        return self.machine.said_point()
 
-    def _set_pole(self, code: str, line: int) -> None:
+    def set_pole(self, code: str, line: int) -> None:
         """CC: a centre or pole in the plane of its two axes; one that is not given stays, without any it is here."""
         at, said = self.here(), {}
         for step, letter, value in _WORD.findall(code):
@@ -146,6 +153,13 @@ class Klartext(KlartextValues):
         if self.pole is None:
             raise GCodeError.at(line, "a circle or polar coordinates need their centre; give CC X Y before.")
         return self.pole
+
+    def pole_in_plane(self, line: int) -> tuple[float, float]:
+        """The centre or pole in the plane XY."""
+        plane, *pole = self._pole(line)
+        if plane != 17:
+            raise GCodeError.at(line, "APPR is read before contours in the plane XY alone.")
+        return pole[0], pole[1]
 
     def straight(self, code: str, line: int) -> str | None:
         """A straight move in LinuxCNC's words."""
@@ -227,7 +241,7 @@ class Klartext(KlartextValues):
                 raise GCodeError.at(line, "the tool axis TX TY TZ is 0; expected a direction.")
             end[3], end[4] = angles_of(axis3, (at[3], at[4]))
         if kind in ("LP", "CP"):
-            self._polar(words, at, end, line)
+            self.polar_place(words, at, end, line)
         moved = {letter for letter in "XYZABC" if letter in words}
         if kind in ("LP", "CP", "C"):
             moved |= {"XYZ"[axis] for axis in axes(self._pole(line)[0])[:2]}
@@ -236,17 +250,19 @@ class Klartext(KlartextValues):
         arc = "" if kind[0] == "L" else self._arc(kind, words, code, at, end, line)
         if places:
             self.heading = self.leaving if arc else (end[0] - at[0], end[1] - at[1])
+            if self.heading is None or any(self.heading):
+                self.course = self.heading
         return places, arc
 
-    def _polar(self, words: Words, at: list[float], end: list[float], line: int) -> None:
+    def polar_place(self, places: Words, at: list[float], end: list[float], line: int) -> None:
         plane, *pole = self._pole(line)
         first, second, _ = axes(plane)
         radius = math.hypot(at[first] - pole[0], at[second] - pole[1])
         angle = math.degrees(math.atan2(at[second] - pole[1], at[first] - pole[0]))
-        if "PR" in words:
-            radius = words["PR"][1] + (radius if words["PR"][0] else 0.0)
-        if "PA" in words:
-            angle = words["PA"][1] + (angle if words["PA"][0] else 0.0)
+        if "PR" in places:
+            radius = places["PR"][1] + (radius if places["PR"][0] else 0.0)
+        if "PA" in places:
+            angle = places["PA"][1] + (angle if places["PA"][0] else 0.0)
         end[first] = pole[0] + radius * math.cos(math.radians(angle))
         end[second] = pole[1] + radius * math.sin(math.radians(angle))
 
@@ -262,8 +278,10 @@ class Klartext(KlartextValues):
             radius = _RADIUS.search(_SIDE.sub("", _SENSE.sub("", code)))
             if radius is None:
                 raise GCodeError.at(line, "CR needs R, its radius.")
-            self.leaving = None
-            return f"G17 {name} R{self.number(radius[1], line):.12f}"
+            size = self.number(radius[1], line)
+            middle = centre_of((at[0], at[1]), (end[0], end[1]), size, turn)
+            self.leaving = -turn * (end[1] - middle[1]), turn * (end[0] - middle[0])
+            return f"G17 {name} R{size:.12f}"
         plane, *pole = self._pole(line)
         first, second, _ = axes(plane)
         self.leaving = (-turn * (end[1] - pole[1]), turn * (end[0] - pole[0])) if plane == 17 else None
@@ -294,9 +312,9 @@ class Klartext(KlartextValues):
 
     def _look_ahead(self, kind: str) -> None:
         """A corner that the next line rounds or chamfers."""
-        code, after, _ = self._joined(self.pc)
+        code, after, _ = self.joined_block(self.pc)
         while not code and after < min(len(self.file.lines), self.pc + MAX_LINES):
-            code, after, _ = self._joined(after)
+            code, after, _ = self.joined_block(after)
         found = _CORNER.fullmatch(code)
         if found is not None:
             line = self.pc + 1

@@ -2,10 +2,13 @@
 
 import math
 import re
+from dataclasses import replace
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.machine import Scale
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
+from robomill.toolpath.gcode.program import TRAVERSE
 from robomill.toolpath.gcode.sinumerik_flow import SinumerikFlow
 from robomill.toolpath.gcode.sinumerik_words import Hole
 from robomill.toolpath.gcode.words import Block, normalise
@@ -41,6 +44,7 @@ _DRILLS = {
     209: "tapping",
     240: "centring",
 }
+_PATTERNS = (220, 221)
 
 
 class KlartextValues(SinumerikFlow):
@@ -48,6 +52,7 @@ class KlartextValues(SinumerikFlow):
 
     drill: int = 0
     due = False
+    pole: tuple[int, float, float] | None = None
     preset: float | None = None
 
     # --- values
@@ -137,8 +142,8 @@ class KlartextValues(SinumerikFlow):
         if found is None:
             raise GCodeError.at(line, f"{code[:30]} is not read; expected CYCL DEF and its number.")
         number, part, rest = int(found[1][:4]), found[2], found[3]
-        if number in _DRILLS:
-            self.drill = number
+        if number in _DRILLS or number in _PATTERNS:
+            self.drill = number if number in _DRILLS else self.drill
             for name, value in re.findall(r"(Q\d+) ?= ?(\S+)", rest):
                 if name == "Q208" and value in ("MAX", "FMAX"):
                     self.set_q(name, 0.0, line)
@@ -146,6 +151,8 @@ class KlartextValues(SinumerikFlow):
                 if not re.fullmatch(NUMBER, value):
                     raise GCodeError.at(line, f"CYCL DEF {number} has {name}={value}, which is not read.")
                 self.set_q(name, self.number(value, line), line)
+            if number in _PATTERNS:
+                self._pattern(number, line)
             return None
         return self._other_cycle(number, part, rest.strip(), line)
 
@@ -167,11 +174,13 @@ class KlartextValues(SinumerikFlow):
             if self.preset is not None and self.preset != preset:
                 raise GCodeError.at(line, "CYCL DEF 247 chooses a second preset; split the program there.")
             self.preset = preset
-        elif number in (19, 8, 11) and part != "0":
+        elif number == 8 and part != "0":
+            self._mirror(rest, line)
+        elif number in (19, 11) and part != "0":
             values = [float(v) for v in re.findall(r"[-+]?[\d.]+", rest)]
-            if any(v != (1.0 if number == 11 else 0.0) for v in values) or (number == 8 and rest):
-                raise GCodeError.at(line, f"CYCL DEF {number}.{part} {rest[:20]} tilts, mirrors or scales: not read.")
-        elif number not in (7, 8, 9, 10, 11, 13, 19, 32, 247):
+            if any(v != (1.0 if number == 11 else 0.0) for v in values):
+                raise GCodeError.at(line, f"CYCL DEF {number}.{part} {rest[:20]} tilts or scales: not read.")
+        elif number not in (7, 8, 9, 10, 11, 13, 19, 32, 247, *_TUNING):
             raise GCodeError.at(line, f"CYCL DEF {number} {rest[:20]} is a cycle that is not read; {_LET}.")
         return None
 
@@ -192,7 +201,18 @@ class KlartextValues(SinumerikFlow):
         shift, before = frame_of(self.machine)
         self._see(shift, angle + (before if step else 0.0), line)
 
+    def _mirror(self, letters: str, line: int) -> None:
+        """CYCL DEF 8.1: X and Y are mirrored about the datum; without letters they are as they were."""
+        if not re.fullmatch(r"(?:[XY]\b ?)*", letters):
+            raise GCodeError.at(line, f"CYCL DEF 8.1 {letters[:20]} is not read; expected X, Y or both.")
+        self.machine.need_compensation_off(Block(line), "CYCL DEF 8")
+        factors = (-1.0 if "X" in letters else 1.0, -1.0 if "Y" in letters else 1.0, 1.0)
+        self.machine.set_scale(Scale(factors) if letters else None)
+        self.pole = None
+
     def _see(self, shift: list[float], angle: float, line: int) -> None:
+        if self.machine.scale is not None and frame_of(self.machine) != (shift, angle):
+            raise GCodeError.at(line, "a datum shift or rotation inside of a mirror image is not read; end that first.")
         self.machine.need_compensation_off(Block(line), "A datum shift or rotation")
         if not any(shift) and angle == 0.0:
             turn_back(self.machine)
@@ -200,6 +220,48 @@ class KlartextValues(SinumerikFlow):
             see_frame(self.machine, shift, angle)
 
     # --- drilling
+    def _pattern(self, number: int, line: int) -> None:
+        """CYCL DEF 220 and 221 drill at once, on a circle or in lines."""
+        if self.drill == 0:
+            text = f"CYCL DEF {number} repeats a cycle, but none is defined; write CYCL DEF 200 before."
+            raise GCodeError.at(line, text)
+        if number == 220:
+            count = self._asked(241, number, line)
+            first, last, step = self.q(245), self.q(246), self.q(247)
+            if step == 0.0:
+                whole = abs(abs(last - first) - 360.0) < 1e-6
+                step = (last - first) / max(count if whole else count - 1, 1)
+            angles = [math.radians(first + k * step) for k in range(count)]
+            radius = 0.5 * abs(self.q(244))
+            points = [(self.q(216) + radius * math.cos(t), self.q(217) + radius * math.sin(t)) for t in angles]
+        else:
+            columns, rows = self._asked(242, number, line), self._asked(243, number, line)
+            t = math.radians(self.q(224))
+            points = []
+            for row in range(rows):
+                for column in range(columns) if row % 2 == 0 else reversed(range(columns)):
+                    u, v = column * self.q(237), row * self.q(238)
+                    points.append(
+                        (
+                            self.q(225) + u * math.cos(t) - v * math.sin(t),
+                            self.q(226) + u * math.sin(t) + v * math.cos(t),
+                        )
+                    )
+        if len(points) > MAX_PECKS:
+            raise GCodeError.at(line, f"CYCL DEF {number} has more than {MAX_PECKS} holes; split it.")
+        hole = self._hole_of(line)
+        if self.machine.p[2] < hole.retract and not self.machine.away[2]:
+            self._to(TRAVERSE, line, hole.retract)
+        low = replace(hole, retract=hole.clear) if self.q(301, 1.0) == 0.0 else hole
+        self.drill_at(points[:-1], low, line)
+        self.drill_at(points[-1:], hole, line)
+
+    def _asked(self, number: int, cycle: int, line: int) -> int:
+        value = self.q(number)
+        if not 1.0 <= value <= MAX_PECKS:
+            raise GCodeError.at(line, f"CYCL DEF {cycle} has Q{number}={value:g} repeats; expected 1 to {MAX_PECKS}.")
+        return round(value)
+
     def _cycle_call(self, code: str, line: int) -> str | None:
         rest = code.removeprefix("CYCL CALL").strip()
         if rest.startswith("PAT"):
@@ -252,4 +314,6 @@ class KlartextValues(SinumerikFlow):
         return Hole(top, surface + safety, bottom, max(self.q(211), 0.0), down, out, tuple(pecks), True, pitch)
 
 
+_TUNING = (332, 392)
+"""Cycles of machine makers that suit the control to the weight of the part and move nothing."""
 _LET = "let the CAM system write its moves out"

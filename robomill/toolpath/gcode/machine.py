@@ -43,6 +43,10 @@ class Scale:
         """A place along an axis."""
         return self.centre[axis] + self.factors[axis] * (value - self.centre[axis])
 
+    def said(self, axis: int, value: float) -> float:
+        """What a line says of a place along an axis."""
+        return self.centre[axis] + (value - self.centre[axis]) / self.factors[axis]
+
 
 class Machine:
     """State that lines change; the fields that the rules of ``motion_rules`` use are those of ``records.STATE``.
@@ -230,6 +234,23 @@ class Machine:
             polar = "@" in words or "^" in words
             said = [letter in words or (polar and letter != "z") for letter in "xyz"]
             self.set_away(tuple(before and not now for before, now in zip(self.away, said)))
+
+    # --- coordinates as lines say them
+    def set_scale(self, scale: Scale | None) -> None:
+        """Words are scaled from here on."""
+        self.scale, self.initial_level = scale, math.nan
+
+    def said_point(self) -> list[float]:
+        """Where the tool stands (x, y, z, a, b, c) as a line would say it, while words are scaled or not."""
+        scale = self.scale
+        if scale is None:
+            return list(self.p)
+        return [*(scale.said(axis, self.p[axis]) for axis in range(3)), *self.p[3:]]
+
+    def meant(self, place: tuple[float, float]) -> tuple[float, float]:
+        """Where X and Y of a line lie in the current coordinate system."""
+        scale = self.scale
+        return place if scale is None else (scale.place(0, place[0]), scale.place(1, place[1]))
 
     # --- saved modes
     def save_modes(self) -> dict[str, Any]:

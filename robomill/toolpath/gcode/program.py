@@ -214,6 +214,10 @@ class Recorder:
         self._rows[self._taken] = _row_of(move)
         self.take(self._taken + 1)
 
+    def last(self) -> np.void | None:
+        """The row of the last move; None before the first."""
+        return self._rows[self._taken - 1] if len(self) else None
+
     def free(self) -> tuple[np.ndarray, int]:
         """Rows to be written, and how many of them are taken already: not all."""
         return self._rows, self._taken

@@ -99,7 +99,7 @@ def _places(code: str, machine: Machine) -> str:
     """AC( ) says a place and IC( ) a step, whatever mode is in force: as the mode in force counts."""
     absolute = _absolute(code, machine)
     compensation = machine.compensation
-    here = machine.p
+    here = machine.said_point()
     if compensation is not None and compensation.programmed is not None:
         here = compensation.programmed_point(machine)
 

@@ -8,7 +8,8 @@ import re
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode.sinumerik_words import SinumerikWords, value_end
+from robomill.toolpath.gcode.sinumerik_shapes import SinumerikShapes
+from robomill.toolpath.gcode.sinumerik_words import value_end
 from robomill.toolpath.gcode.words import Block
 
 FIRST_VARIABLE, MOST_VARIABLES = 2000, 1000
@@ -26,8 +27,8 @@ _SETS = re.compile(r"[ \t]*([A-Z_]{2}\w*)[ \t]*=(?!=)")
 _MODAL = re.compile(r"MCALL[ \t]+(L\d{1,7}|[A-Z_]{2}\w*)[ \t]*(?:\([ \t]*\))?")
 
 
-class SinumerikFlow(SinumerikWords):
-    """Follows the structure of a program; ``SinumerikWords`` reads what else its lines say."""
+class SinumerikFlow(SinumerikShapes):
+    """Follows the structure of a program; ``SinumerikShapes`` reads what else its lines say."""
 
     modal_sub: tuple[str, int, int] | None = None
 
@@ -49,7 +50,7 @@ class SinumerikFlow(SinumerikWords):
         if found is not None and found[1] in self.variables:
             self._set_variables(plain, line)
             return True
-        return False
+        return plain[:1] in "AMSHC" and self.sinumerik_shape(plain, line)
 
     def _set_variables(self, plain: str, line: int) -> None:
         """One or several on a line."""

@@ -196,15 +196,18 @@ class SinumerikWords(MacroCalls):
 
     # --- jumps
     def _jump(self, found: re.Match[str], line: int) -> None:
-        if found[1] is not None and self.value(found[1], line) == 0.0:
-            return
-        places = self.labels.get(found[3], [])
-        if not places and re.fullmatch(r"N\d+", found[3]):
-            places = self._line_numbers.get(int(found[3][1:10]), [])
+        if found[1] is None or self.value(found[1], line) != 0.0:
+            self._jump_to(found[2], found[3], line)
+
+    def _jump_to(self, way: str, label: str, line: int) -> None:
+        """GOTOF looks ahead, GOTOB back, GOTO ahead and then back."""
+        places = self.labels.get(label, [])
+        if not places and re.fullmatch(r"N\d+", label):
+            places = self._line_numbers.get(int(label[1:10]), [])
         ahead, behind = [p for p in places if p >= self.pc], [p for p in places if p < self.pc]
-        chosen = {"GOTOF": ahead[:1], "GOTOB": behind[-1:]}.get(found[2], ahead[:1] or behind[-1:])
+        chosen = {"GOTOF": ahead[:1], "GOTOB": behind[-1:]}.get(way, ahead[:1] or behind[-1:])
         if not chosen:
-            raise GCodeError.at(line, f"{found[2]} {found[3]} leads nowhere: there is no such label on that side.")
+            raise GCodeError.at(line, f"{way} {label} leads nowhere: there is no such label on that side.")
         self.pc = chosen[0]
 
     @cached_property

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.codes import G_GROUPS, M_GROUPS, g_name
+from robomill.toolpath.gcode.codes import COOLANT, G_GROUPS, M_GROUPS, g_name
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.foreign import said_of
 from robomill.toolpath.gcode.motion_rules import MOST
@@ -20,7 +20,8 @@ class Block:
     """What a line says. ``words`` maps letters (``@`` polar radius, ``^`` polar angle) to values.
 
     ``g`` and ``m`` map modal groups to codes (G codes ten times their number); ``motion_rules`` is the G code of the
-    motion that the line makes, -1 for none.
+    motion that the line makes, -1 for none. ``twice`` is the refusal that LinuxCNC has for words that other controls
+    take together (G0 G0, M7 M8).
     """
 
     line: int
@@ -32,6 +33,7 @@ class Block:
     unknown_m: list[int] = field(default_factory=list)
     unknown_g: list[int] = field(default_factory=list)
     motion: int = -1
+    twice: str = ""
 
     def refuse(self, message: str) -> GCodeError:
         """The error to raise: ``message`` with the line in front."""
@@ -155,9 +157,10 @@ def _read_g(reader: Reader, block: Block) -> None:
     if code == 800 and group in block.g:
         return
     if block.g.get(group, 800) != 800:
-        raise reader.refuse(
-            f"{g_name(block.g[group])} and {g_name(code)} are of one modal group; a line can hold one of them."
-        )
+        text = f"{g_name(block.g[group])} and {g_name(code)} are of one modal group; a line can hold one of them."
+        if block.g[group] != code:
+            raise reader.refuse(text)
+        block.twice = text
     block.g[group] = code
 
 
@@ -171,7 +174,10 @@ def _read_m(reader: Reader, block: Block) -> None:
         block.unknown_m.append(code)
         return
     if group in block.m:
-        raise reader.refuse(f"M{block.m[group]} and M{code} are of one modal group; a line can hold one of them.")
+        text = f"M{block.m[group]} and M{code} are of one modal group; a line can hold one of them."
+        if block.m[group] != code and not (group == COOLANT and code != 9 != block.m[group]):
+            raise reader.refuse(text)
+        block.twice = text
     block.m[group] = code
     if len(block.m) > 4:
         raise reader.refuse("there are more than 4 M codes; a line can hold 4.")

@@ -242,3 +242,29 @@ def test_seconds_of_a_dwell_stand_behind_x_u_or_p(dialect: str, word: str) -> No
 def test_poles_of_a_sinumerik_are_named(code: str) -> None:
     with pytest.raises(GCodeError, match=f"Line 2: {code} sets the pole of polar coordinates"):
         interpret(f"G71 F9\n{code} X1 Y1\nM30\n")
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("G0 G0 X1", "G0 and G0 are of one modal group"),
+        ("M7 M8", "M7 and M8 are of one modal group"),
+        ("M3 M3", "M3 and M3 are of one modal group"),
+    ],
+)
+def test_words_said_twice_stop_linuxcnc_alone(text: str, says: str) -> None:
+    assert interpret(f"G21 G0 X0\n{text}\nG0 X2\n").end[-1, 0] * 1e3 == pytest.approx(2)
+    with pytest.raises(GCodeError, match=f"Line 2: {says}"):
+        interpret(f"G21 G0 X0\n{text}\nG0 X2\n", dialect="linuxcnc")
+
+
+def test_a_point_alone_is_nought_on_a_fanuc() -> None:
+    program = interpret("G21 G90 G0 X5. Y-.5\nG43 Z. H3 (Z.)\nX-. Y.5\nM30\n", dialect="fanuc")
+    assert (program.end[-1] * 1e3).tolist() == [0.0, 0.5, 0.0]
+    with pytest.raises(GCodeError, match="'.' is not a number"):
+        interpret("G21 G0 Z.\n", dialect="linuxcnc")
+
+
+def test_haas_engraving_is_named() -> None:
+    with pytest.raises(GCodeError, match="Line 2: G47 engraves text"):
+        interpret("G20 G0 X0\nG47 E7.5 F15. I45. J.5 P0 R0.05 Z-0.005 (TEXT)\n")

@@ -18,6 +18,8 @@ POINTS = "".join(f"X{k}.5 Y{k}.\n" for k in range(60))
         ("X0", "auto", False),
         ("X100.", "auto", False),
         ("(X100)", "auto", False),
+        ("(3X3 BLOCK, X100 Y7)", "auto", False),
+        ("X1.5 ;X100 on", "auto", False),
         ("#100=5\nX#100", "auto", False),
     ],
 )

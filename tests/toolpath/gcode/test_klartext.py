@@ -153,7 +153,7 @@ def test_tool_axes_and_m_words() -> None:
 @pytest.mark.parametrize(
     ("body", "says"),
     [
-        ("APPR LCT X+1 R5 RL\n", "APPR LCT X.1 is of Heidenhain's and is not read"),
+        ("FL X+1 R5 RL\n", "FL X.1 R5 is of Heidenhain's and is not read"),
         ("FL AN+45\n", r"FL AN\+45 is of"),
         ("PLANE SPATIAL SPA+0 SPB+45 SPC+0 TURN\n", "PLANE SPATIAL"),
         ("CALL PGM TNC:\\SUB.H\n", "CALL PGM TNC"),

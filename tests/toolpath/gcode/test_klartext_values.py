@@ -98,9 +98,14 @@ def test_dwells_are_waited() -> None:
         ("L X+5 FMAX M99\n", "a cycle is called, but none is defined"),
         ("CYCL DEF 251 POCKET ~\nQ218=60\n", "CYCL DEF 251 POCKET .* is a cycle that is not read"),
         ("CYCL DEF 7.1 #5\n", "CYCL DEF 7 takes its shift from a table"),
-        ("CYCL DEF 8.1 X\n", "tilts, mirrors or scales"),
-        ("CYCL DEF 11.1 SCL 0.9\n", "tilts, mirrors or scales"),
-        ("CYCL DEF 19.1 A+0 B+30\n", "tilts, mirrors or scales"),
+        ("CYCL DEF 8.1 Z\n", "CYCL DEF 8.1 Z is not read; expected X, Y or both"),
+        ("CYCL DEF 8.1 X\nCYCL DEF 7.1 X+3\n", "a datum shift or rotation inside of a mirror image"),
+        ("CYCL DEF 8.1 X\nL X+9 RL F9\n", "G41 while coordinates are mirrored"),
+        ("CYCL DEF 220 ~\nQ241=4\n", "CYCL DEF 220 repeats a cycle, but none is defined"),
+        ("CYCL DEF 200 ~\nQ200=2 ~\nQ201=-5\nCYCL DEF 221 Q242=0\n", "CYCL DEF 221 has Q242=0 repeats"),
+        ("PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY\n", "PLANE SPATIAL SPA.0 is of Heidenhain's"),
+        ("CYCL DEF 11.1 SCL 0.9\n", "tilts or scales"),
+        ("CYCL DEF 19.1 A+0 B+30\n", "tilts or scales"),
         ("CYCL DEF 10.1 ROT+30\nCYCL DEF 7.1 X+3\n", "a datum shift inside of a rotation"),
         ("CYCL DEF 247 PRESET Q339=1\nCYCL DEF 247 PRESET Q339=2\n", "CYCL DEF 247 chooses a second preset"),
         ("CYCL DEF 200 ~\nQ200=2 ~\nQ201=5\nL X+1 FMAX M99\n", "Q201, its depth, below 0"),
@@ -122,3 +127,53 @@ def test_a_drill_that_leaves_at_rapid_says_so_by_max() -> None:
     for value, height in (("MAX ;RETRACTION", -4.0), ("500", 2.0)):
         program = read(cycle.format(value))
         assert program.end[program.kind == 1, 2][-1] * 1e3 == pytest.approx(height)
+
+
+PATTERN = {
+    "a whole circle": (
+        "CYCL DEF 220 ~\nQ216=50 ~\nQ217=50 ~\nQ244=40 ~\nQ245=0 ~\nQ246=360 ~\nQ247=0 ~\nQ241=4\n",
+        [[70, 50], [50, 70], [30, 50], [50, 30]],
+    ),
+    "a quarter, both its ends": (
+        "CYCL DEF 220 ~\nQ216=0 ~\nQ217=0 ~\nQ244=40 ~\nQ245=0 ~\nQ246=90 ~\nQ247=0 ~\nQ241=3 ~\nQ301=0\n",
+        [[20, 0], [14.142136, 14.142136], [0, 20]],
+    ),
+    "by its step": (
+        "CYCL DEF 220 ~\nQ216=0 ~\nQ217=0 ~\nQ244=40 ~\nQ245=90 ~\nQ246=0 ~\nQ247=-90 ~\nQ241=2\n",
+        [[0, 20], [20, 0]],
+    ),
+    "lines, there and back": (
+        "CYCL DEF 221 ~\nQ225=10 ~\nQ226=20 ~\nQ237=5 ~\nQ238=7 ~\nQ242=2 ~\nQ243=2 ~\nQ224=90\n",
+        [[10, 20], [10, 25], [3, 25], [3, 20]],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", PATTERN)
+def test_patterns_drill_at_once(name: str) -> None:
+    body, places = PATTERN[name]
+    program = read(f"CYCL DEF 200 ~\nQ200=2 ~\nQ201=-10 ~\nQ206=100 ~\nQ203=0 ~\nQ204=20\n{body}")
+    drilled = program.end[program.end[:, 2] < -9.9e-3, :2] * 1e3
+    np.testing.assert_allclose(drilled, places, atol=1e-6)
+    away = program.end[(np.arange(len(program)) > 0) & (program.kind == 0), 2]
+    assert away.min() * 1e3 == pytest.approx(2)  # no rapid below the set-up clearance
+
+
+def test_a_mirror_image_about_the_datum() -> None:
+    program = read(
+        "CYCL DEF 7.1 X+100\nCYCL DEF 8.1 X\nL X+10 Y+5 F9\nL IX+5\nCC X+25 Y+5\nC X+25 Y+15 DR-\nCP IPA-90 DR-\n"
+        "CYCL DEF 8.1\nCYCL DEF 7.1 X+0\nL X+1\n"
+    )
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, [[90, 5], [85, 5], [75, 15], [65, 5], [1, 5]], atol=1e-9)
+    np.testing.assert_allclose(np.degrees(program.sweep[3:5]), [90, 90])
+
+
+def test_a_plane_that_is_not_tilted_and_cycles_that_suit_the_control_move_nothing() -> None:
+    """As hyperMILL writes a program of three axes for a DMG of five."""
+    body = (
+        "CYCL DEF 392 ATC~\n Q240=0 ;TUNING MODE~\n Q241=1 ;WEIGHT MODE\n"
+        "PLANE SPATIAL SPA0 SPB0 SPC0 STAY SEQ+ TABLE ROT\nL A+Q120 C+Q122 R0 FMAX M126\nL X+5 FMAX\n"
+    )
+    program = read(body)
+    assert program.end[-1, 0] * 1e3 == pytest.approx(5)
+    assert not np.any(program.rotary)

@@ -16,7 +16,7 @@ SAYS = {
     "G70 to G72": "may move",
     "U V W, G17.1": "no U axis",
     "G68.2": "tilts the working plane",
-    "APPR, DEP, FL, PLANE, other cycles": "APPR LT X.1 is of Heidenhain's",
+    "FL, PLANE, other cycles": "FL X.1 LEN5 is of Heidenhain's",
     "$H $J": "moves the machine",
 }
 TOOLS = {n: Tool(n, 3e-3, (0.0, 0.0, n * 1e-2)) for n in range(1, 9)}

@@ -58,6 +58,7 @@ REFUSED = [
     ("G0 G1 X1", "G0 and G1 are of one modal group"),
     ("G17 G18", "G17 and G18 are of one modal group"),
     ("M3 M4", "M3 and M4 are of one modal group"),
+    ("M8 M9", "M8 and M9 are of one modal group"),
     ("M-3", "M-3 is not an M code"),
     ("M3 M8 M48 M101 M0", "more than 4 M codes"),
     ("#1 5", "after a parameter; expected ="),

@@ -1,0 +1,145 @@
+"""APPR and DEP: where the cutter's centre goes, reckoned from the manual's rules by hand and by geometry."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import Program, Tool, interpret
+
+TOOL = {1: Tool(1, 4e-3)}
+"""A cutter of radius 2."""
+
+
+def read(body: str, tools: dict[int, Tool] | None = TOOL) -> Program:
+    head = "BEGIN PGM A MM\nTOOL CALL 1 Z S99 F100\nL X+40 Y+10 Z+5 R0 FMAX M3\n"
+    return interpret(f"{head}{body}END PGM A MM\n", tools=tools)
+
+
+def moves(program: Program) -> list[tuple[str, float, float, float]]:
+    return [("RFA"[k], *(round(float(v) * 1e3, 6) + 0.0 for v in p)) for k, p in zip(program.kind, program.end)][1:]
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        # up along X10, the cutter left of it at X8; the tangent is +Y, the normal -X
+        (
+            "APPR LT X+10 Y+20 LEN15 RL\nL Y+50\nDEP LT LEN5\n",
+            [("R", 8, 5, 5), ("F", 8, 20, 5), ("F", 8, 50, 5), ("F", 8, 55, 5)],
+        ),
+        (
+            "APPR LN X+10 Y+20 LEN15 RL\nL Y+50\nDEP LN LEN5 Z+9\n",
+            [("R", -7, 20, 5), ("F", 8, 20, 5), ("F", 8, 50, 5), ("F", 3, 50, 5), ("F", 3, 50, 9)],
+        ),
+        # a quarter about (3, 20), counter-clockwise; away about (3, 50)
+        (
+            "APPR CT X+10 Y+20 Z-1 CCA90 R+5 RL\nL Y+50\nDEP CT CCA90 R+5\n",
+            [("R", 3, 15, 5), ("F", 3, 15, -1), ("A", 8, 20, -1), ("F", 8, 50, -1), ("A", 3, 55, -1)],
+        ),
+        # from the other side: about (13, 20), clockwise
+        (
+            "APPR CT X+10 Y+20 CCA90 R-5 RL\nL IY+30\nDEP LT LEN1\n",
+            [("R", 13, 15, 5), ("A", 8, 20, 5), ("F", 8, 50, 5), ("F", 8, 51, 5)],
+        ),
+        # without compensation a cutter of radius 0 stands right of the contour
+        (
+            "APPR CT X+10 Y+20 CCA90 R5 R0\nL Y+50\nDEP LN LEN5\n",
+            [("R", 15, 15, 5), ("A", 10, 20, 5), ("F", 10, 50, 5), ("F", 15, 50, 5)],
+        ),
+        # on an arc: a circle of radius 20 about (30, 20), clockwise, the cutter outside of it
+        (
+            "CC X+30 Y+20\nAPPR LN X+10 Y+20 LEN3 RL\nC X+50 Y+20 DR-\nDEP LN LEN3\n",
+            [("R", 5, 20, 5), ("F", 8, 20, 5), ("A", 52, 20, 5), ("F", 55, 20, 5)],
+        ),
+        (
+            "APPR LT X+10 Y+20 LEN3 RL\nCR X+30 Y+40 R+20 DR-\nDEP LT LEN3\n",
+            [("R", 8, 17, 5), ("F", 8, 20, 5), ("A", 30, 42, 5), ("F", 33, 42, 5)],
+        ),
+        # polar: the point 10 off the pole at 180 degrees, and on towards 90 degrees
+        (
+            "CC X+30 Y+20\nAPPR PLT PR+10 PA+180 LEN3 R0\nLP PA+90\nDEP LT LEN3\n",
+            [
+                ("R", 20 - 3 * math.sqrt(0.5), 20 - 3 * math.sqrt(0.5), 5),
+                ("F", 20, 20, 5),
+                ("F", 30, 30, 5),
+                ("F", 30 + 3 * math.sqrt(0.5), 30 + 3 * math.sqrt(0.5), 5),
+            ],
+        ),
+    ],
+)
+def test_where_the_centre_goes(body: str, expected: list[tuple[str, float, float, float]]) -> None:
+    got = moves(read(body))
+    assert [each[0] for each in got] == [each[0] for each in expected]
+    np.testing.assert_allclose([each[1:] for each in got], [each[1:] for each in expected], atol=1e-6)
+
+
+def test_a_line_and_an_arc_meet_in_a_tangent() -> None:
+    """LCT: the line from the start and the line to the end touch the arc, which touches the path beside the contour."""
+    program = read("APPR LCT X+10 Y+20 R5 RL F200\nL Y+50\nDEP LCT X-20 Y+80 R6 F300\n")
+    start, touch, begin, last, away, end = program.end[:, :2] * 1e3
+    centre, other = (program.centre[k, :2] * 1e3 for k in (2, 4))
+    np.testing.assert_allclose(centre, [3, 20], atol=1e-6)
+    np.testing.assert_allclose(other, [2, 50], atol=1e-6)
+    for spoke, ray, size in ((touch - centre, touch - start, 5.0), (away - other, end - away, 6.0)):
+        assert np.linalg.norm(spoke) == pytest.approx(size)
+        assert float(spoke @ ray) == pytest.approx(0.0, abs=1e-6)
+        assert spoke[0] * ray[1] - spoke[1] * ray[0] > 0.0  # goes on in the sense of the arc
+    np.testing.assert_allclose([begin, last, end], [[8, 20], [8, 50], [-20, 80]], atol=1e-6)
+    np.testing.assert_allclose(program.v_f[1:] * 6e4, [200, 200, 200, 300, 300])
+    assert program.sweep[2] > 0.0
+    assert program.sweep[4] > 0.0
+
+
+def test_the_manuals_own_circle() -> None:
+    """C-CC of the TNC 640 manual: its R5 is smaller than the cutter's 12.5, so it is that of the centre's path."""
+    program = interpret(
+        "BEGIN PGM C-CC MM\nTOOL DEF 1 L+0 R+12.5\nTOOL CALL 1 Z S3150\nCC X+50 Y+50\nL Z+250 R0 F MAX\n"
+        "L X-40 Y+50 R0 F MAX\nL Z-5 R0 F1000 M3\nAPPR LCT X+0 Y+50 R5 RL F300\nC X+0 DR-\n"
+        "DEP LCT X-40 Y+50 R5 F1000\nL Z+250 R0 F MAX M2\nEND PGM C-CC MM\n"
+    )
+    whole = np.flatnonzero(np.abs(program.sweep) > 6.0)
+    assert len(whole) == 1
+    np.testing.assert_allclose(program.centre[whole[0], :2] * 1e3, [50, 50], atol=1e-9)
+    np.testing.assert_allclose(program.end[whole[0]] * 1e3, [-12.5, 50, -5], atol=1e-9)
+    assert np.hypot(
+        *(program.end[program.kind == 2] - program.centre[program.kind == 2])[0, :2]
+    ) * 1e3 == pytest.approx(5)
+    assert len(program) == 9
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("APPR LT X+10 Y+20 LEN15 RL\nCALL LBL 3\n", "Line 4: APPR needs the first element of its contour"),
+        ("APPR LT X+10 Y+20 LEN15 RL\nL Z-5\n", "Line 4: APPR needs the first element of its contour"),
+        ("APPR LT X+10 Y+20 RL\nL Y+50\n", "Line 4: 'APPR LT .* needs LEN"),
+        ("APPR CT X+10 Y+20 R5 RL\nL Y+50\n", "Line 4: .*APPR CT needs CCA and R"),
+        ("APPR LCT X+10 Y+20 R-5 RL\nL Y+50\n", "Line 4: .*LCT a radius above 0"),
+        ("APPR LCT X+60 Y+10 R50 RL\nL Y+50\n", "Line 4: APPR LCT and DEP LCT need a point outside of their arc"),
+        ("L X+9 RL\nAPPR LT X+10 Y+20 LEN15 RL\nL Y+50\n", "Line 5: APPR begins compensation, which is on already"),
+        ("L Z+0 FMAX M91\nAPPR LT X+10 Y+20 LEN15 RL\nL Y+50\n", "Line 5: APPR begins where only the machine knows"),
+        ("DEP LT LEN5 LEN6 R\n", "Line 4: 'DEP LT LEN5 LEN6 R' is not read"),
+        ("APPR LX X+10 LEN5\n", "Line 4: APPR LX X.10 LEN5 is not read; expected APPR or DEP with LT"),
+        ("CYCL DEF 8.1 X\nAPPR LT X+1 Y+2 LEN5 RL\nL Y+9\n", "Line 5: APPR in a mirror image"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=says):
+        read(body)
+
+
+def test_a_cutter_without_a_radius_is_asked_for() -> None:
+    with pytest.raises(GCodeError, match="Line 4: G41 needs the diameter of tool 1; give a tool table"):
+        read("APPR LT X+10 Y+20 LEN15 RL\nL Y+50\n", tools=None)
+
+
+def test_a_tool_that_the_program_defines_fills_the_table_where_it_says_nothing() -> None:
+    body = "BEGIN PGM A MM\nTOOL DEF 1 L+0 R+{}\nTOOL CALL 1 Z S9 F9\nL X+0 Y-20 FMAX\nL Y+0 RL\nL Y+9\nEND PGM A MM\n"
+    assert interpret(body.format(3)).end[-1, 0] * 1e3 == pytest.approx(-3)
+    assert interpret(body.format(3), tools=TOOL).end[-1, 0] * 1e3 == pytest.approx(-2)
+    with pytest.raises(GCodeError, match="needs the diameter of tool 1"):
+        interpret(body.format(0))

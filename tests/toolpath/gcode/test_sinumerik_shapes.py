@@ -1,0 +1,99 @@
+"""Shapes of Sinumerik programs: holes, arcs by a point or a tangent, mirrored and scaled frames, CASE; by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import Program, interpret
+
+
+def read(body: str) -> Program:
+    return interpret(f"G71 G90 G17 F100 S60 M3\nG0 X0 Y0\n{body}M30\n", dialect="sinumerik")
+
+
+def ends(body: str) -> list[list[float]]:
+    return (np.round(read(body).end[1:, :2] * 1e3, 6) + 0.0).tolist()
+
+
+def holes(body: str) -> list[list[float]]:
+    program = read(f"G0 Z50\n{body}")
+    return (np.round(program.end[program.end[:, 2] < -9.9e-3, :2] * 1e3, 6) + 0.0).tolist()
+
+
+def test_an_arc_through_a_point() -> None:
+    program = read("CIP X10 Y0 I1=5 J1=5\nX0 Y0 I1=IC(-5) J1=IC(-5)\nG91 CIP X20 Y0 I1=10 J1=-10\nG90 G1 X0\n")
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, [[10, 0], [0, 0], [20, 0], [0, 0]], atol=1e-9)
+    np.testing.assert_allclose(program.centre[1:4, :2] * 1e3, [[5, 0], [5, 0], [10, 0]], atol=1e-9)
+    np.testing.assert_allclose(np.degrees(program.sweep[1:4]), [-180, -180, 180])
+
+
+def test_arcs_that_go_on_along_a_tangent() -> None:
+    program = read("G1 X10\nCT X20 Y10\nX10 Y20\nG1 X0\nCT X-5 Y25\n")
+    np.testing.assert_allclose(program.centre[[2, 3, 5], :2] * 1e3, [[10, 10], [10, 10], [0, 25]], atol=1e-9)
+    np.testing.assert_allclose(np.degrees(program.sweep[[2, 3, 5]]), [90, 90, -90])
+
+
+def test_a_row_begins_at_the_end_that_is_nearer_and_a_circle_at_its_angle() -> None:
+    drill = "MCALL CYCLE81(20,0,2,-10)\n"
+    assert holes(f"{drill}HOLES1(100,0,90,5,10,3)\nMCALL\n") == [[100, 5], [100, 15], [100, 25]]
+    assert holes(f"G0 Y99\n{drill}HOLES1(100,0,90,5,10,3)\nMCALL\n") == [[100, 25], [100, 15], [100, 5]]
+    assert holes(f"{drill}HOLES2(1,2,10,90,0,4)\nMCALL\n") == [[1, 12], [-9, 2], [1, -8], [11, 2]]
+    assert holes(f"{drill}R1=2\nHOLES2(0,0,10,,30,R1)\nMCALL\n") == [[10, 0], [8.660254, 5]]
+    assert holes(f"TRANS X100\n{drill}AMIRROR X0\nHOLES2(0,0,10,,30,2)\nMCALL\n") == [[90, 0], [91.339746, 5]]
+
+
+@pytest.mark.parametrize(
+    ("body", "places"),
+    [
+        ("MIRROR X0\nG1 X10 Y5\nX=IC(5)\nG91 Y1\nG90 MIRROR\n", None),
+        ("MIRROR X0\nG1 X10 Y5\nX=IC(5)\nG91 Y1\nG90\nMIRROR\nG1 X1\n", [[-10, 5], [-15, 5], [-15, 6], [1, 6]]),
+        ("TRANS X100 Y50\nAMIRROR X0\nG1 X10 Y5\nTRANS X100\nX10 Y5\n", [[90, 55], [110, 5]]),
+        ("TRANS X100\nMIRROR X0\nG1 X10 Y5\n", [[-10, 5]]),
+        ("SCALE X2 Y2\nG1 X10 Y5\nASCALE X2\nX10\nAMIRROR Y0\nY1\n", [[20, 10], [40, 10], [40, -2]]),
+        ("AROT RPL=90\nAMIRROR X0\nG1 X10\n", [[0, -10]]),
+    ],
+)
+def test_frames_that_mirror_and_scale(body: str, places: list[list[float]] | None) -> None:
+    if places is None:
+        with pytest.raises(GCodeError, match="Line 7: "):
+            read(body)
+    else:
+        assert ends(body) == places
+
+
+def test_arcs_turn_the_other_way_in_a_mirror() -> None:
+    program = read("MIRROR X0\nG1 X20 Y0\nG3 X10 Y10 I-10 J0\nCIP X10 Y-10 I1=0 J1=0\nCT X20 Y0\n")
+    np.testing.assert_allclose(program.end[2:, :2] * 1e3, [[-10, 10], [-10, -10], [-20, 0]], atol=1e-9)
+    np.testing.assert_allclose(program.centre[2:, :2] * 1e3, [[-10, 0]] * 3, atol=1e-9)
+    np.testing.assert_allclose(np.degrees(program.sweep[2:]), [-90, -180, -90])
+
+
+@pytest.mark.parametrize(("value", "places"), [(8, [[1, 0], [2, 0], [3, 0]]), (9, [[2, 0], [3, 0]]), (7, [[3, 0]])])
+def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
+    lines = "CASE(R1-1) OF 8 GOTOF L_A 9 GOTOF L_B DEFAULT GOTOF L_C\nL_A: G0 X1\nL_B: G0 X2\nL_C: G0 X3\n"
+    assert ends(f"R1={value + 1}\n{lines}") == places
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("HOLES1(0,0,0,5,10,3)\n", "HOLES1 has nothing to repeat; give MCALL"),
+        ("MCALL CYCLE81(20,0,2,-10)\nHOLES2(0,0,10,0,0,0)\n", "HOLES2 has 0 holes; expected 1 to"),
+        ("CIP X10 Y0 I1=5 J1=0\n", "CIP has three points on one line"),
+        ("CIP X10 Y0\n", "CIP needs I1 and J1"),
+        ("CIP X10 Y0 Z5 I1=5 J1=5\n", "CIP that also climbs is not read"),
+        ("G1 Z-1\nCT X10 Y5\n", "the move before has no direction"),
+        ("G1 X10\nCT X20 Y0\n", "CT ends straight ahead"),
+        ("MIRROR Z0\n", "MIRROR Z0 is not read"),
+        ("SCALE X0\n", "SCALE X0 is not read"),
+        ("MIRROR X0\nATRANS X5\n", "ATRANS inside of MIRROR or SCALE is not read"),
+        ("MIRROR X0\nG41 G1 X5 T1 D1\n", "G41 while coordinates are mirrored"),
+        ("CASE(1) OF X GOTOF A\n", "CASE is not read as it stands"),
+        ("CASE(1) OF 1 GOTOF L_A\n", "GOTOF L_A leads nowhere"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=rf"Line [34]: .*{says}"):
+        read(body)
