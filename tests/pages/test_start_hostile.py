@@ -19,7 +19,17 @@ HOSTILE = (
     "<style>*{display:none}</style><img src='http://foreign.example/x.png'>![x](http://foreign.example/y.png)"
     "[a](javascript:b) $\\LaTeX$ :red[c] `d` | **e**"
 )
-PAGES = ("app", "1_Robot", "3_Compliance", "4_Identification", "5_Toolpath", "6_Milling", "7_Improve", "8_Learn")
+PAGES = (
+    "app",
+    "1_Robot",
+    "2_Workspace",
+    "3_Compliance",
+    "4_Identification",
+    "5_Toolpath",
+    "6_Milling",
+    "7_Improve",
+    "8_Learn",
+)
 OURS = re.compile(
     r"</?(?:style|h1|h2|i|b|p|div|span|small|sub|sup|table|tr|td|th|br|details|summary|svg|g|path|circle|text)\b[^<>]*>"
 )
@@ -62,6 +72,11 @@ def test_words_of_a_file_are_words_on_every_page(app: AppTest, page: str) -> Non
             assert "[a](" not in element.value
             assert not re.search(r"(?<!\\):red\[", element.value)
             assert not getattr(element.proto, "allow_html", False) or "foreign" not in element.value
+    for element in shown.main:
+        for words_of in ("label", "help", "placeholder"):
+            said = str(getattr(getattr(element, "proto", None), words_of, ""))
+            assert "![x](" not in said, (element.type, words_of)
+            assert "[a](" not in said, (element.type, words_of)
     assert page == "4_Identification" or "foreign.example" in html.unescape(words(shown)), (
         "the words themselves are there"
     )
