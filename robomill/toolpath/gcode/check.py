@@ -72,7 +72,10 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
     if non_modal == 530 and (
         block.g.get(modal.DISTANCE) == 910 or (modal.DISTANCE not in block.g and not machine.absolute)
     ):
-        raise block.refuse("G53 needs absolute coordinates; use G90 first.")
+        if not dialect.has_macros or machine.system in machine.placed:
+            raise block.refuse("G53 needs absolute coordinates; use G90 first.")
+        text = "G53 in G91 is read as a place in the machine; Fanuc controls leave the line out: write G90 before it"
+        machine.note("g53-incremental", "warning", text)
     for letter in "uvw":
         if letter in words:
             raise block.refuse(f"this machine has no {letter.upper()} axis; write X, Y, Z, A, B or C.")

@@ -68,7 +68,8 @@ _SINUMERIK_TEXT = (
 _HEIDENHAIN = (("begin pgm", r"\n[ \t]*n?\d*[ \t]*begin pgm\b"),)
 _GRBL = (("$", r"\n[ \t]*\$(?:[a-z#$]{0,2}[ \t]*(?=\n)|h|\d+=|n\d*=|j=|rst=)"),)
 _SINUMERIK = (
-    *_words("g710", "g700", "g500", "g601", "g641", "g642", "g643", "g644", "g645", "m17"),
+    *_words("g710", "g700", "g500", "g601", "g641", "g642", "g643", "g644", "g645"),
+    ("m17", r"\n[ \t]*(?:n\d+[ \t]*)?m17[ \t]*(?:\n\s*)*$"),
     ("=", r"\b(?:(?:cr|ar|turn|rnd|chf|chr)|[xyzijkabcfsr]\d*|t(?=[ \t]*=[ \t]*\"))[ \t]*="),
     ("mcall", r"\bmcall\b"),
     ("trans", r"\n[ \t]*(?:n\d+[ \t]*)?a?trans[ \t]+[xyz]"),

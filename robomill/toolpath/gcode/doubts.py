@@ -133,6 +133,9 @@ def _doubt_zero(machine: Machine, program: Program) -> None:
             )
             machine.findings.add("zero-placed", "warning", machine.placed[system], text)
     unset = [system_name(system) for system in sorted(set(used) - set(machine.placed))]
+    if len(set(used)) == 1 and unset and used[0] != 1:
+        text = f"part zero is taken to be that of {unset[0]}, which the program does not place"
+        machine.findings.add("zero-taken", "info", 0, text)
     if len(set(used)) > 1 and unset:
         several = f"{', '.join(unset)} are" if len(unset) > 1 else f"{unset[0]} is"
         text = (

@@ -30,7 +30,10 @@ SENTENCES = {
     rules.NAME_NOT_CLOSED: "a name is not closed; add >.",
     rules.NOT_DEFINED: "parameter #{name} is not defined; set it before it is used.",
     rules.NOT_WHOLE: "The number of a parameter is {a:g}; expected a whole number.",
-    rules.NO_PARAMETER: f"#{{a:.0f}} does not exist; parameters run from 1 to {COUNT - 1}.",
+    rules.NO_PARAMETER: (
+        f"#{{a:.0f}} does not exist; parameters run from 1 to {COUNT - 1}, and those of a control beyond, such as tool "
+        "offsets, are not known here: write the value."
+    ),
 }
 """What is said for a problem of ``operator_rules``."""
 

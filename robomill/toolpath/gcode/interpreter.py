@@ -176,7 +176,8 @@ class Interpreter(Klartext):
     def _skip_percent(self) -> None:
         for index, raw in enumerate(self.main.lines):
             text = raw.strip()
-            if not text:
+            leads = text[:1] == ";" or (text[:1] == "(" and text.find(")") == len(text) - 1)
+            if not text or (leads and not self.dialect.strict):  # a post's name, before the % that begins
                 continue
             if text.startswith("%"):
                 self.percent = True

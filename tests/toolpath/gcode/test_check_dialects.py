@@ -142,3 +142,13 @@ def test_centres_that_fit_as_places_are_offered() -> None:
 def test_cycles_that_are_known_and_not_read_are_refused_by_name(code: str, says: str) -> None:
     with pytest.raises(GCodeError, match=f"Line 2: {code.split()[0]} .*{says}.*let the CAM system write its moves out"):
         interpret(f"G21 G90\n{code}\nM30\n")
+
+
+def test_a_place_in_the_machine_said_in_incremental_mode_is_one_where_linuxcnc_is_not_stated() -> None:
+    text = "G21 G90 G54\nG0 X1 Y1 Z1\nG91 G1 X1 F5\nG53 G0 Z0\nM30\n"
+    program = interpret(text)
+    assert [(f.line, f.level) for f in program.findings if f.code == "g53-incremental"] == [(4, "warning")]
+    assert program.unplaced.tolist() == [False, False, True]
+    for refused, dialect in ((text, "linuxcnc"), (f"G10 L2 P1 X5\n{text}", "auto")):
+        with pytest.raises(GCodeError, match="G53 needs absolute coordinates; use G90 first"):
+            interpret(refused, dialect=dialect)

@@ -25,6 +25,7 @@ TOLD = [
     ("G71\nG0 X1\n", "sinumerik"),
     ("G71 P10 Q20 D1\n", "linuxcnc"),
     ("M17\n", "sinumerik"),
+    ("M17\n(turn servos on)\nG0 X1\nM2\n", "linuxcnc"),
     ("$H\n", "grbl"),
     ("$J=G91 X1\n", "grbl"),
     ("$110=500\n", "grbl"),

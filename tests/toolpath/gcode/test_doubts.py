@@ -57,3 +57,11 @@ def test_numbers_without_needless_zeros_are_not_doubted() -> None:
     """Posts that write 10 for 10.000 have hardly a whole number in a finished surface."""
     text = "".join(f"X{k / 7:.3f} Y{k / 11:.3f} Z-{k / 13:.3f}\n" for k in range(1, 200) if k % 7 and k % 11 and k % 13)
     assert not [f for f in interpret(f"G21 G90\nG1 F100 X1\n{text}X5\nM30\n").findings if f.code == "no-point"]
+
+
+@pytest.mark.parametrize(("said", "found"), [("G56", True), ("G54", False), ("", False), ("G10 L2 P3 X0\nG56", False)])
+def test_a_system_other_than_the_first_is_said_to_be_at_part_zero(said: str, found: bool) -> None:
+    findings = interpret(f"G21 G90 S9 M3\n{said}\nG1 X5 F9\nM30\n").findings
+    assert [f.message[:40] for f in findings if f.code == "zero-taken"] == [
+        "part zero is taken to be that of G56, wh"
+    ] * found

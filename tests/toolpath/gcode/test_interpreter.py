@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode import interpret, read_gcode
 from robomill.toolpath.gcode.interpreter import MAX_LINE
 
 
@@ -66,3 +66,11 @@ def test_comments_that_speak():
     with pytest.raises(GCodeError, match="Line 2: the program gives up: too deep by 4.000000"):
         interpret("#1=4\n(abort, too deep by #1)\nM2\n")
     assert len(interpret("(msg,x)\n" * 1003 + "M2\n").messages) == 1000
+
+
+def test_a_percent_sign_behind_comments_alone_begins_the_program():
+    """As posts write it that name themselves first; LinuxCNC takes it for the end."""
+    text = "( made with a post )\n;of ours\n\n%\nG21\nG0 X1\n%\nG0 X9\n"
+    assert interpret(text).end[-1, 0] == pytest.approx(1e-3)
+    with pytest.raises(GCodeError, match="no motion"):
+        read_gcode(text, dialect="linuxcnc")
