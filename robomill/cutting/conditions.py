@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen, sealed
-from robomill.cutting.engaged import EngagedPart
+from robomill.cutting.engaged import EngagedPart, sinks
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import CuttingError
 from robomill.provenance import Finding
-from robomill.units import format_count, format_si, to_si
+from robomill.units import format_count, format_si
 
 #: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
 PLUNGE = 1e-6
@@ -42,6 +42,7 @@ class CutConditions:
     across   1      share of the feed across the tool axis: 1 on the level, 0 in a plunge
     block    int    source line, 0 where not stated (refusals name it)
     along    1      part of the unit feed along the tool axis: negative on the way down
+    steep    1      how steeply its end ``sinks``, 0 to 1 (None: as the feed goes down)
     ccw      bool   True where the spindle runs counter-clockwise seen from above (M4)
     part            the engaged part of the cutter, where it was found from the stock (None: the arc over the depth)
     reach    m      highest engaged place above the tip (None: a_p)
@@ -67,6 +68,7 @@ class CutConditions:
     part: EngagedPart | None = None
     reach: FloatArray | None = None
     tooling: Tooling | None = None
+    steep: FloatArray | None = None
     block_name: str = "line"
 
     def __post_init__(self) -> None:
@@ -119,6 +121,11 @@ class CutConditions:
         down = (self.across > PLUNGE) | (self.along < 0.0)
         return sealed(np.asarray(self.cutting & (self.a_p > 0.0) & (self.phi_ex > self.phi_st) & down))
 
+    @property
+    def sinks(self) -> FloatArray:
+        """(m,) how steeply the end of the tool sinks, 0 to 1."""
+        return sinks(self.along) if self.steep is None else self.steep
+
     def f_z(self, flutes: ArrayLike) -> FloatArray:
         """Feed per tooth (m,) m: v_f / (n_s flutes); 0 outside the material, NaN where the speed is not known.
 
@@ -164,9 +171,6 @@ def beyond_flutes(conditions: CutConditions, tooling: Tooling) -> BoolArray:
     return np.asarray(conditions.engaged & (highest > edges[tooling.of_step] * (1.0 + 1e-9)))
 
 
-GENTLE = math.sin(to_si(0.01, "deg"))
-"""Slopes that a person means: gentler ones are roundings of a program."""
-
 THRUSTS = {
     "thrust-end-teeth": "of the end teeth, to the centre, by the same coefficients as the flank",
     "thrust-lips": "of a drill's two lips by the handbook, 0.5 k_c f D/2 sin(half point angle)",
@@ -192,18 +196,19 @@ def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool | Boo
                 f"the {rubs} would rub ({format_count(deep.size, 'step')})."
             )
             found.append(Finding("warning", text, int(conditions.block[worst]), code="beyond-flutes"))
-    down = engaged & (conditions.along < -DISH) & computed
+    sinks = conditions.sinks > 0.0
+    down = engaged & (conditions.along < -DISH) & sinks & computed
     for code, steps in (("thrust-end-teeth", down & ~tooling.drills), ("thrust-lips", down & tooling.drills)):
         if steps.any():
             count = format_count(int(steps.sum()), "step")
             text = f"the tool goes down into the material; its thrust is that {THRUSTS[code]}: not measured ({count})."
             found.append(Finding("info", text, int(conditions.block[np.argmax(steps)]), code=code))
-    clear = engaged & (conditions.along < -GENTLE) & ~down & computed & (tooling.each("flat_radius") > 0.0)
-    if clear.any():
-        slope, count = format_si(math.asin(DISH), "deg", 1), format_count(int(clear.sum()), "step")
+    heel = engaged & sinks & ~(conditions.along < -DISH) & computed & (tooling.each("flat_radius") > 0.0)
+    if heel.any():
+        slope, count = format_si(math.asin(DISH), "deg", 1), format_count(int(heel.sum()), "step")
         text = (
-            f"the tool goes down by less than {slope}: its end is taken as ground hollow by more, so that its corners "
-            f"cut and no end tooth pushes: assumed ({count})."
+            f"the tool goes down by less than {slope}: its end is taken as ground hollow by as much, so that its heel "
+            f"cuts and no more of its end: assumed ({count})."
         )
-        found.append(Finding("info", text, int(conditions.block[np.argmax(clear)]), code="end-teeth-clear"))
+        found.append(Finding("info", text, int(conditions.block[np.argmax(heel)]), code="end-teeth-heel"))
     return tuple(found)

@@ -12,14 +12,16 @@ import numpy as np
 from robomill.arrays import FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.edge import EdgeTerm, moments, push
-from robomill.cutting.engaged import FACING, nose_of, sector_edges
-from robomill.cutting.tool import DISH, Cutter
+from robomill.cutting.engaged import FACING, end_of, nose_of, sector_edges
+from robomill.cutting.tool import Cutter
 from robomill.progress import slices
 
 #: Pieces of the flank over which the lag of the helix is taken as one.
 SLICES = 36
 #: Instants of one tooth pitch.
 INSTANTS = 120
+#: Angles of a half turn over which the end face that cuts is averaged.
+HALF = 90
 #: Cuts that are looked at together, to bound the memory.
 CASES = 2048
 TEETH = 4 * CASES  # teeth of all of them
@@ -48,9 +50,9 @@ class Course:
         arc = np.clip(np.stack([conditions.phi_st[index], conditions.phi_ex[index]], axis=1), 0.0, np.pi)
         if conditions.part is not None:
             return cls(c, feed, arc, _within(conditions.part.sectors[index].astype(float), arc))
-        a_p, face = conditions.a_p[index], np.where(feed[:, 1] < -DISH, cutter.flat_radius, 0.0)
-        sector = np.stack([a_p, 0.0 * a_p, a_p, face], axis=1)
-        return cls(c, feed, arc, np.stack([sector, sector], axis=1))
+        a_p, half = conditions.a_p[index], np.sin((np.arange(HALF) + 0.5) * (np.pi / HALF))
+        ends = [end_of(cutter, conditions.sinks[index, None], sine).mean(axis=1) for sine in (half, -half)]
+        return cls(c, feed, arc, np.stack([np.stack([a_p, 0.0 * a_p, a_p, end], axis=1) for end in ends], axis=1))
 
     def at(self, index: IntArray | slice) -> Course:
         """Some of the cuts."""

@@ -4,9 +4,9 @@ At a point of the cutter's surface at angle phi (clockwise from the left of the 
 axis, with the unit feed v: the chip is h = c (v . n), c being the feed per tooth, and a piece of edge ds carries, for
 every term of the law, a load h^e ds (``edge``). With w = (v . n)^e dphi ds the ``moments`` are summed over all that is
 engaged, so that any coefficients of the same exponents can be applied afterwards. The chip is that of the full feed,
-across and along the axis, so that chips add up to the volume removed; the flat end of a mill takes part where the feed
-goes down by more than its ``DISH``. Source: Engin and Altintas 2001; the feed along the axis as in Ozturk and Budak
-2007 (5-axis ball-end milling).
+across and along the axis, so that chips add up to the volume removed. The flat end of a mill, ground hollow, takes part
+where the feed goes down: all of it from its ``DISH`` on, on gentler slopes its ``heel``. Source: Engin and Altintas
+2001; the feed along the axis as in Ozturk and Budak 2007 (5-axis ball-end milling).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.cutting.edge import MOMENTS, EdgeTerm, moments, push
-from robomill.cutting.profile_kernels import nose_pieces
-from robomill.cutting.tool import DISH, Cutter
+from robomill.cutting.profile_kernels import heel, nose_pieces
+from robomill.cutting.tool import DISH, PRESSED, Cutter
 from robomill.errors import CuttingError
 
 PANELS = 12  # of a half turn that an engaged part is summed over
@@ -91,22 +91,48 @@ def sector_edges(count: int) -> FloatArray:
     return np.asarray(np.pi * np.concatenate([[0.0], *(half + one[1:] for half in range(halves))]), dtype=np.float64)
 
 
-def full_slot(cutter: Cutter, exponents: tuple[float, ...], a_p: FloatArray, along: FloatArray) -> EngagedPart:
+def sinks(along: ArrayLike) -> FloatArray:
+    """How steeply (...) a feed goes down for the end of a mill; ``along`` (...) is the part of the unit feed along the
+    axis. 1 where all of it cuts, as from its ``DISH`` on, 0 where it clears, up to the slope at which it is
+    ``PRESSED``; between them as the slope."""
+    down = np.clip(-np.asarray(along, dtype=np.float64), 0.0, 0.5)
+    slope = down / np.sqrt(1.0 - down**2)
+    flat, whole = (s / np.sqrt(1.0 - s**2) for s in (PRESSED, DISH))
+    return np.asarray(np.clip((slope - flat) / (whole - flat), 0.0, 1.0))
+
+
+def end_of(cutter: Cutter, steep: ArrayLike, sine: ArrayLike) -> FloatArray:
+    """How much of the radius of its end a cutter cuts with, m, at angles of this ``sine``, where it ``sinks`` as
+    ``steep`` as this."""
+    radius = cutter.flat_radius
+    cuts = radius - np.minimum(heel(radius, np.asarray(steep), np.asarray(sine)), radius)
+    return np.asarray(np.where(np.asarray(steep) > 0.0, cuts, 0.0))
+
+
+def full_slot(
+    cutter: Cutter,
+    exponents: tuple[float, ...],
+    a_p: FloatArray,
+    along: FloatArray,
+    steep: FloatArray | None = None,
+) -> EngagedPart:
     """The part engaged in a full slot of depth ``a_p`` (m,) m, by quadrature; ``along`` (m,) is the part of the unit
-    feed along the axis, negative on the way down."""
-    pairs, inverse = np.unique(np.stack([a_p, along], axis=1), axis=0, return_inverse=True)
-    moments = np.array([[_slot_moments(cutter, e, *pair) for e in exponents] for pair in pairs])
+    feed along the axis, negative on the way down, and ``steep`` (m,) how it ``sinks`` (None: so steeply)."""
+    cuts = np.stack([a_p, along, sinks(along) if steep is None else steep], axis=1)
+    kinds, inverse = np.unique(cuts, axis=0, return_inverse=True)
+    moments = np.array([[_slot_moments(cutter, e, kind) for e in exponents] for kind in kinds])
     none = np.zeros((len(a_p), 0, 4))
-    return EngagedPart(exponents, moments.reshape(len(pairs), len(exponents), MOMENTS)[inverse.ravel()], none)
+    return EngagedPart(exponents, moments.reshape(len(kinds), len(exponents), MOMENTS)[inverse.ravel()], none)
 
 
-def _slot_moments(cutter: Cutter, e: float, a_p: float, along: float) -> FloatArray:
+def _slot_moments(cutter: Cutter, e: float, kind: FloatArray) -> FloatArray:
+    a_p, along, steep = kind
     phi = (np.arange(ANGLES) + 0.5) * (2.0 * np.pi / ANGLES)
     sine, cosine = np.sin(phi)[:, None], np.cos(phi)[:, None]
-    face = cutter.flat_radius if along < -DISH else 0.0
     _, _, leans, lengths = nose_of(cutter, a_p)
     kappa = np.concatenate([[0.0], leans, [0.5 * np.pi]])
-    ds = np.concatenate([[face], lengths, [max(a_p - cutter.nose_height, 0.0)]])
+    rest = np.broadcast_to(np.append(lengths, max(a_p - cutter.nose_height, 0.0)), (ANGLES, len(kappa) - 1))
+    ds = np.hstack([end_of(cutter, steep, sine), rest])
     facing = np.sqrt(max(1.0 - along * along, 0.0)) * sine * np.sin(kappa) - along * np.cos(kappa)
     w = np.where(facing > FACING, np.maximum(facing, FACING) ** e, 0.0) * ds * (2.0 * np.pi / ANGLES)
     return np.array([each.sum() for each in moments(w, w * np.sin(kappa), w * np.cos(kappa), sine, cosine)])

@@ -165,7 +165,7 @@ class ProcessForce(ForceModel):
         """Steps whose force has a part that the material does not give: every mill's the radial one; the axial one,
         where the helix pulls, along the axis, on a nose or at the end face."""
         mills = ~tooling.drills
-        nose = (tooling.each("nose_height") > 0.0) | (conditions.along < -DISH)
+        nose = (tooling.each("nose_height") > 0.0) | (conditions.sinks > 0.0)
         needs = {"radial": mills, "axial": mills & (tooling.each("pull") != 0.0) & (self.axial | nose)}
         lacking = [part for part in self.row.unknown if (needs[part] & conditions.engaged).any()]
         where = np.any([needs[part] for part in lacking], axis=0) if lacking else np.zeros_like(mills)
@@ -262,5 +262,7 @@ def _mean_of(
     steep = np.flatnonzero(np.abs(along) > FACING)
     if steep.size:
         exponents = tuple(term.exponent for term in terms)
-        force[steep] = full_slot(cutter, exponents, a_p[steep], along[steep]).force(terms, cutter, c[steep])
+        force[steep] = full_slot(cutter, exponents, a_p[steep], along[steep], conditions.sinks[index][steep]).force(
+            terms, cutter, c[steep]
+        )
     return force

@@ -9,7 +9,7 @@ them for arrays. A cutter of another profile is a kind of ``Shape`` here, and a 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -212,6 +212,18 @@ def facing_part(shape: Shape, stretch: int, faces: tuple[float, float]) -> tuple
         return shape.rc * turn, shape.rc * (turn + math.pi)
     at = on_profile(shape, stretch, 0.0)
     return (-math.inf, math.inf) if a * at.sine > b * at.cosine else (math.inf, -math.inf)
+
+
+@part
+def heel(radius: Any, sinks: Any, sine: Any) -> Any:
+    """Radius from which on the flat end of a mill cuts, m, at an angle of this ``sine`` on a slope that is ``sinks`` (0
+    to 1) times as steep as its teeth are ground hollow; ``radius`` (m), where the end ends, or more: it cuts nowhere.
+
+    A place r of the hollow end is higher than its rim by (radius - r) tan(dish). The rim has passed it, as far ahead as
+    it lies on the way, higher by that way times the slope: material stands where that is more, which is beyond an
+    ellipse with its focus in the axis. On the level it touches the rim behind, at the dish it has shrunk to the axis.
+    """
+    return radius * (1.0 - sinks * sinks) / (1.0 - 2.0 * sinks * sine + sinks * sinks + 1e-300)
 
 
 @part

@@ -20,9 +20,11 @@ from robomill.spelled import in_si, in_units, made, state
 from robomill.units import format_count, format_si, to_si
 from robomill.values import Value
 
-#: Sine of how far the feed must go down along the axis before the flat end of a mill cuts: its teeth are ground hollow
-#: by 1 to 3 degrees (dish), so on gentler slopes only their corners touch. An assumption, the same for all mills.
+#: Sine of how far the feed must go down along the axis before the whole flat end of a mill cuts: its teeth are ground
+#: hollow (dish), so on gentler slopes only its heel does (``heel``). An assumption, the same for all mills.
 DISH = math.sin(to_si(0.5, "deg"))
+#: Sine of the slope below which nothing of it does: what its heel meets is less than the rounding of its edges.
+PRESSED = math.sin(to_si(0.05, "deg"))
 WIDEST, LONGEST = 0.6, 2.0  # m: hardly a cutter is wider, hardly one sticks out as far: was it meant in mm?
 THINNEST, SHORTEST = 0.05e-3, 0.2e-3  # m: no robot mills with less, none sticks out less: was it meant in m?
 MOST_FLUTES = 100  # a tooth a millimetre on a face mill of 32 mm; a mistyped number costs memory and time

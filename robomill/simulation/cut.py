@@ -84,7 +84,7 @@ def through_stock(setup: SimulationSetup, path: Toolpath, told: CutConditions, l
     exponents = setup.force.exponents or (0.0,)
     p, way, tips = (path.p, ways(path), None) if led is None else (led.meant, led.way, led.tips)
     block, cell = setup.stock_block, setup.cell
-    return March(block, cell, told.tooling, p, path.k, told.cutting, exponents, really=tips, way=way)
+    return March(block, cell, told.tooling, p, path.k, told.cutting, exponents, tips, way, told.sinks)
 
 
 def met_conditions(told: CutConditions, found: Engagement) -> CutConditions:

@@ -93,13 +93,13 @@ class Gauge(ReadOnly):
     thin: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
 
-def gauge(result: Run) -> Gauge:
-    """Everything that can be measured on the part that a run leaves."""
+def gauge(result: Run, most: int | None = None) -> Gauge:
+    """Everything that can be measured on the part that a run leaves, at so ``most`` of its samples."""
     if not (result.judged.any() and result.removes.any()):
         none = np.zeros(0)
         nothing = Readings(none.astype(np.int64), none, none, none, none, np.zeros((0, 3)))
         return Gauge(nothing, nothing, nothing)
-    at = places(result)
+    at = places(result, most)
     walls, gone, thin = _walls(at)
     return Gauge(walls, _floors(at), _ends(at), gone, thin)
 

@@ -107,10 +107,13 @@ class Places:
         return np.asarray((np.abs(conditions.along) / np.maximum(conditions.across, STEEP))[self.i])
 
 
-def places(result: Run) -> Places:
-    """The judged samples of a run that cuts; where one is off otherwise than the one before, places between them."""
+def places(result: Run, most: int | None = None) -> Places:
+    """The judged samples of a run that cuts; where one is off otherwise than the one before, places between them.
+    ``most`` samples: as many in even steps, and a tenth of those as far off as any, where there are more."""
     path, tooling = result.path, result.tooling
     some = np.flatnonzero(result.judged)
+    if most is not None and len(some) > most:
+        some = some[_chosen(np.cumsum(path.step_length[some]), result.delta_in_cut[some, 1:], most)]
     after = some[(result.removes & np.append(False, result.judged[:-1] & (_changes(result) > APART)))[some]]
     i = np.concatenate([some, *[after] * len(BETWEEN)])
     share = np.repeat([1.0, *BETWEEN], [len(some), *[len(after)] * len(BETWEEN)])[:, None]
@@ -128,6 +131,15 @@ def places(result: Run) -> Places:
     feed, left_of, axial = np.moveaxis(axes[i], 1, 0)
     c = share * tips[i] + (1.0 - share) * tips[before]
     return Places(result, i, share[:, 0] < 1.0, c, feed, left_of, axial, d, tooling.cutters, of[i], outline)
+
+
+def _chosen(s: FloatArray, off: FloatArray, most: int) -> IntArray:
+    """So ``most`` of samples that stand at s (n,) m, in even steps, and a tenth of those that are most ``off`` (n, 2)
+    m."""
+    size = np.linalg.norm(np.nan_to_num(off), axis=1)
+    worst = np.argpartition(size, len(size) - most // 10)[len(size) - most // 10 :]
+    even = np.searchsorted(s, np.linspace(0.0, s[-1], most))
+    return np.unique(np.concatenate([np.minimum(even, len(s) - 1), worst]))
 
 
 def _changes(result: Run) -> FloatArray:

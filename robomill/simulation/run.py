@@ -31,6 +31,7 @@ from robomill.simulation.marching import Bent, march_coupled
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import sampled, ways
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.sinking import clear, sinking, told_to_sink
 from robomill.simulation.threads import threads_in_cut
 from robomill.simulation.tools import farther, held
 from robomill.simulation.turning import turns_in_cut
@@ -203,8 +204,9 @@ def sags(setup: SimulationSetup, path: Toolpath, theta: FloatArray, links: LinkM
 def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...], Coupling | None]:
     """Conditions, force F (m, 3) N in {M}, what it has no model for, and how a coupled run was solved."""
     setup, path = bent.setup, bent.path
-    conditions = bent.told if not setup.engagement else cut_conditions(setup, path, bent.told, bent.led)
-    F = bent.force(conditions, bent.R_MF)
+    if setup.force.follows_cut and told_to_sink(bent.told).any():
+        bent = replace(bent, told=sinking(bent.told, path, _tips(bent)))
+    conditions, F = _once(bent)
     if not setup.coupling:
         return conditions, F, _reasons(bent, conditions), None
     coupled = march_coupled(bent, bent.delta(F))
@@ -213,6 +215,20 @@ def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...],
     known = cut & ~np.any([np.zeros_like(cut), *(each.where for each in reasons)], axis=0)
     judged = float(known.sum() / cut.sum()) if cut.any() else 1.0
     return coupled.conditions, coupled.F, reasons, replace(coupled.coupling, judged=judged)
+
+
+def _once(bent: Bent) -> tuple[CutConditions, FloatArray]:
+    """Conditions and force along the path as it is told, or led."""
+    conditions = bent.told if not bent.setup.engagement else cut_conditions(bent.setup, bent.path, bent.told, bent.led)
+    return conditions, bent.force(conditions, bent.R_MF)
+
+
+def _tips(bent: Bent) -> FloatArray:
+    """(m, 3) m in {W}: where the tips go if no end of a tool met anything; where they were meant to, if led."""
+    if bent.led is not None:
+        return bent.led.meant
+    delta = bent.delta(_once(replace(bent, told=clear(bent.told)))[1])
+    return np.asarray(bent.path.p + np.nan_to_num(delta) @ bent.setup.T_MW[:3, :3])
 
 
 def _reasons(bent: Bent, conditions: CutConditions) -> tuple[Unjudged, ...]:

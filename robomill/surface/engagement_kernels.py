@@ -3,7 +3,7 @@
 A point of the cutter's surface cuts where its outward normal n faces the unit feed v and material lies just before it.
 Over that part the kernel sums (v . n)^e times the directions in which the edge's forces act, for every exponent e of
 the force law (``cutting.engaged``). The feed has its part along the axis, so ramps, helices and plunges are steps like
-others: the end of a flat mill faces the feed where it goes down.
+others: the end of a flat mill faces the feed where it goes down, on gentle slopes with its heel alone (``heel``).
 
 The angle phi runs clockwise from the left of the feed; along the profile the end face (radius), the nose (arc or cone)
 and the flank (height) follow one another. ``division_kernels`` adds up over the angle.
@@ -26,10 +26,10 @@ from robomill.cutting.profile_kernels import (
     beside_place,
     edge_sums,
     facing_part,
+    heel,
     on_profile,
     stretch_ends,
 )
-from robomill.cutting.tool import DISH
 from robomill.surface.material_kernels import FAR, World, standing, top_over
 from robomill.surface.relief_kernels import UNKNOWN, Relief, told, tops_about, tops_between
 from robomill.surface.rib_kernels import change_between, is_plain
@@ -138,7 +138,7 @@ def lay_out(room: Room, shape: Shape, step: Step, world: World) -> None:
     first = 0
     for stretch in range(3):
         begin, stop = stretch_ends(shape, stretch, reach)
-        if stretch == END and step.along >= -DISH:
+        if stretch == END and step.sinks <= 0.0:
             stop = begin
         pieces = END_PIECES if stretch == END else NOSE_PIECES
         if stretch == FLANK:
@@ -198,6 +198,8 @@ def measure(room: Room, world: World, shape: Shape, step: Step, first: int, end:
                 continue
             facing = facing_part(shape, stretch, (step.across * sine, step.along))
             begin, stop = max(begin, facing[0]), min(stop, facing[1])
+            if stretch == END:
+                begin = max(begin, heel(shape.r0, step.sinks, sine))
             if stop <= begin:
                 continue
             if stretch == FLANK and plain:

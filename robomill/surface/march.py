@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.cutting.edge import MOMENTS
-from robomill.cutting.engaged import FACING, PANELS
+from robomill.cutting.engaged import FACING, PANELS, sinks
 from robomill.cutting.force import feed_frame
 from robomill.cutting.profile_kernels import valley
 from robomill.cutting.tool import Cutter
@@ -31,7 +31,8 @@ class March:
     """A path p (m, 3) m through a stock: ``meet`` says what a step meets, ``cut`` cuts it, ``run`` does both for all.
 
     The path gives feeds, axes and tools: entry i is the move p[i-1] -> p[i], k (3,) or (m, 3) unit tool axis (None:
-    upright), cutting (m,) bool, ``way`` (m, 3) the unit feed at its end (None: that of the move). A step is met where
+    upright), cutting (m,) bool, ``way`` (m, 3) the unit feed at its end (None: that of the move), ``steep`` (m,) how
+    steeply the tool's end ``sinks`` (None: as the feed says). A step is met where
     it ends, in what was left before it; a step of no length that begins a cut at that place, ahead of which the next
     one goes. ``really`` (m, 3) m is where the tip goes, if not where it is told to: the chip stays that of the feed it
     is told. Steps that are not finite or not at feed cut nothing. Steps are cut in the order of the path; ``meet`` and
@@ -48,6 +49,7 @@ class March:
     exponents: tuple[float, ...] = (1.0, 0.0)
     really: ArrayLike | None = None
     way: ArrayLike | None = None
+    steep: ArrayLike | None = None
 
     @cached_property
     def points(self) -> FloatArray:
@@ -95,6 +97,13 @@ class March:
         move = self._move[self.steps]
         span = self.points[move] - self.points[move - 1]
         return np.asarray(span / np.linalg.norm(span, axis=1, keepdims=True))
+
+    @cached_property
+    def _sinks(self) -> FloatArray:
+        """(n,) how steeply each step sinks for the end of the tool."""
+        if self.steep is None:
+            return sinks(np.einsum("ni,ni->n", self._feed, self._axes[0]))
+        return as_floats(self.steep, "slopes", (len(self.points),), error=SurfaceError)[self.steps]
 
     @cached_property
     def _heading(self) -> FloatArray:
@@ -287,6 +296,7 @@ class March:
             self._feed[n],
             self._axes[0][n],
             self._heading[n],
+            self._sinks[n],
             runs[0],
             runs[1].astype(np.int64),
             runs[2].astype(np.int64),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robomill.arrays import FloatArray
-from robomill.compiled import Axes, Out2, OutInt1, called, kernel, part
+from robomill.compiled import Axes, Out1, Out2, OutInt1, called, kernel, part
 from robomill.cutting.engaged import FACING
 from robomill.cutting.profile_kernels import FLAT, Shape, profile, profile_within, shape_of
 from robomill.surface.cells_kernels import cells_between
@@ -49,14 +49,15 @@ HALF_BITS, HALF_BIAS = 13, (127 - 15) << 23  # fewer in its fraction than in sin
 
 class Steps(NamedTuple):
     """Steps of a path: ends (n, 6) m, then the tip (m), unit feed, axis of the tool and heading (see ``step_at``)
-    where each is looked at (n, 3), the run it belongs to, whether it begins it and whether nothing goes on from its
-    end (n,)."""
+    where each is looked at (n, 3), how steeply it sinks for its end, the run it belongs to, whether it begins it and
+    whether nothing goes on from its end (n,)."""
 
     ends: Out2
     tip: Out2
     feed: Out2
     axis: Out2
     heading: Out2
+    sinks: Out1
     run: OutInt1
     begins: OutInt1
     stops: OutInt1
@@ -269,7 +270,7 @@ def march(world: World, room: Room, steps: Steps, found: Out2, sectors: Singles2
     for n in range(len(steps.ends)):
         r, ends = steps.run[n], steps.ends[n]
         if do[0]:
-            step = step_at(steps.tip[n], steps.axis[n], steps.feed[n], steps.heading[n], r)
+            step = step_at(steps.tip[n], steps.axis[n], steps.feed[n], steps.heading[n], (steps.sinks[n], r))
             add_part(room, world, shape_of(world.runs[r]), step, found[n], sectors[n])
         if do[1]:
             go_on(world.runs[r], ends, steps.begins[n] == 1)

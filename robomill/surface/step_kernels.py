@@ -14,7 +14,8 @@ from robomill.surface.soon import soon
 
 class Step(NamedTuple):
     """A step seen by the cutter, in {W}: tip (m), unit vectors of the feed across the axis, to its left, and the axis,
-    the parts of the unit feed across and along the axis, and the run it belongs to."""
+    the parts of the unit feed across and along the axis, how steeply it sinks for its end (0 to 1, see ``heel``), and
+    the run it belongs to."""
 
     x: float
     y: float
@@ -30,13 +31,15 @@ class Step(NamedTuple):
     kz: float
     across: float
     along: float
+    sinks: float
     run: int
 
 
 @part
-def step_at(tip: FloatArray, k: FloatArray, v: FloatArray, heading: FloatArray, run: int) -> Step:
+def step_at(tip: FloatArray, k: FloatArray, v: FloatArray, heading: FloatArray, of: tuple[float, int]) -> Step:
     """A tool along k (3,) with its ``tip`` (3,) m, fed along a unit v (3,); fed straight along its axis, its angles are
-    counted from ``heading`` (3,), a unit vector across k."""
+    counted from ``heading`` (3,), a unit vector across k. ``of``: how steeply it sinks, and its run."""
+    sinks, run = of
     along = v[0] * k[0] + v[1] * k[1] + v[2] * k[2]
     fx, fy, fz = v[0] - along * k[0], v[1] - along * k[1], v[2] - along * k[2]
     across = math.sqrt(fx * fx + fy * fy + fz * fz)
@@ -60,6 +63,7 @@ def step_at(tip: FloatArray, k: FloatArray, v: FloatArray, heading: FloatArray, 
         k[2],
         across,
         along,
+        sinks,
         run,
     )
 

@@ -133,13 +133,13 @@ def test_each_cutter_is_warned_of_its_own_flutes_at_its_deepest_step():
 @pytest.mark.parametrize(
     ("mill", "degrees", "codes"),
     [
-        (MILL, -0.4, ["end-teeth-clear"]),
+        (MILL, -0.4, ["end-teeth-heel"]),
         (MILL, -0.001, []),  # the rounding of a program
         (MILL, 0.4, []),
         (MILL.replace(kind="ball"), -0.4, []),  # no end face
     ],
 )
-def test_slopes_on_which_an_end_face_is_taken_as_hollow_are_named(mill, degrees, codes):
+def test_slopes_on_which_only_the_heel_of_a_hollow_end_cuts_are_named(mill, degrees, codes):
     slope = math.radians(degrees)
     gentle = CutConditions.steady(0.03, 200.0, 2e-3, across=math.cos(slope), along=math.sin(slope), block=[3])
     assert [each.code for each in cut_warnings(mill, gentle)] == codes
@@ -151,9 +151,9 @@ def test_thrusts_of_mills_and_drills_are_said_once_each_where_they_are_computed(
     conditions = CutConditions.steady(0.03, 200.0, 2e-3, along=along, block=np.arange(1, 7))
     conditions = CutConditions(**{**vars(conditions), "tooling": Tooling((MILL, drill), [0, 0, 0, 0, 1, 1])})
     found = cut_warnings(MILL, conditions)
-    clear = (1, "end-teeth-clear")  # as gentle as its end is hollow
-    assert [(each.line, each.code) for each in found] == [(2, "thrust-end-teeth"), (5, "thrust-lips"), clear]
+    heel = (1, "end-teeth-heel")  # as gentle as its end is hollow
+    assert [(each.line, each.code) for each in found] == [(2, "thrust-end-teeth"), (5, "thrust-lips"), heel]
     assert ["3 steps" in found[0].message, "2 steps" in found[1].message] == [True, True]
     only = cut_warnings(MILL, conditions, np.array([True, False, False, True, False, False]))
-    assert [(each.line, each.code) for each in only] == [(4, "thrust-end-teeth"), clear]
+    assert [(each.line, each.code) for each in only] == [(4, "thrust-end-teeth"), heel]
     assert cut_warnings(MILL, conditions, False) == ()

@@ -12,7 +12,7 @@ from robomill.cutting.course import force_over_pitch as over_pitch
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import EngagedPart
 from robomill.cutting.forces.mechanistic import MechanisticForce
-from robomill.cutting.tool import DISH, MOST_FLUTES, Cutter
+from robomill.cutting.tool import DISH, MOST_FLUTES, PRESSED, Cutter
 from tests.cutting.cutters import CHIP, CUTTERS, MILL, REF190, SLOT
 
 
@@ -200,7 +200,7 @@ def test_sectors_at_the_ends_of_the_arc_are_as_full_as_their_part_within_it():
 
 
 def test_an_arc_without_a_part_is_two_half_turns_alike_with_the_end_face_beyond_the_dish():
-    slopes = np.array([0.0, -DISH, -1.001 * DISH])
+    slopes = np.array([0.0, -PRESSED, -1.001 * DISH])
     conditions = CutConditions.steady(0.03, 200.0, [1e-3, 2e-3, 3e-3], along=slopes, arc=(0.5, 2.0))
     course = Course.of(conditions, MILL, np.array([0, 1, 2]))
     for n, (depth, face) in enumerate(((1e-3, 0.0), (2e-3, 0.0), (3e-3, MILL.radius))):

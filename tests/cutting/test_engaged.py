@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from robomill.cutting.engaged import FACING, EngagedPart, full_slot, nose_of, sector_edges
-from robomill.cutting.tool import DISH
+from robomill.cutting.edge import EdgeTerm
+from robomill.cutting.engaged import FACING, EngagedPart, end_of, full_slot, nose_of, sector_edges
+from robomill.cutting.tool import DISH, PRESSED
 from robomill.errors import CuttingError
 from tests.cutting.cutters import CUTTERS, MILL
 
@@ -69,7 +70,7 @@ def over_turn(e, ahead, along, kappa):
     return np.array([one, sine]) if e == 0.0 else np.array([s * sine + t * one, s * square + t * sine])
 
 
-@pytest.mark.parametrize("along", [-1.0, -0.6, -0.005, 0.3])
+@pytest.mark.parametrize("along", [-1.0, -0.6, -0.0005, 0.3])
 @pytest.mark.parametrize("depth", [0.6e-3, 9e-3])
 @pytest.mark.parametrize("cutter", CUTTERS, ids=lambda c: c.kind)
 def test_sums_of_a_full_slot_by_quadrature(cutter, depth, along):
@@ -97,10 +98,39 @@ def test_sums_of_a_full_slot_by_quadrature(cutter, depth, along):
         np.testing.assert_allclose(found[n], sums, atol=4e-3 * np.abs(sums).max())
 
 
-def test_the_end_of_a_flat_mill_takes_part_beyond_its_dish_only():
-    slopes = -DISH * np.array([0.0, 1.0, 1.001])
-    ends = full_slot(MILL, (0.0,), np.full(3, 2e-3), slopes).moments[:, 0, 4]
-    np.testing.assert_allclose(ends, [0.0, 0.0, MILL.radius * 2.0 * np.pi], atol=1e-15)
+def test_all_of_the_end_of_a_flat_mill_takes_part_from_its_dish_on_and_none_where_it_is_pressed():
+    slopes = np.array([0.0, -PRESSED, -DISH, -1.001 * DISH])
+    ends = full_slot(MILL, (0.0,), np.full(4, 2e-3), slopes).moments[:, 0, 4]
+    np.testing.assert_allclose(ends, MILL.radius * 2.0 * np.pi * np.array([0.0, 0.0, 1.0, 1.0]), atol=1e-15)
+
+
+@pytest.mark.parametrize("share", [0.05, 0.3, 0.7, 0.95])
+def test_a_hollow_end_cuts_where_its_rim_has_passed_higher_before(share):
+    """Points of an end that rises towards the axis by the dish, on a slope ``share`` of it as steep: material stands
+    where no earlier place of the end, the rim with it, was as low. Looked at place by place along the way."""
+    R, dish = 4e-3, math.tan(math.asin(DISH))
+    slope = share * dish
+    way = np.linspace(0.0, 2.2 * R, 4001)[1:]
+    for phi in np.radians([-175.0, -90.0, -60.0, -20.0, 3.0, 30.0, 61.0, 89.0]):
+        r = (np.arange(200) + 0.5) * R / 200
+        x, y, z = r * math.sin(phi), r * math.cos(phi), (R - r) * dish
+        far = np.hypot(x[:, None] + way, y[:, None])  # of the axis where it was before
+        lowest = np.where(far <= R, way * slope + (R - far) * dish, np.inf).min(axis=1)
+        stands = lowest > z + 1e-9
+        assert end_of(MILL, share, math.sin(phi)) == pytest.approx(stands.mean() * R, abs=0.012 * R)
+
+
+def test_the_force_of_a_full_slot_is_continuous_in_its_slope():
+    """Angles 64 times as close together change it by at most a quarter as much: there is no jump at any angle, and at
+    the dish no more than the corner of a square root."""
+    terms = (EdgeTerm(1.0, 8e8, 3e8, 1e8), EdgeTerm(0.0, 2e4, 2e4, 1e3))
+
+    def largest_change(step):
+        angles = np.radians(np.arange(0.0, 0.6, step))
+        part = full_slot(MILL, (1.0, 0.0), np.full(len(angles), 2e-3), -np.sin(angles))
+        return np.abs(np.diff(part.force(terms, MILL, 0.05e-3), axis=0)).max(axis=0)
+
+    assert (largest_change(0.04 / 64) < largest_change(0.04) / 4.0).all()
 
 
 def test_a_surface_that_faces_the_feed_by_less_than_a_millionth_does_not_cut():

@@ -72,6 +72,21 @@ def test_a_fifth_stays_of_a_pocket_too_and_inside_the_model_less_than_a_hundredt
     assert 0.15 < pocket.softer.max / pocket.before.max < 0.25
 
 
+def test_a_pockets_text_runs_as_an_ordinary_program_along_the_path_that_was_meant(pocket: Compensation) -> None:
+    """Where it goes down as the arm is pushed up, no end of the tool cuts. At sharp corners the tip goes round in the
+    links between two corrections, some tenths of a millimetre long."""
+    tip, run = tip_of(pocket.setup, pocket.text)
+    path = pocket.wanted.path
+    begin, way = path.p[:-1][path.cutting[1:]], np.diff(path.p, axis=0)[path.cutting[1:]]
+    square = np.maximum(np.einsum("ni,ni->n", way, way), 1e-30)
+    x = tip[run.path.cutting & (run.path.p[:, 2] < -1e-3)]
+    share = np.clip(np.einsum("mni,ni->mn", x[:, None] - begin, way) / square, 0.0, 1.0)
+    off = np.linalg.norm(x[:, None] - begin - share[..., None] * way, axis=2).min(axis=1) / pocket.before.max
+    assert np.median(off) < 0.01
+    assert np.percentile(off, 95) < 0.05
+    assert (off > 0.1).mean() < 0.03
+
+
 def test_a_coupled_run_of_the_text_finds_it_on_its_line() -> None:
     setup = rm.load_setup(SLOT / "setup_process.toml").replace(coupling=True)
     found = rm.compensate(setup)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from robomill.cutting.edge import MOMENTS
-from robomill.cutting.engaged import PANELS, full_slot, sector_edges
+from robomill.cutting.engaged import PANELS, end_of, full_slot, sector_edges, sinks
 from robomill.cutting.profile_kernels import END, FLANK, NOSE, on_profile, stretch_ends
-from robomill.cutting.tool import DISH, Cutter
+from robomill.cutting.tool import DISH, PRESSED, Cutter
 from robomill.surface import division_kernels as division
 from robomill.surface import engagement_kernels as kernels
 from robomill.surface.division_kernels import GAPS, HALVINGS, REACH, REST, ROWS, SIZE, add_part, divide, follow_jumps
@@ -137,11 +137,11 @@ def block_world(layers=1, dx=0.5 * MM):
 
 def fed_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
     v = np.array([math.sqrt(1.0 - along**2), 0.0, along])
-    return step_at(np.array([0, 0, -depth]), np.array(axis), v, np.array([1.0, 0.0, 0.0]), 1)
+    return step_at(np.array([0, 0, -depth]), np.array(axis), v, np.array([1.0, 0.0, 0.0]), (float(sinks(along)), 1))
 
 
 @pytest.mark.parametrize("name", CUTTERS)
-@pytest.mark.parametrize("along", [0.0, -DISH, -1.01 * DISH])
+@pytest.mark.parametrize("along", [0.0, -PRESSED, -1.01 * DISH])
 @pytest.mark.parametrize("depth", [0.5 * MM, 3 * MM, 20 * MM])
 def test_places_lie_on_the_profile_as_far_up_as_the_material(name, along, depth):
     """Of three layers: the flank is looked at too. Ends of a stretch a hundredth of a piece inside of it; then they
@@ -153,7 +153,7 @@ def test_places_lie_on_the_profile_as_far_up_as_the_material(name, along, depth)
     for stretch, most in ((END, 8), (NOSE, 9), (FLANK, 96)):
         begin, stop, pieces, start = room.stretches[stretch]
         expected = stretch_ends(shape, stretch, depth)
-        if stretch == END and -along <= DISH:
+        if stretch == END and -along <= PRESSED:
             expected = (0.0, 0.0)
         assert (begin, max(stop, begin)) == pytest.approx((expected[0], max(expected)))
         if stop <= begin:
@@ -234,7 +234,9 @@ def met(cutter, depth, along=0.0, low=-1.0, high=1.0, turn=0):
     turns step and block by so many right angles."""
     way = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)][turn])
     v = np.append(math.sqrt(1.0 - along**2) * way, along)
-    step = step_at(np.array([0, 0, -depth]), np.array([0.0, 0.0, 1.0]), v, np.array([1.0, 0.0, 0.0]), 1)
+    step = step_at(
+        np.array([0, 0, -depth]), np.array([0.0, 0.0, 1.0]), v, np.array([1.0, 0.0, 0.0]), (float(sinks(along)), 1)
+    )
     if turn in (1, 2):  # the left of Y is -X, that of -X is -Y
         low, high = -high, -low
     limits = {"x_low": low, "x_high": high} if turn % 2 else {"y_low": low, "y_high": high}
@@ -266,8 +268,11 @@ def test_in_the_midst_of_a_block_a_full_slot_is_met(name, along, depth):
     np.testing.assert_allclose(ahead[:, 0], depth, rtol=2e-2)
     np.testing.assert_allclose(ahead[:, 1], 0.0, atol=2e-2 * depth)
     np.testing.assert_allclose(ahead[:, 2], depth, rtol=1e-5)
-    face = cutter.flat_radius if -along > DISH else 0.0
-    np.testing.assert_allclose(sectors[:, 3], face, rtol=2e-2)
+    if sinks(along) in (0.0, 1.0):  # all of the end, or none
+        np.testing.assert_allclose(sectors[:, 3], cutter.flat_radius * sinks(along), rtol=2e-2)
+    else:  # its heel, behind
+        assert (sectors[4 * PANELS + 1 : -1, 3] >= 0.0).all()
+        assert sectors[6 * PANELS, 3] == pytest.approx(float(end_of(cutter, sinks(along), -1.0)), rel=2e-2)
     turns = np.pi * (depth - cutter.nose_height) if depth > cutter.nose_height else 0.0
     assert size >= turns
 
@@ -342,14 +347,14 @@ def test_a_leaning_tool_fed_anywhere_meets_what_its_surface_has_in_the_material(
     world, halves = block_world(layers=6, dx=0.2 * MM), 2 if along < 0.0 else 1
     tip = np.array([2.0, -3.0, -depth / MM]) * MM
     total, sectors = np.zeros(2 * MOMENTS + REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
-    add_part(room_for(halves), world, shape, step_at(tip, k, v, f, 1), total, sectors)
+    add_part(room_for(halves), world, shape, step_at(tip, k, v, f, (float(sinks(along)), 1)), total, sectors)
 
     phi = (np.arange(720) + 0.5) * np.pi / 360
     e = np.sin(phi)[:, None] * f + np.cos(phi)[:, None] * left
     expected, size, reach = np.zeros((2, MOMENTS)), 0.0, 0.0
     for stretch in (END, NOSE, FLANK):
         begin, stop = stretch_ends(shape, stretch, 20 * MM)
-        if stop <= begin or (stretch == END and along >= -DISH):
+        if stop <= begin or (stretch == END and along >= -DISH):  # no seed gives a slope between pressed and dish
             continue
         ds = (stop - begin) / 200
         for s in begin + (np.arange(200) + 0.5) * ds:

@@ -1,11 +1,13 @@
 """A program line by line as it is executed: which lines, in which order, in which modes, and which moves each makes."""
 
+import re
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, IntArray
+from robomill.lazy import cached_property
 from robomill.toolpath.gcode import flow_rules
 from robomill.toolpath.gcode.dialects import SAMPLE, choose_dialect
 from robomill.toolpath.gcode.interpreter import Interpreter
@@ -73,15 +75,42 @@ class Executed:
     modes: Modes
 
 
+_SAME_MODES = re.compile(
+    rb"\s*(?:N\d+\s*)?(?:G0?[0-3](?![\d.])\s*)?(?:[XYZIJKABCF]\s*[-+]?(?:\d+\.?\d*|\.\d+)\s*)*", re.IGNORECASE
+)
+"""A line of G-code that changes no ``Modes``: a move in a straight line or an arc, and its feed."""
+
+
+def _go_on(lines: Lines) -> list[int]:
+    """For each line, how many from there on change no modes."""
+    starts, count = lines.starts.tolist(), 0
+    found = [0] * len(lines)
+    for i in range(len(lines) - 1, -1, -1):
+        count = count + 1 if _SAME_MODES.fullmatch(lines.data, starts[i], starts[i + 1] - 1) else 0
+        found[i] = count
+    return found
+
+
 class _Traced(Interpreter):
-    """Executes one line at a time and writes down each."""
+    """Executes one line at a time, those of moves alone in stretches, and writes down each."""
 
     executed: list[Executed]
+    together: list[tuple[int, int]]  # where in ``executed`` a stretch begins and ends whose moves are still one lot
     modes: Modes | None = None
 
     def _run_stretch(self) -> bool:
         index, file, before = self.pc, self.file, len(self.machine.recorder)
         structure = self.file.structure or self.no_words
+        most = self._alike[index] if file is self.main and index < len(self._alike) else 0
+        if most > 1:
+            done, self.pc, _ = self.stretches.run(file.lines, structure, index, self.steps, most)
+            self._count(done, max(self.pc - 1, 0))
+            if done:
+                begin, modes, last = len(self.executed), self._modes_now(), len(self.machine.recorder)
+                text = file.lines[index : index + done]
+                self.executed += [Executed(index + n, True, text[n], before, last, modes) for n in range(done)]
+                self.together.append((begin, begin + done))
+            return bool(done)
         written = Rows(self.machine)
         store, text, flow = self.machine.store.arrays, self.file.lines.plain_text, structure.plain
         done, self.pc = flow_rules.run(self.machine, store, text, flow, self.pc, 1, written)
@@ -91,17 +120,37 @@ class _Traced(Interpreter):
             self._write(index, file, before)
         return bool(done)
 
+    @cached_property
+    def _alike(self) -> list[int]:
+        return _go_on(self.main.lines)
+
+    def apart(self, line: IntArray) -> list[Executed]:
+        """What was executed, each line with its own moves, those of the program being of lines ``line`` (m,)."""
+        for begin, end in self.together:
+            some = self.executed[begin:end]
+            first, last = some[0].first, some[0].last
+            own = some[0].index + 1 + np.arange(end - begin)
+            begins, ends = (first + np.searchsorted(line[first:last], own, side) for side in ("left", "right"))
+            self.executed[begin:end] = [
+                Executed(each.index, each.main, each.text, a, b, each.modes)
+                for each, a, b in zip(some, begins.tolist(), ends.tolist(), strict=True)
+            ]
+        return self.executed
+
     def step(self, index: int) -> None:
         file, before = self.file, len(self.machine.recorder)
         super().step(index)
         self._write(index, file, before)
 
     def _write(self, index: int, file: File, before: int) -> None:
+        last, modes = len(self.machine.recorder), self._modes_now()
+        self.executed.append(Executed(index, file is self.main, file.lines[index], before, last, modes))
+
+    def _modes_now(self) -> Modes:
         found = _modes(self.machine)
         if self.modes is None or not _same(self.modes, found):
             self.modes = found
-        last = len(self.machine.recorder)
-        self.executed.append(Executed(index, file is self.main, file.lines[index], before, last, self.modes))
+        return self.modes
 
 
 def trace(text: str, dialect: str = "auto", tools: Tools | None = None) -> tuple[Program, list[Executed], str]:
@@ -111,9 +160,10 @@ def trace(text: str, dialect: str = "auto", tools: Tools | None = None) -> tuple
     chosen = choose_dialect(data[:SAMPLE].decode("utf-8", "replace"), dialect)
     machine = _machine(tools, chosen, len(lines))
     reader = _Traced(machine, File("program", lines), chosen)
-    reader.executed = []
+    reader.executed, reader.together = [], []
     reader.run()
-    return _program(machine, chosen.name, len(lines) - (lines[-1] == "")), reader.executed, chosen.name
+    program = _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
+    return program, reader.apart(program.line), chosen.name
 
 
 def _modes(machine: object) -> Modes:
