@@ -39,7 +39,7 @@ def start() -> None:
     with left, st.container(border=True, height="stretch"):
         index = decides_at(result)
         if index >= 0:
-            arm_at(result, index, "start-arm", HEIGHT)
+            arm_at(result, index, "start-arm", HEIGHT, zoom=0.9)
     with middle, st.container(border=True, height="stretch"):
         story.groove_picture(result, project.view, HEIGHT, dark)
     with right:

@@ -6,7 +6,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import LoadTestError
 
 FOLDS = 10
-LEAVE_OUT = {"pose": "poses anywhere, spread by a fixed shuffle", "neighbours": "neighbouring poses together"}
+LEAVE_OUT = {"pose": "poses anywhere, fixed shuffle", "neighbours": "neighbouring poses together"}
 
 
 def folds_of(by: str, pose: IntArray, theta: FloatArray | None) -> IntArray:

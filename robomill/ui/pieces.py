@@ -71,10 +71,11 @@ def _tile(tile: Tile) -> str:
         moved = f" · {unparted(html.escape(tile.change))}" if tile.change else ""
         note = Html(f'was <span class="rm-was">{html.escape(tile.was)}</span>{moved}')
     mark = f"{badge(tile.kind)} " if tile.kind else ""
+    look = " rm-long" if "×" in number else ""
     ranges = "".join(f'<div class="rm-range">{unparted(html.escape(words))}</div>' for words in tile.ranges)
     return (
         f'<div class="rm-tile {html.escape(tile.tone)}"><div class="rm-label">{subscripts(tile.label)}</div>'
-        f'<div class="rm-value">{value}</div><div class="rm-sub">{mark}{note}</div>{ranges}</div>'
+        f'<div class="rm-value{look}">{value}</div><div class="rm-sub">{mark}{note}</div>{ranges}</div>'
     )
 
 
@@ -122,7 +123,7 @@ def table(rows: Sequence[Sequence[str]], kinds: str, head: Sequence[str] = (), s
 
     def row(tag: str, cells: Sequence[str], style: str = "") -> str:
         inner = "".join(
-            f'<{tag} class="{kind}"{title}>{as_html(cell)}</{tag}>'
+            f'<{tag if cell else "td"} class="{kind}"{title}>{as_html(cell)}</{tag if cell else "td"}>'
             for kind, title, cell in zip(kinds, named, cells, strict=True)
         )
         return f"<tr{style}>{inner}</tr>"
@@ -150,7 +151,7 @@ def matrix(rows: Sequence[Sequence[str]], names: Sequence[str], columns: Sequenc
         + "</tr>"
         for i, (name, row) in enumerate(zip(names, rows, strict=True))
     )
-    table = f'<table class="rm-matrix"><tr><th></th>{head}</tr>{body}</table>'
+    table = f'<table class="rm-matrix"><tr><td></td>{head}</tr>{body}</table>'
     st.html(table if columns is None else f'<div style="overflow-x:auto">{table}</div>')
 
 

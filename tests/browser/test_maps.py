@@ -32,7 +32,7 @@ def idle(page: Any) -> None:
 
 
 def slider(page: Any) -> Any:
-    return page.get_by_role("slider", name="Zₘ")
+    return page.get_by_role("slider", name="Z, mm")
 
 
 def drawn(page: Any, panel: int = 0) -> str:
@@ -138,16 +138,16 @@ def test_a_value_read_off_a_map_is_what_the_laws_say_there(page: Any, point: tup
 
 def test_a_click_on_a_map_selects_its_pose(page: Any) -> None:
     open_page(page, "Compliance")
-    report = page.locator("h3", has_text="At the selected point")
+    report = page.locator("h2", has_text="At the selected point")
     assert "(0, −1300, 0) mm" in report.inner_text()
     page.mouse.click(*cell(page, 4, 400.0, -1100.0))
-    page.locator("h3", has_text="At the selected point (400, −1100, 0) mm").wait_for(timeout=30_000)
+    page.locator("h2", has_text="At the selected point (400, −1100, 0) mm").wait_for(timeout=30_000)
     assert "at (400, −1100, 0) mm" in page.locator(".rm-tile").first.inner_text()
     C = compliance(posture((0.4, -1.1, 0.0)), (0.4, -1.1, 0.0))
     assert f"{C[1, 1]:.3f}" in page.locator(".rm-tile").first.inner_text()
     idle(page)
     page.mouse.click(*cell(page, 0, -300.0, -1400.0))
-    page.locator("h3", has_text="At the selected point (−300, −1400, 0) mm").wait_for(timeout=30_000)
+    page.locator("h2", has_text="At the selected point (−300, −1400, 0) mm").wait_for(timeout=30_000)
 
 
 def test_x_and_y_have_the_same_scale(page: Any) -> None:
@@ -176,7 +176,7 @@ def test_keys_walk_over_a_map_and_select(page: Any) -> None:
         panel.press(key)
     assert "X −20, Y −1280, Z 0 mm" in page.locator(".maps .tip").inner_text()
     panel.press("Enter")
-    page.locator("h3", has_text="At the selected point (−20, −1280, 0) mm").wait_for(timeout=30_000)
+    page.locator("h2", has_text="At the selected point (−20, −1280, 0) mm").wait_for(timeout=30_000)
 
 
 def times(page: Any, steps: int, moved: Callable[[int], str]) -> list[float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -68,3 +69,13 @@ def test_go_to_worst_leads_to_milling_from_another_page(page: Any, url: str) -> 
     page.get_by_role("button", name="Go to worst: line 7").click()
     page.wait_for_selector(".rm-kicker:has-text('Milling ·')", timeout=60_000)
     assert page.url.endswith("/Milling")
+
+
+def test_small_print_is_paler_once_and_parts_of_a_page_follow_its_title(page: Any, url: str) -> None:
+    idle(page)
+    caption = page.locator("[data-testid=stSidebar] [data-testid=stCaptionContainer]").first
+    assert caption.evaluate("each => getComputedStyle(each).opacity") == "1"
+    page.goto(f"{url}/Learn")
+    page.get_by_role("heading", name="The paper, reproduced").wait_for(timeout=60_000)
+    levels = page.evaluate("[...document.querySelectorAll('h1, h2, h3, h4')].map(each => Number(each.tagName[1]))")
+    assert all(later <= before + 1 for before, later in pairwise(levels)), levels

@@ -92,7 +92,8 @@ def test_the_box_stands_beside_the_papers(app: AppTest) -> None:
     go(app, WORKSPACE)
     assert "1200 × 600 × 500 mm" in words(app)
     said = words(app)
-    assert "has room for a box of the reference&#x27;s size, not where that stands" in said, "it ends at Y = -1537"
+    assert "the volume of the reference box, which fits in, but not where it stands" in said, "it ends at Y = -1537"
+    assert '<div class="rm-value rm-long">2148 × 1054 × 1036<small>mm' in said, "three sides in one line"
     assert "100 × 0 × 0 mm" in said
     assert "from (−50, −1300, 0), all reached" in said
 
@@ -129,7 +130,7 @@ def test_nine_maps_of_six_boxes(app: AppTest) -> None:
 def test_a_picked_cell_becomes_the_point(app: AppTest) -> None:
     go(app, COMPLIANCE)
     look(app, point=(0.2, -1.1, 0.0))
-    assert "At the selected point (200, −1100, 0) mm" in [s.value for s in app.subheader]
+    assert "At the selected point (200, −1100, 0) mm" in [s.value for s in app.header]
 
 
 def test_stiffer_joints_leave_a_ghost_and_can_be_put_into_the_robot(app: AppTest) -> None:
@@ -271,7 +272,7 @@ def test_another_robot_is_looked_at_where_the_project_cuts(app: AppTest, name: s
     assert deciding is not None
     x, y, z = result.setup.in_base(result.path.p[deciding[1].worst]) * 1e3
     go(app, COMPLIANCE)
-    assert f"At the selected point ({x:.0f}, {y:.0f}, {z:.0f}) mm".replace("-", "−") in [s.value for s in app.subheader]
+    assert f"At the selected point ({x:.0f}, {y:.0f}, {z:.0f}) mm".replace("-", "−") in [s.value for s in app.header]
     shown = board(app)
     assert shown["point"] == pytest.approx([x, y, z], abs=0.01)
     assert shown["u"]["span"][0] < 0.0 < shown["u"]["span"][1]

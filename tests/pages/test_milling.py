@@ -98,14 +98,14 @@ def test_the_view_survives_pages(app: AppTest) -> None:
 
 def test_the_papers_test_is_shown_beside_the_papers_path_alone(app: AppTest) -> None:
     go(app, "6_Milling")
-    assert "The paper's test beside this calculation" in [s.value for s in app.subheader]
+    assert "The paper's test beside this calculation" in [s.value for s in app.header]
     kept = store(app)
     setup = kept.project.setup.replace(source=GCodeSource("G21 G90\nG0 X-20 Y0 Z-2\nG1 X20 F1200\n", "mine.nc"))
     kept.project = Project(setup, kept.project.view, kept.project.preset)
     app.run()
     assert not app.exception
-    assert "The paper's test beside this calculation" not in [s.value for s in app.subheader]
-    assert "Downloads" in [s.value for s in app.subheader]
+    assert "The paper's test beside this calculation" not in [s.value for s in app.header]
+    assert "Downloads" in [s.value for s in app.header]
 
 
 def test_a_small_cell_is_shown_as_it_is(app: AppTest) -> None:

@@ -29,7 +29,7 @@ SMALL = 5e-4
 
 def equations(pose: PoseReport, push: Push) -> None:
     """Eqs. (13), (14) and (15) with this robot's numbers at this pose, for the push of the question."""
-    st.subheader("The mathematics, with the numbers of now")
+    st.header("The mathematics, with the numbers of now")
     left, right = pieces.split([1, 1], "mathematics", gap="large")
     with left:
         st.latex(r"\large C_X = \sum_{i=1}^{n} C_{\theta i}\,\mathbf{J}_i\,\mathbf{J}_i^{T} \qquad (13),\,(14)")
@@ -104,7 +104,7 @@ def evidence() -> Evidence:
 
 def reproduced() -> None:
     """The table, with what did not come out and why."""
-    st.subheader("The paper, reproduced")
+    st.header("The paper, reproduced")
     found = pieces.attempt(rows)
     if found is None:
         return

@@ -142,7 +142,7 @@ class Board {
       }) : [];
     }
     this.inputs.forEach((input, n) => {
-      const name = `${w.letter}ₘ${names[n]}, ${data.unit}`;
+      const name = `${w.letter}${names[n]}, ${data.unit}`;
       input.parentElement.querySelector("span").textContent = name;
       Object.assign(input, { min: w.at[0], max: w.at[count - 1], step: String((w.at[count - 1] - w.at[0]) / (count - 1)) });
       input.setAttribute("aria-label", name);

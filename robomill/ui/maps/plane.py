@@ -86,7 +86,7 @@ def slider(region: Region, at: float) -> None:
     """The slider of the server that moves a plane normal to Z through the region, for pictures that are no maps."""
     unit = region.unit
     low, high = (float(from_si(float(v), unit)) for v in (region.box.lower[2], region.box.upper[2]))
-    label = f"Zₘ, {unit_label(unit)}"
+    label = f"Z, {unit_label(unit)}"
     if high - low < 1e-9:
         pieces.note(f"{label}: {format_si(at, unit, 1)}; the region has no depth here.")
         return

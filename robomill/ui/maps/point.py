@@ -49,7 +49,7 @@ def lead(found: InHand, moved: Moved, cut: Decided | None, at_cut: bool, unit: s
 
 def show(found: InHand, old: PoseReport, moved: Moved, component: str, unit: str) -> None:
     """The arm as it stands there with its ellipsoid, and folded the numbers: joints, C, six by six, Jacobian."""
-    st.subheader(f"At the selected point {place(found.point, unit)}")
+    st.header(f"At the selected point {place(found.point, unit)}")
     if not found.pose.reached:
         pieces.note(f"Not reached: {found.reason}. Click a coloured cell of a map.")
         return

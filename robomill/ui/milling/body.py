@@ -190,7 +190,7 @@ def _answers(
             force_view.force_plot(result, i, spread, peak, dark)
             force_view.facts(result, i, peak)
         _engaged(result, i, spread, peak, dark)
-        st.subheader("How sure is the force?")
+        st.header("How sure is the force?")
         force_view.alloy_table(result, i, spread)
         force_view.worth_knowing(result)
     elif question == "tip":
@@ -249,10 +249,10 @@ def _part(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bo
         st.markdown("**Over the whole surface**")
         metrology_panel.spread_panel(result, dark)
     if evidence_panel.is_papers_path(session.project()):
-        st.subheader("The paper's test beside this calculation")
+        st.header("The paper's test beside this calculation")
         with st.container(border=True):
             evidence_panel.panel(session.project(), dark)
-    st.subheader("Downloads")
+    st.header("Downloads")
     picture_panel.downloads(result, i)
     with st.expander("Film of the cut", icon=":material/movie:", key="milling.open.film"):
         film.panel(result, dark)
