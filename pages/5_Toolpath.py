@@ -5,7 +5,7 @@ import streamlit as st
 from robomill import ui
 from robomill.ui import pieces, tools
 from robomill.ui.running import path_of
-from robomill.ui.toolpath import details, question, view
+from robomill.ui.toolpath import details, drawing, question, view
 from robomill.ui.toolpath.doors import file_inputs
 from robomill.ui.toolpath.lines import lines_inputs
 from robomill.ui.toolpath.part_zero import part_zero
@@ -29,7 +29,8 @@ view.headline(source, path, reach, result, unit)
 view.tiles(source, path, reach, result, unit)
 question.panel(path, "" if result is None else result.verdict.premise)
 
-left, right = ui.split([1, 2] if source.kind == "program" else [1.2, 1.75], "steps", gap="large")
+program = source.kind == "program" and not drawing.shown()
+left, right = ui.split([1, 2] if program else [1.2, 1.75] if not drawing.shown() else [1, 1.2], "steps", gap="large")
 with left:
     kind_switch()
     file_inputs(dark)

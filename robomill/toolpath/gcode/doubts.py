@@ -164,7 +164,9 @@ def _doubt_spindle(machine: Machine, program: Program) -> None:
         for line in program.line[still[np.append(True, np.diff(still) > 1)]][:MOST_SAID]:
             machine.findings.add("spindle-stopped", "warning", int(line), message)
     elif len(still):
-        machine.findings.add(NO_SPINDLE, "info", 0, "the spindle never turns: no S with M3 or M4")
+        machine.findings.add(
+            NO_SPINDLE, "info", 0, "the spindle turns in no cut: no S with M3 or M4 is in force (M6 ends it)"
+        )
     if machine.selected and not program.tool.any() and program.at_feed.any():
         message = f"T{machine.selected} is chosen, but no M6 changes to it: the cuts are taken as made without a number"
         machine.findings.add("no-change", "warning", 0, message)

@@ -45,6 +45,7 @@ class Interpreter(Klartext):
         self.budget, self.reads = len(file.lines) + MAX_STEPS, len(file.lines) + MAX_READ
         self.looping_since: float | None = None
         self.percent, self.is_klartext = False, dialect.name == "heidenhain"
+        machine.sides = {410: "RL", 420: "RR"} if self.is_klartext else {}
         self.stretches = Stretches(machine)
 
     def run(self) -> None:

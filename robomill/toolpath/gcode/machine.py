@@ -65,13 +65,14 @@ class Machine:
     ``aways`` are those, each with the first move for which it holds, and ``homes`` those that the program has stored
     itself (28, 30).
 
-    ``corner`` is what the line says of the corner at its end (size in program units), ``polar_words`` says that X and Y
-    are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68, ``scale`` what G51 does to
-    words. ``extended`` are the origins and rotations of G54.1 P1 and on (program units), ``is_fanuc`` says that G10 and
-    variables mean what they mean there, ``other_control`` that it is neither LinuxCNC nor grbl, ``strict`` that
-    LinuxCNC is stated, ``variable`` what those are that nobody has set, ``machine_word`` which word leads to a place in
-    the machine. ``keeps_heights`` and ``kept_steps`` are those of ``cycle_rules``. ``modal`` is what MCALL or G66
-    holds, ``r_set`` are the R parameters that a program has set.
+    ``corner`` is what the line says of the corner at its end (size in program units), ``polar_words`` says that X
+    and Y are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68, ``scale`` what
+    G51 does to words. ``extended`` are the origins and rotations of G54.1 P1 and on (program units), ``is_fanuc``
+    says that G10 and variables mean what they mean there, ``other_control`` that it is neither LinuxCNC nor grbl,
+    ``strict`` that LinuxCNC is stated, ``variable`` what those are that nobody has set, ``machine_word`` which word
+    leads to a place in the machine, ``sides`` what it calls G41 and G42. ``keeps_heights`` and ``kept_steps`` are
+    those of ``cycle_rules``. ``modal`` is what MCALL or G66 holds, ``r_set`` are the R parameters that a program
+    has set.
     """
 
     def __init__(self, tools: Tools | None) -> None:
@@ -110,6 +111,7 @@ class Machine:
         self.extended: dict[int, tuple[list[float], float]] = {}
         self.systems: list[tuple[int, int]] = [(0, 1)]
         self.placed: dict[int, int] = {}
+        self.sides: dict[int, str] = {}
         self.length_of: Tool | None = None
         self.lifts: list[tuple[int, list[float]]] = []
         self.mist = self.flood = False

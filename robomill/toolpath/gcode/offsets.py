@@ -329,7 +329,7 @@ def known_tool(machine: Machine, block: Block, number: int) -> Tool:
 def compensation_on(machine: Machine, block: Block) -> None:
     """G41, G42, G41.1 and G42.1."""
     code = block.g[COMPENSATION]
-    name = g_name(code)
+    name = machine.sides.get(code, g_name(code))
     if machine.scale is not None and min(machine.scale.factors) < 0.0:
         raise block.refuse(f"{name} while coordinates are mirrored is not read; end that first (G50.1).")
     if machine.plane not in (17, 18):

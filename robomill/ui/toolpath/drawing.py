@@ -42,6 +42,11 @@ def take(data: bytes, name: str) -> None:
         raise
 
 
+def shown() -> bool:
+    """Whether a drawing waits to be cut along: its table wants room."""
+    return session.kept(DRAWING) is not None
+
+
 def panel() -> None:
     """The drawing, its layers and what is cut of them; what it does not say is asked for."""
     drawing: Drawing | None = session.kept(DRAWING)
@@ -87,11 +92,11 @@ def _layers(drawing: Drawing) -> None:
         grid.Sheet(
             numbers=boxes,
             heads=HEADS,
-            width={"depth": 52, "step_down": 48, "v_f": 52},
+            width={"depth": 74, "step_down": 68, "v_f": 70},
             columns={
-                "cut": column.CheckboxColumn("cut", width=38),
-                "layer": column.TextColumn("layer", width=60),
-                "side": column.SelectboxColumn("side", options=list(SIDES), width=56),
+                "cut": column.CheckboxColumn("cut", width=58),
+                "layer": column.TextColumn("layer", width=64),
+                "side": column.SelectboxColumn("side", options=list(SIDES), width=68),
             },
             locked=("layer",),
             height=pieces.rows_high(len(drawing.layers), ROWS_HIGH),
@@ -103,7 +108,7 @@ def _layers(drawing: Drawing) -> None:
         "cutter in force; inside and outside are climb milling. The tool plunges straight down where a line begins."
     )
     for finding in drawing.findings:
-        pieces.note(finding.sentence)
+        pieces.note(finding.sentence[:1].upper() + finding.sentence[1:])
 
 
 def _said() -> dict[str, Any]:

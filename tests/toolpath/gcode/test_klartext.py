@@ -128,7 +128,7 @@ def test_repeats_within_repeats_begin_anew() -> None:
 
 def test_compensation_needs_a_tool_and_follows_its_side() -> None:
     body = "L X-10 Y+0 FMAX\nL X+0 Y+0 RL F99\nL Y+20\nL X+20\nL X+40 R0\n"
-    with pytest.raises(GCodeError, match="Line 6: G41 needs the diameter of tool 1; give a tool table"):
+    with pytest.raises(GCodeError, match="Line 6: RL needs the diameter of tool 1; give a tool table"):
         read(body)
     program = read(body, tools={1: Tool(1, 6e-3)})
     np.testing.assert_allclose(program.end[-2, :2] * 1e3, [20, 23], atol=1e-9)

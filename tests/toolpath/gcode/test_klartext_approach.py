@@ -133,7 +133,7 @@ def test_what_cannot_be_read_is_refused(body: str, says: str) -> None:
 
 
 def test_a_cutter_without_a_radius_is_asked_for() -> None:
-    with pytest.raises(GCodeError, match="Line 4: G41 needs the diameter of tool 1; give a tool table"):
+    with pytest.raises(GCodeError, match="Line 4: RL needs the diameter of tool 1; give a tool table"):
         read("APPR LT X+10 Y+20 LEN15 RL\nL Y+50\n", tools=None)
 
 
