@@ -88,6 +88,10 @@ if TYPE_CHECKING:
     from robomill.simulation.run import simulate as simulate
     from robomill.simulation.setup import SimulationSetup as SimulationSetup
     from robomill.simulation.verdict_words import Verdict as Verdict
+    from robomill.study.described import Study as Study
+    from robomill.study.described import load_study as load_study
+    from robomill.study.running import StudyResult as StudyResult
+    from robomill.study.running import run_study as run_study
     from robomill.surface.groove import GrooveSection as GrooveSection
     from robomill.surface.stock import Stock as Stock
     from robomill.surface.zmap import ZMap as ZMap
@@ -194,6 +198,10 @@ _PUBLIC = {
     "simulate": "robomill.simulation.run",
     "SimulationSetup": "robomill.simulation.setup",
     "Verdict": "robomill.simulation.verdict_words",
+    "Study": "robomill.study.described",
+    "load_study": "robomill.study.described",
+    "StudyResult": "robomill.study.running",
+    "run_study": "robomill.study.running",
     "GrooveSection": "robomill.surface.groove",
     "Stock": "robomill.surface.stock",
     "ZMap": "robomill.surface.zmap",

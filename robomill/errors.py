@@ -82,6 +82,10 @@ class CompensationError(RobomillError):
     """A path that is not corrected: its prediction is not to be trusted, or no correction is found."""
 
 
+class StudyError(RobomillError):
+    """A study that cannot be run, or that stops before its end: what is finished is kept."""
+
+
 class LoadTestError(RobomillError):
     """Measurements that cannot be read or identified from."""
 

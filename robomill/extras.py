@@ -13,6 +13,7 @@ BROUGHT_BY = {
     "pandas": ("pandas", "data"),
     "xarray": ("xarray", "data"),
     "pyarrow": ("pyarrow", "data"),
+    "distributed": ("distributed", "study"),
     "pyvista": ("pyvista", "render"),
     "matplotlib": ("matplotlib", "plot"),
     "PIL": ("pillow", "render"),

@@ -30,6 +30,7 @@ class FileKind:
 
 PROGRAM = FileKind("a program in text (G-code or APT)", 200, smaller="; split the program")
 SETUP = FileKind("a set-up (.toml)", 25)
+STUDY = FileKind("a study (.toml)", 5)
 ROBOT = FileKind("a robot (.toml or .urdf)", 5)
 MATERIAL = FileKind("a material row (.toml)", 1)
 TOOLS = FileKind("a tool table (.tbl, .csv or .toml)", 2, any_code=True)

@@ -32,16 +32,19 @@ class Cancelled(Exception):  # noqa: N818 - no error
 
 @dataclass(eq=False)
 class Progress:
-    """What is being done (``stage``) and the share of it (0 to 1) that is; ``stop`` says that it is wanted no more."""
+    """What is being done (``stage``), the share of it (0 to 1) that is, and what is told ``beside``; ``stop`` says that
+    it is wanted no more."""
 
     stop: Callable[[], bool] = bool
     say: Callable[[Progress], object] = bool
     stage: str = ""
     share: float = 0.0
+    beside: str = ""
     began: float = field(default_factory=time.monotonic)
 
-    def reach(self, share: float | None = None, stage: str = "") -> None:
+    def reach(self, share: float | None = None, stage: str = "", beside: str = "") -> None:
         """Say how much of the stage is done, where that is known. Raises Cancelled where it is wanted no more."""
+        self.beside = beside
         if stage and stage != self.stage:
             self.stage, self.share, self.began = stage, 0.0, time.monotonic()
         if share is not None:
@@ -110,8 +113,8 @@ def step(index: int, count: int, stage: str) -> Iterator[None]:
         yield
 
 
-def checkpoint(share: float | None = None, stage: str = "") -> None:
-    """Say that ``share`` of ``stage`` is done. Raises Cancelled where it is wanted no more."""
+def checkpoint(share: float | None = None, stage: str = "", beside: str = "") -> None:
+    """Say that ``share`` of ``stage`` is done, and what is told beside. Raises Cancelled where it is wanted no more."""
     progress = _watching.get()
     if progress is not None:
-        progress.reach(share, stage)
+        progress.reach(share, stage, beside)

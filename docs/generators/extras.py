@@ -11,6 +11,7 @@ WORDS = {
     "app": "the app in the browser: `robomill` alone, `robomill serve`",
     "data": "tables and maps as pandas DataFrames, xarray and Parquet",
     "drawing": "paths along the lines of DXF and SVG drawings",
+    "study": "studies: many runs of a set-up, kept as Parquet, here or on Dask",
     "plot": "the pictures that `robomill simulate --out` writes",
     "render": "rendered pictures of the machined part",
     "film": "films of the cut",

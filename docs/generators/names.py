@@ -18,6 +18,7 @@ ROOMS = {
     "simulation": "A run",
     "identification": "Load tests and identification",
     "improve": "What would fix it",
+    "study": "Studies",
     "report": "Tables and reports",
 }
 ELSEWHERE = {

@@ -274,6 +274,20 @@ WORDS: dict[str, dict[str, str]] = {
         "verdict_sentence": "The same in words.",
         "digest": "Fingerprint of the answer.",
     },
+    "study": {
+        "name": "What the study is called.",
+        "design": "`grid`, `latin_hypercube` or `sobol`.",
+        "points": "How many points it has.",
+        "done": "Points that have their numbers, those of earlier runs among them.",
+        "failed": "Points that were refused and have none; each keeps its reason.",
+        "resumed": "Points that were there from an earlier run.",
+        "seconds": "What this run took.",
+        "parameters": "Keys of the numbers that were changed.",
+        "responses.*": "Of each response its least, median and largest value over the points that have one; of the "
+        "verdict how often each came out.",
+        "reasons": "Why points failed, the most frequent five: `count` and `reason`.",
+        "digest": "Fingerprint of the study and all of its rows.",
+    },
     "compensate": {
         "robomill": "The version that computed it.",
         "name": "What the set-up is called.",

@@ -39,6 +39,7 @@ RUNS: dict[str, tuple[tuple[str, ...], ...]] = {
     "place": (("paper_flute", "--x", "-200:200", "--y", "-2300:-1100", "--candidates", "30", "--out", "moved.toml"),),
     "design": (("paper_flute", "--tolerance-mm", "0.2"),),
     "compensate": (("paper_flute/setup_process", "--out", "corrected.nc"), ("two_tools", "--out", "corrected.nc")),
+    "study": (("paper_flute/study", "--out", "study"),),
     "samples": (("heart",),),
     "reproduce": ((),),
 }

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from robomill.errors import GCodeError, LoadTestError, ProjectError, RobomillError, RobotError, ToolpathError
-from robomill.files import PROGRAM, ROBOT, SETUP, TABLE, TOOLS, FileKind, check_size, name_of, read_file
+from robomill.files import PROGRAM, ROBOT, SETUP, STUDY, TABLE, TOOLS, FileKind, check_size, name_of, read_file
 from robomill.io.samples import find_sample, sample_or_file
 
 STDIN, CALLED = "-", "standard input"
@@ -79,6 +79,18 @@ def setup(name: str, allow_outside: bool) -> Any:
         return load_setup(name, allow_outside)
     text, _ = read_text(stdin(SETUP, ProjectError), ProjectError, SETUP, CALLED)
     return setup_from_toml(text, CALLED, Beside(Path.cwd(), allow_outside))
+
+
+def study(name: str) -> Any:
+    """The study of a sample, a file, or standard input, which names a set-up in the folder in which one stands."""
+    from robomill.errors import StudyError
+    from robomill.io.texts import read_text
+    from robomill.study.described import load_study, study_from_toml
+
+    if name != STDIN:
+        return load_study(name)
+    text, _ = read_text(stdin(STUDY, StudyError), StudyError, STUDY, CALLED)
+    return study_from_toml(text, CALLED, Path.cwd())
 
 
 def program(name: str) -> Path | bytes:

@@ -33,6 +33,7 @@ EXAMPLES = {
     "place": "robomill place paper_flute --x -300:300 --y -1500:-1100 --yaw -90:90",
     "compensate": "robomill compensate paper_flute --out corrected.nc",
     "turn": "robomill turn paper_flute --robot fanuc_r2000ic",
+    "study": "robomill study paper_flute/study --out study",
     "samples": "robomill samples --copy samples",
     "reproduce": "robomill reproduce",
     "completion": "robomill completion bash",
@@ -50,12 +51,13 @@ NOTES = {
     "place": "Left out, x and y are today's and 15 % of the arm's length to each side; height and yaw stay. Exits 1 "
     "where the verdict is red at the best place, too.",
     "compensate": "Refused, with the reason, where the prediction itself is not to be trusted.",
+    "study": "Stopped or failed, the same command goes on from what is finished. Exits 1 where no point came out.",
     "reproduce": "Exits 1 where a claim of the paper that should hold does not.",
     "completion": "For bash, write it to ~/.local/share/bash-completion/completions/robomill; for zsh, to a file "
     "_robomill in a folder of $fpath; for fish, to ~/.config/fish/completions/robomill.fish.",
 }
 # Verbs with a module of their own.
-MODULES = {"simulate", "identify", "serve", "drawing", "advise", "design", "place", "turn", "compensate"}
+MODULES = {"simulate", "identify", "serve", "drawing", "advise", "design", "place", "turn", "compensate", "study"}
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
 
@@ -100,6 +102,9 @@ def make_parser() -> argparse.ArgumentParser:
     _turn_options(told("turn", "How the spindle should be turned about its axis along a path: six and seven axes."))
     _design_options(told("design", "The joints to stiffen so that a cut keeps a tolerance, at the least cost."))
     _compensate_options(told("compensate", "Correct a program for the push on its tool, and say what is left."))
+    _study_options(
+        told("study", "Many runs of a set-up: a grid, a Latin hypercube or Sobol's sequence of its numbers.")
+    )
     given = told("samples", "List the samples, or copy them to work on.")
     _named(given, "names", "samples to list or copy (all)", "any", nargs="*")
     given.add_argument("--copy", metavar="DIR", help="copy them there; what is there and differs is never replaced")
@@ -298,6 +303,17 @@ def _simulate_options(run: argparse.ArgumentParser) -> None:
         "runs again from there; what an earlier run wrote is replaced, other files stay",
     )
     run.add_argument("--full-stl", action="store_true", help="with --out: an STL of every cell, however large")
+
+
+def _study_options(run: argparse.ArgumentParser) -> None:
+    _named(run, "study", "a study (.toml), or a sample's name", "study")
+    run.add_argument(
+        "--out", required=True, metavar="DIR", help="keep its points there; where some are there already, go on"
+    )
+    run.add_argument(
+        "--scheduler", metavar="tcp://HOST:PORT", help="of a Dask cluster; left out: processes of this machine"
+    )
+    run.add_argument("--processes", type=partial(whole, 1000), metavar="N", help="how many of those (one a processor)")
 
 
 def _compensate_options(run: argparse.ArgumentParser) -> None:

@@ -25,7 +25,8 @@ class ProgressLine:
         """Show the stage and its share, at most some times a second."""
         if time.monotonic() >= self._next:
             self._next = time.monotonic() + EACH_S
-            self._put(f"{now.stage}: {format_percent(now.share)}")
+            beside = f", {now.beside}" if now.beside else ""
+            self._put(f"{now.stage}: {format_percent(now.share)}{beside}")
 
     def _put(self, text: str) -> None:
         if self._stream is not None:

@@ -13,8 +13,8 @@ from robomill.arguments import asked
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import check_place
 
-SampleKind = Literal["set-up", "robot", "program", "load tests", "material", "drawing"]
-TITLED: tuple[SampleKind, ...] = ("set-up", "robot", "material")  # TOML files, which say what they are called
+SampleKind = Literal["set-up", "robot", "program", "load tests", "material", "drawing", "study"]
+TITLED: tuple[SampleKind, ...] = ("set-up", "robot", "material", "study")  # TOML files, which say what they are called
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,8 @@ def _found(folder: Path) -> Iterator[Sample]:
     for path in sorted(folder.glob("*/setup*.toml")):
         case = path.parent.name
         yield Sample("set-up", case if path.stem == "setup" else f"{case}/{path.stem}", path)
+    for path in sorted(folder.glob("*/study*.toml")):
+        yield Sample("study", f"{path.parent.name}/{path.stem}", path)
     for path in sorted(folder.glob("*/*.nc")):
         yield Sample("program", path.parent.name, path)
     for path in sorted(folder.glob("drawings/*.dxf")) + sorted(folder.glob("drawings/*.svg")):
@@ -168,5 +170,5 @@ def _to_copy(here: Path, names: Sequence[str]) -> list[Path]:
         if not found:
             raise ProjectError(f"{name!r:.80}: there is no such sample; 'robomill samples' lists them.")
         for sample in found:
-            files.update(sample.path.parent.glob("*.*") if sample.kind == "set-up" else [sample.path])
+            files.update(sample.path.parent.glob("*.*") if sample.kind in ("set-up", "study") else [sample.path])
     return sorted(files)

@@ -44,6 +44,7 @@ STOREYS = [
     {"simulation"},
     {"improve"},
     {"report", "viz", "io"},
+    {"study"},
     {"ui"},
     {"cli"},
     {"__main__"},

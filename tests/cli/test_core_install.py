@@ -43,6 +43,7 @@ NEEDS = {
     "": ((), "The app needs streamlit", "app"),
     "drawing": (("drawing", "bracket"), "A DXF drawing needs ezdxf", "drawing"),
     "drawing as SVG": (("drawing", "bracket.svg"), "An SVG drawing needs svgelements", "drawing"),
+    "study": (("study", "paper_flute/study", "--out", "study"), "A study needs pyarrow", "study"),
     "map as Parquet": ((*MAP, "--out", "map.parquet"), "A map as Parquet needs pyarrow", "data"),
     "map as VTI": ((*MAP, "--out", "map.vti"), "A map as VTI needs pyvista", "render"),
 }
