@@ -6,7 +6,8 @@ from difflib import get_close_matches
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
-from robomill.errors import ArgumentError
+from robomill.errors import ArgumentError, RobomillError
+from robomill.kinds import SLIPS, refuse_kinds
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -33,15 +34,19 @@ SAME = {
 
 
 def asked(call: Callable[P, R]) -> Callable[P, R]:
-    """A public function that tells by ``ArgumentError`` how it was called wrongly; what it raises itself stays."""
+    """A public function that tells by ``ArgumentError`` how it was called wrongly: by a name that it does not take,
+    without one that it needs, with a value of another kind than it declares. What it raises itself stays."""
     signature = inspect.signature(call)
 
     @wraps(call)
     def told(*args: P.args, **given: P.kwargs) -> R:
         try:
             return call(*args, **given)
-        except TypeError:
-            named(signature, call.__qualname__.removesuffix(".__init__"), args, given, whole=True)
+        except RobomillError:
+            raise
+        except SLIPS:
+            who = call.__qualname__.removesuffix(".__init__")
+            refuse_kinds(call, who, named(signature, who, args, given, whole=True))
             raise
 
     return told

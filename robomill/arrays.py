@@ -42,22 +42,24 @@ def as_floats(
     *,
     error: type[RobomillError] = RobomillError,
     finite: bool = True,
+    one: bool = False,
 ) -> FloatArray:
     """``value`` as float64 whose *trailing* axes match ``shape`` (None: any length).
 
-    Leading axes are free. Raises ``error`` with what was found and what was expected.
+    Leading axes are free, but of ``one`` thing, which has none. Raises ``error`` with what was found and expected.
     """
     try:
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError) as exc:
         found = no_number(value) or f"{value!r:.60}"
         raise error(f"{name}: expected numbers, found {found}.") from exc
-    trailing = array.shape[array.ndim - len(shape) :] if array.ndim >= len(shape) else None
+    fits = array.ndim == len(shape) or (array.ndim > len(shape) and not one)
+    trailing = array.shape[array.ndim - len(shape) :] if fits else None
     if trailing is None or any(w is not None and w != h for w, h in zip(shape, trailing, strict=True)):
         want = ", ".join("any" if s is None else str(s) for s in shape)
         turned = array.ndim == len(shape) == 2 and shape[0] is None and array.shape[0] == shape[1]
         ask = ": is it transposed?" if turned else "."
-        raise error(f"{name}: expected shape (..., {want}), found {array.shape}{ask}")
+        raise error(f"{name}: expected shape ({'' if one else '..., '}{want}), found {array.shape}{ask}")
     if finite and not np.isfinite(array).all():
         raise error(f"{name}: expected finite numbers, found NaN or infinity.")
     return array

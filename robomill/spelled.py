@@ -17,9 +17,11 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
+from robomill.arguments import asked as telling
 from robomill.arguments import named, refuse_unknown
 from robomill.arrays import no_number
 from robomill.errors import ArgumentError, RobomillError
+from robomill.kinds import kinds_told
 from robomill.quantities import Quantity, quantities
 from robomill.units import SI_NAMES, format_plain, from_si, to_si, unit_label
 
@@ -64,7 +66,7 @@ def in_units(
                 object.__setattr__(self, "unstated", tuple(name for name in asked if name not in found))
 
         init.__signature__ = signature  # type: ignore[attr-defined]
-        cls.__init__ = init  # type: ignore[misc]
+        cls.__init__ = telling(init)  # type: ignore[misc]
         cls.door = error, who  # type: ignore[attr-defined]
         return cls
 
@@ -74,7 +76,7 @@ def in_units(
 def made(cls: type[T], known: Mapping[str, Any]) -> T:
     """A value of a class of numbers that are known to be SI (read from a file in their units), whatever their size."""
     one = cls.__new__(cls)
-    getattr(cls.__init__, "__wrapped__", cls.__init__)(one, **known)
+    inspect.unwrap(cls.__init__)(one, **known)
     return one
 
 
@@ -226,9 +228,10 @@ class Replaceable:
 
     def replace(self, **changes: Any) -> Self:
         """A checked copy with fields changed: ``tolerance=2e-4``, or ``tolerance_mm=0.2``."""
-        known = inspect.signature(type(self)).parameters
-        refuse_unknown(changes, known, f"{type(self).__name__}.replace")
-        return made(type(self), state(self) | self._taken(in_si(type(self), changes)))
+        cls, who = type(self), f"{type(self).__name__}.replace"
+        refuse_unknown(changes, inspect.signature(cls).parameters, who)
+        with kinds_told(cls.__init__, who, changes):
+            return made(cls, state(self) | self._taken(in_si(cls, changes)))
 
     def _taken(self, changes: dict[str, Any]) -> dict[str, Any]:
         """Changes by the names of the fields."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arguments import refuse_unknown
+from robomill.arguments import asked, refuse_unknown
 from robomill.arrays import FloatArray
 from robomill.cutting.profile_kernels import Shape, conical, heights, profile, radii, round_nosed
 from robomill.errors import CuttingError
@@ -276,10 +276,12 @@ class Cutter(Value):
         """For people, e.g. ``"8.00 mm flat end mill, 3 flutes"``."""
         return self.called("mm")
 
+    @asked
     def called(self, length: str) -> str:
         """``title`` with its diameter in ``length``, a key of ``UNITS``."""
         return f"{format_si(self.diameter, length, 2)} {self.family.title}, {format_count(self.flutes, 'flute')}"
 
+    @asked
     def profile(self, r: ArrayLike) -> FloatArray:
         """Height (m) of the cutting surface above the tip at radius ``r`` (...) m; inf for r < 0 or r > R."""
         radius = np.asarray(r, dtype=np.float64)
@@ -287,6 +289,7 @@ class Cutter(Value):
         heights(np.ascontiguousarray(radius).ravel(), self.solid, height)
         return np.where((radius >= 0.0) & (radius <= self.radius), height.reshape(radius.shape), np.inf)
 
+    @asked
     def radius_at(self, height: ArrayLike) -> FloatArray:
         """Radius (m) of the cutter ``height`` (...) m above the tip, the inverse of ``profile``; NaN below the tip."""
         z = np.asarray(height, dtype=np.float64)
@@ -304,6 +307,7 @@ class Cutter(Value):
         object.__setattr__(other, "unstated", tuple(name for name in self.unstated if name not in changes))
         return other
 
+    @asked
     def reshaped(self, kind: str) -> Cutter:
         """The same cutter of another shape, with a first value for each number that one needs."""
         plain: dict[str, Any] = {"corner_radius": 0.0, "tip_angle": None, "tip_diameter": 0.0}

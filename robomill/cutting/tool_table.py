@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from robomill.arguments import asking
+from robomill.arguments import asked, asking
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 from robomill.lazy import cached_property
@@ -102,6 +102,7 @@ class ToolTable(Mapping[int, TableTool]):
     def __len__(self) -> int:
         return len(self.tools)
 
+    @asked
     def called(self, number: int) -> str:
         """A tool in a few words: ``"T2 · 20.00 mm flat end mill, 4 flutes"``, ``"T1 · drill, 6.00 mm"``."""
         tool = self.get(number, TableTool(number))

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arguments import asking
+from robomill.arguments import asked, asking
 from robomill.arrays import BoolArray, FloatArray, IntArray, digest, frozen
 from robomill.errors import LoadTestError
 from robomill.frames import Columns
@@ -56,15 +56,18 @@ class _Rows(Tabled):
     def __len__(self) -> int:
         return len(self.row)
 
+    @asked
     def select(self, chosen: ArrayLike | slice) -> Self:
         """The tests at ``chosen`` (a mask, indices or a slice), in that order."""
         index = np.arange(len(self))[chosen if isinstance(chosen, slice) else np.asarray(chosen)]
         return self._with({name: value[index] for name, value in self._arrays().items()})
 
+    @asked
     def thinned(self, most: int) -> Self:
         """No more than ``most`` of the tests, taken evenly."""
         return self.select(slice(None, None, -(-len(self) // most)))
 
+    @asked
     def without(self, rows: Iterable[int]) -> Self:
         """The tests without those of the named rows."""
         return self.select(~np.isin(self.row, list(rows)))
@@ -205,6 +208,7 @@ class LoadTests(_Rows):
             f"{format_si(moved, 'mm')}, {self.provenance.kind}"
         )
 
+    @asked
     def joined(self, other: LoadTests) -> LoadTests:
         """These tests, then ``other``'s, given the same way (poses, gauges). Rows are renumbered."""
         mine, others = self._arrays(), other._arrays()
@@ -213,6 +217,7 @@ class LoadTests(_Rows):
         both: dict[str, Any] = {name: np.concatenate([value, others[name]]) for name, value in mine.items()}
         return self._with({**both, "row": None, "findings": self.findings + other.findings})
 
+    @asked
     def with_joints(self, robot: Robot) -> LoadTests:
         """The same tests with ``theta`` known and checked against the robot's limits, and cables aimed.
 
@@ -231,6 +236,7 @@ class LoadTests(_Rows):
         """(m,) rows whose force points from the force point to a pulley, by calculation."""
         return np.asarray(np.isfinite(self.pulley).all(axis=1))
 
+    @asked
     def moved(self, robot: Robot, shift: FloatArray) -> LoadTests:
         """The same with the force point moved by ``shift`` (3,) m in {T}, and cables aimed from there."""
         point, aimed, wrench = self.force_point + shift, self.aimed, np.array(self.wrench)

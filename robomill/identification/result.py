@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, IntArray
 from robomill.compliance.spring import Spring
 from robomill.compliance.springs.joint_bending import JointBending
@@ -213,6 +214,7 @@ class IdentificationResult(Tabled):
         """The joint (1-based) with the widest interval for its size."""
         return self.labels[self.weakest].joint or 0
 
+    @asked
     def springs(self, robot: Robot) -> tuple[Spring, ...]:
         """The bending and tool springs found, for ``extra_contributions``; empty for the joints alone."""
         source = Provenance(self.kind, f"identified from {len(self.row)} load tests, model {self.model}")
@@ -227,6 +229,7 @@ class IdentificationResult(Tabled):
             found.append(SpindleSpring(across, along, provenance=source))
         return tuple(found)
 
+    @asked
     def adopted(
         self, robot: Robot, name: str, before: Robot, springs: Sequence[Spring]
     ) -> tuple[Robot, tuple[Spring, ...]]:
@@ -245,6 +248,7 @@ class IdentificationResult(Tabled):
         kept = tuple(s for s in springs if _place(s) not in taken and s.provenance.kind not in earlier)
         return applied.replace(provenance=marked), kept + found
 
+    @asked
     def explain(self, joint: int) -> str:
         """Why a joint (1-based) is known as well as it is, and what would help."""
         for parameter, text in zip(self.labels, self.explanations, strict=True):
@@ -257,6 +261,7 @@ class IdentificationResult(Tabled):
         """Whether any joint came out with a compliance above zero."""
         return self.has_joints and bool((np.nan_to_num(self.C_theta) > 0.0).any())
 
+    @asked
     def applied_to(self, robot: Robot) -> Robot:
         """The robot with these compliances ("measured"); joints that were not seen keep the robot's own values."""
         if not self.has_joints:

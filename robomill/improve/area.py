@@ -145,9 +145,10 @@ def _range(declared: Quantity, given: Any) -> FloatArray:
 def _boxes(asked: dict[str, Any]) -> FloatArray:
     plain, in_unit = asked.get(BOXES.name), asked.get(BOXES.key)
     given: Sequence[Any] = one_of(BOXES, plain, in_unit, SetupError, WHO, default=())
-    if np.size(given) == 0:
+    found = as_floats(given, f"{WHO}, keep_out", (), error=SetupError)
+    if found.size == 0:
         return np.zeros((0, 2, 3))
-    boxes = as_floats(given, f"{WHO}, keep_out", (2, 3), error=SetupError).reshape(-1, 2, 3)
+    boxes = as_floats(found, f"{WHO}, keep_out", (2, 3), error=SetupError).reshape(-1, 2, 3)
     for n, (low, high) in enumerate(boxes, 1):
         if (low >= high).any():
             raise SetupError(

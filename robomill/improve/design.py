@@ -115,6 +115,7 @@ class Design(Tabled):
         some = " and ".join(", ".join(named).rsplit(", ", 1))
         return f"{some[0].upper()}{some[1:]} as stiff keep{'s' * (len(named) == 1)} {limit}."
 
+    @asked
     def front(self, count: int = 25) -> Front:
         """What costs how much, from the cut as it is to the least deviation within the bounds."""
         now = judged(self.before, self.measure)

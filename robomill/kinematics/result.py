@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.frames import Columns
 from robomill.kinematics.choice import every, overshoot, spun, turn
@@ -79,6 +80,7 @@ class IKResult(Tabled):
             return f"reached, branch {str(np.ravel(self.branch)[0])!r}" if self.reached.all() else "not reached"
         return f"{format_count(int(self.reached.sum()))} of {format_count(count, 'pose')} reached"
 
+    @asked
     def reason(self, index: Any = ()) -> str:
         """Why the pose at ``index`` of the batch is not reached, in words; "" if it is."""
         if bool(self.reached[index]):

@@ -12,16 +12,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked, asking, refuse_unknown
-from robomill.arrays import Arrays, BoolArray, FloatArray, Numbers, Rows, frozen, of_kind
+from robomill.arrays import Arrays, BoolArray, FloatArray, Numbers, Rows, as_floats, frozen, no_number, of_kind
 from robomill.errors import RobotError
 from robomill.frames import Columns
+from robomill.kinds import kinds_told
 from robomill.lazy import cached_property
 from robomill.provenance import UNSTATED, Provenance, stated_blocks
 from robomill.quantities import Quantity, quantities, quantity
 from robomill.robot import checks
 from robomill.robot.dh import Chain, build_chain
 from robomill.robot.sources import COMPLIANCE, USER_SET, changed_sources, of_set
-from robomill.spelled import in_si, refuse_slip
+from robomill.spelled import in_si
 from robomill.units import format_count, from_si
 from robomill.values import Tabled
 
@@ -104,10 +105,7 @@ class Robot(Tabled):
         )
 
     def _check_limits(self, rows: int, where: str) -> None:
-        try:
-            value = np.asarray(self.limits_all, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise RobotError(f"{where}: limits: expected [lower, upper] for each joint, found text.") from None
+        value = as_floats(self.limits_all, f"{where}: limits", (), error=RobotError, finite=False)
         if value.shape != (rows, 2):
             raise RobotError(f"{where}: limits: expected [lower, upper] for {rows} joints, found shape {value.shape}.")
         declared = quantities(Robot)["limits_all"]
@@ -323,6 +321,7 @@ class Robot(Tabled):
         return self.compliance_set == USER_SET and said is not None and said.kind == "assumed"
 
     # ---- change is replacement ------------------------------------------------------------------------------------
+    @asked
     def replace(self, **changes: Any) -> Robot:
         """A checked copy with fields changed, by their own names or by those of ``from_dh`` with a unit.
 
@@ -334,25 +333,27 @@ class Robot(Tabled):
         Where changed numbers come from is that they were given in code, unless ``provenance`` says more of their block:
         geometry, lengths, limits, base, tool, compliance, or compliance. and the name of a set.
         """
-        from robomill.robot.table import COLUMN_UNITS, OTHERS, changed_fields
+        from robomill.robot.table import COLUMN_UNITS, OTHERS, changed_fields, refuse_printed
 
         known = [f.name for f in fields(self)]
         columns = [f"{name}{unit}" for name, unit in COLUMN_UNITS.items()]
-        refuse_unknown(changes, [*known, "C_theta", "limits", *columns, *OTHERS], f"Robot {self.name!r}")
-        changes = in_si(Robot, changed_fields(self, changes))
-        for short, full in (("C_theta", "C_theta_all"), ("limits", "limits_all")):
-            if short == "C_theta" and short in changes:
-                _refuse_slip(quantities(Robot)[full], changes[short], self.name)
-            if short in changes:
-                changes[full] = self._filled(changes.pop(short), getattr(self, full))
-        if "C_theta_all" in changes and "compliance_set" not in changes:
-            changes["compliance_set"] = USER_SET
-        elif "C_theta_all" not in changes and {"compliance_set", "compliance_sets"} & changes.keys():
-            sets = changes.get("compliance_sets", self.compliance_sets)
-            name = changes.get("compliance_set", self.compliance_set)
-            changes |= {"C_theta_all": sets[name]} if name in sets else {}
+        who = f"Robot {self.name!r}"
+        refuse_unknown(changes, [*known, "C_theta", "limits", *columns, *OTHERS], who)
         said = stated_blocks(changes.get("provenance", {}), RobotError)
-        other = Robot(**{**{key: getattr(self, key) for key in known}, **changes, "provenance": self.provenance})
+        with kinds_told(Robot.__init__, who, changes), kinds_told(Robot.from_dh, who, changes):
+            changes = in_si(Robot, changed_fields(self, changes))
+            for short, full in (("C_theta", "C_theta_all"), ("limits", "limits_all")):
+                if short == "C_theta" and short in changes:
+                    refuse_printed(quantities(Robot)[full], changes[short], self.name)
+                if short in changes:
+                    changes[full] = self._filled(changes.pop(short), getattr(self, full))
+            if "C_theta_all" in changes and "compliance_set" not in changes:
+                changes["compliance_set"] = USER_SET
+            elif "C_theta_all" not in changes and {"compliance_set", "compliance_sets"} & changes.keys():
+                sets = changes.get("compliance_sets", self.compliance_sets)
+                name = changes.get("compliance_set", self.compliance_set)
+                changes |= {"C_theta_all": sets[name]} if name in sets else {}
+            other = Robot(**{**{key: getattr(self, key) for key in known}, **changes, "provenance": self.provenance})
         found = {**other.provenance, **changed_sources(self, other), **said}
         if other.compliance_set != USER_SET:
             found.pop(COMPLIANCE, None)  # of numbers that are in force no more
@@ -360,7 +361,9 @@ class Robot(Tabled):
         return other
 
     def _filled(self, value: Any, current: FloatArray) -> Any:
-        if np.ndim(value) == 0 and not isinstance(value, str) and value is not None:
+        if no_number(value):
+            return value  # which is refused with the rest
+        if np.ndim(value) == 0 and value is not None:
             return np.where(self.free, value, current) if current.ndim == 1 else value  # one for all
         if self.n == self.rows or np.ndim(value) == 0 or len(value) != self.n:
             return value
@@ -368,6 +371,7 @@ class Robot(Tabled):
         full[self.free] = value
         return full
 
+    @asked
     def with_compliance_set(self, name: str) -> Robot:
         """The same arm with one of its compliance sets in force."""
         if name not in self.compliance_sets:
@@ -381,13 +385,6 @@ class Robot(Tabled):
         for key in ("compliance_sets", "provenance"):
             state[key] = dict(state[key])
         return _rebuild, (state,)
-
-
-def _refuse_slip(declared: Quantity, C_theta: Any, name: str) -> None:
-    """Refuse compliances as papers print them, without their power of ten; the joint is named."""
-    for i, each in enumerate(np.ravel(np.asarray(C_theta))):
-        who = f"Robot {name!r}" + (f", joint {i + 1}" if np.ndim(C_theta) else "")
-        refuse_slip(replace(declared, name="C_theta", key="C_theta_1e_7_rad_per_Nm"), each, RobotError, who)
 
 
 def check_robot(robot: Any) -> None:

@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.errors import RobotError
 from robomill.provenance import GIVEN, Provenance
 from robomill.quantities import Quantity
@@ -135,6 +136,14 @@ def changed_fields(robot: Table, changes: Mapping[str, Any]) -> dict[str, Any]:
             T[:3, 3] = _frame({f"T_{part}": None, **given}, part, who)[:3, 3]
             found[f"T_{part}"] = T
     return found
+
+
+def refuse_printed(declared: Quantity, C_theta: Any, name: str) -> None:
+    """Refuse compliances as papers print them, without their power of ten; the joint is named."""
+    found = as_floats(C_theta, f"Robot {name!r}, C_theta", (), error=RobotError, finite=False)
+    for i, each in enumerate(np.ravel(found)):
+        who = f"Robot {name!r}" + (f", joint {i + 1}" if found.ndim else "")
+        refuse_slip(replace(declared, name="C_theta", key="C_theta_1e_7_rad_per_Nm"), each, RobotError, who)
 
 
 def _rows_of(robot: Table, value: Any) -> Any:

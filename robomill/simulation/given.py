@@ -74,10 +74,10 @@ def _placed(given: Mapping[str, Any], before: FloatArray | None) -> FloatArray:
     T_MW = part_frame([0.0, 0.0, 0.0]) if before is None else np.array(before)
     if before is None or zero is not None or zero_mm is not None:
         p = one_of(_ZERO, zero, zero_mm, SetupError, "Part zero")
-        T_MW[:3, 3] = as_floats(p, "Part zero", (3,), error=SetupError)
+        T_MW[:3, 3] = as_floats(p, "Part zero", (3,), error=SetupError, one=True)
     if turn is not None or turn_deg is not None:
         angle = one_of(_TURN, turn, turn_deg, SetupError, "Part zero")
-        T_MW = part_frame(T_MW[:3, 3], float(as_floats(angle, "Part zero, turn", (), error=SetupError)))
+        T_MW = part_frame(T_MW[:3, 3], float(as_floats(angle, "Part zero, turn", (), error=SetupError, one=True)))
     return T_MW
 
 
@@ -138,5 +138,5 @@ def stated(given: Mapping[str, Any]) -> dict[str, Any]:
     cutter = unstated(found.get("cutter"))
     if cutter is not None:
         said["cutter"] = cutter
-    found["provenance"] = {**said, **(found.get("provenance") or {})}
+    found["provenance"] = {**said, **stated_blocks(found.get("provenance", {}), SetupError)}
     return found

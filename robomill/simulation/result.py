@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import asked
 from robomill.arrays import BoolArray, FloatArray, digest
 from robomill.compliance.deflection import displacement
 from robomill.cutting.conditions import CutConditions
@@ -272,6 +273,7 @@ class SimulationResult(Tabled):
         touches = bool(self.removes.any()) and not self.not_judged.any()  # what is not reached or judged is not cut
         return cut(setup.stock_block, setup.cell, self.tooling, p, self.path.k, self.removes, must_touch=touches)
 
+    @asked
     def groove(self, station: float) -> GrooveSection:
         """The groove's section at ``station`` (m, length travelled at feed); NaN where that was not reached."""
         if np.ndim(station) > 0:

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from robomill.arguments import refuse_unknown
+from robomill.arguments import asked, refuse_unknown
 from robomill.arrays import FloatArray, Numbers, Rows, as_floats, check_place, frozen
 from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.spring import Spring
@@ -191,7 +192,7 @@ class SimulationSetup(Replaceable, Value):
 
     def __post_init__(self) -> None:
         given.check_kinds(self)
-        T_MW = as_floats(self.T_MW, "part zero T_MW", (4, 4), error=SetupError)
+        T_MW = as_floats(self.T_MW, "part zero T_MW", (4, 4), error=SetupError, one=True)
         R = T_MW[:3, :3]
         if np.abs(R @ R.T - np.eye(3)).max() > 1e-9 or np.linalg.det(R) < 0:
             raise SetupError("Part zero: its orientation is not a rotation; give three perpendicular unit axes.")
@@ -221,9 +222,9 @@ class SimulationSetup(Replaceable, Value):
 
     def _take_spin(self) -> None:
         """An angle, or one of the rules."""
-        if self.spin in RULES:
+        if isinstance(self.spin, str) and self.spin in RULES:
             return
-        if isinstance(self.spin, str) or not np.isfinite(self.spin):
+        if isinstance(self.spin, str | Mapping) or np.ndim(self.spin) or not np.isfinite(self.spin):
             raise SetupError(
                 f"Spin: expected an angle or one of {', '.join(RULES)}; found {self.spin!r:.40}.", where="spin"
             )
@@ -266,9 +267,12 @@ class SimulationSetup(Replaceable, Value):
         said = self.provenance.get("force")
         return "" if said is None else said.carried_from
 
-    def in_base(self, p: FloatArray) -> FloatArray:
+    @asked
+    def in_base(self, p: ArrayLike) -> FloatArray:
         """Points p (..., 3) m of the part frame {W}, in the robot's frame {M}."""
-        return np.asarray(p @ self.T_MW[:3, :3].T + self.T_MW[:3, 3])
+        return np.asarray(
+            as_floats(p, "Points", (3,), error=SetupError, finite=False) @ self.T_MW[:3, :3].T + self.T_MW[:3, 3]
+        )
 
     def _said(self) -> str:
         return f"{self.name}: {self.robot.name}, {self.cutter.title}, tolerance {format_limit(self.tolerance, 'mm')}"

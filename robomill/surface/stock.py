@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill import budgets
+from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
@@ -68,6 +69,7 @@ class Stock(Value):
             object.__setattr__(self, "triangles", frozen(triangles))
 
     @classmethod
+    @asked
     def around(cls, path: Toolpath, cutter: Cutter) -> Stock:
         """The block around what ``path`` cuts, with a margin beside and beneath.
 
@@ -93,6 +95,7 @@ class Stock(Value):
         corners = (("Lower corner", self.lower), ("Upper corner", self.upper), ("Size", self.size))
         return [(name, format_many(p, "mm", 2)) for name, p in corners]
 
+    @asked
     def warnings(self, cutter: Cutter) -> tuple[Finding, ...]:
         """What is odd about this stock with this cutter."""
         found = []

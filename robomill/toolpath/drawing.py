@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.provenance import Finding
@@ -120,6 +121,7 @@ class Drawing(Value):
         corners = np.vstack([contour.outline() for contour in self.contours])
         return corners.min(axis=0), corners.max(axis=0)
 
+    @asked
     def of_layer(self, layer: str) -> tuple[Contour, ...]:
         """Its lines on a layer. Raises ToolpathError where there is no such layer."""
         found = tuple(contour for contour in self.contours if contour.layer == layer)
@@ -128,6 +130,7 @@ class Drawing(Value):
             raise ToolpathError(f"{self.name}: there is no layer {layer!r:.60} with lines; it has {known:.200}.")
         return found
 
+    @asked
     def moved(self, origin: Literal["drawing", "corner", "centre"] | str) -> "Drawing":
         """With the part zero where the drawing has it, in the lower left corner of all lines, or in their middle."""
         if origin not in ORIGINS:
@@ -138,6 +141,7 @@ class Drawing(Value):
         zero = low if origin == "corner" else 0.5 * (low + high)
         return replace(self, contours=tuple(replace(each, points=each.points - zero) for each in self.contours))
 
+    @asked
     def sketch(
         self,
         cuts: Iterable[LayerCut],

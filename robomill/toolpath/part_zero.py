@@ -31,6 +31,7 @@ class TouchedFrame:
     angle: float
     lever: float
 
+    @asked
     def tilt(self, error: float) -> float:
         """rad: by how much the axes turn at most when each point is off by ``error`` m."""
         return math.hypot(2.0 * error / self.base, 2.0 * error / self.lever)
@@ -64,7 +65,7 @@ def frame_from_points(zero: ArrayLike, on_x: ArrayLike, in_xy: ArrayLike) -> Tou
     """
     names = ("zero", "point on x", "point on the y side")
     o, a, b = (
-        as_floats(point, f"Part zero, {name}", (3,), error=ToolpathError)
+        as_floats(point, f"Part zero, {name}", (3,), error=ToolpathError, one=True)
         for name, point in zip(names, (zero, on_x, in_xy), strict=True)
     )
     x, side = a - o, b - o

@@ -165,10 +165,11 @@ class Toolpath(Tabled):
         feed = _each(FEED, one_of(FEED, v_f, feed_mm_min, ToolpathError, "Toolpath"), m)
         speed = one_of(SPINDLE, n_s, spindle_1_min, ToolpathError, "Toolpath", 0.0)
         axis = as_floats(k, "Tool axis", (3,), error=ToolpathError)
+        _check_count(axis.shape[:-1], "Tool axis", m)
         length = np.linalg.norm(axis, axis=-1, keepdims=True)
         if not (length > 0.0).all():
             raise ToolpathError("Tool axis: found one without length; expected the way out of the part, e.g. 0, 0, 1.")
-        cuts = feed > 0.0 if cutting is None else np.array(np.broadcast_to(_switches(cutting), (m,)))
+        cuts = feed > 0.0 if cutting is None else np.array(np.broadcast_to(_switches(cutting, m), (m,)))
         cuts[:1] = False
         return cls(
             p=points,
@@ -177,7 +178,7 @@ class Toolpath(Tabled):
             cutting=cuts,
             block=np.arange(1, m + 1),
             n_s=_each(SPINDLE, speed, m),
-            tool=_numbers_of_tools(tool),
+            tool=_numbers_of_tools(tool, m),
             block_name="point",
         )
 
@@ -258,17 +259,26 @@ class Toolpath(Tabled):
         return f"{format_count(len(self), 'point')}, {length} at feed within {size}"
 
 
-def _switches(cutting: ArrayLike) -> BoolArray:
+def _check_count(shape: tuple[int, ...], name: str, m: int) -> None:
+    """Refuse what is neither one for all nor one a point."""
+    if shape not in ((), (m,)):
+        found = " x ".join(map(str, shape))
+        raise ToolpathError(f"{name}: found {found}, expected one for all, or {m}, one a point.")
+
+
+def _switches(cutting: ArrayLike, m: int) -> BoolArray:
     """Whether each move cuts, as True and False or 1 and 0."""
     found = np.asarray(cutting)
+    _check_count(found.shape, "Cutting", m)
     if found.dtype.kind not in "biuf" or not np.isin(found, (0, 1)).all():
         raise ToolpathError(f"Cutting: expected True or False for every move, found {np.ravel(found)[:1].tolist()}.")
     return found.astype(bool)
 
 
-def _numbers_of_tools(tool: ArrayLike) -> IntArray:
+def _numbers_of_tools(tool: ArrayLike, m: int) -> IntArray:
     """Whole numbers from 0."""
     found = np.asarray(tool)
+    _check_count(found.shape, "Tool", m)
     if found.dtype.kind not in "iuf" or not (np.isfinite(found) & (found >= 0) & (found == np.round(found))).all():
         raise ToolpathError(f"Tool: expected whole numbers from 0, found {np.ravel(found)[:1].tolist()}.")
     return found.astype(np.int64)
@@ -294,8 +304,7 @@ def _points(given: Any, in_mm: bool) -> FloatArray:
 def _each(declared: Quantity, value: Any, m: int) -> FloatArray:
     """One number or one a point, as (m,)."""
     found = as_floats(value, declared.label, (), error=ToolpathError)
-    if found.ndim and found.shape != (m,):
-        raise ToolpathError(f"{declared.label}: expected one number, or {m}, one a point; found shape {found.shape}.")
+    _check_count(found.shape, declared.label, m)
     if (found < 0.0).any():
         raise ToolpathError(f"{declared.label}: found {declared.short(found.min())}; expected 0 or more.")
     return np.array(np.broadcast_to(found, (m,)))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from robomill.arguments import asked
 from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.components import symmetric
 from robomill.kinematics import dexterity
@@ -58,6 +59,7 @@ class SolvedGrid:
         """Joint contributions (nx, ny, nz, n, 3, 3) m/N, eq. (14)."""
         return symmetric(self.shares)
 
+    @asked
     def where_reached(self, values: FloatArray) -> FloatArray:
         """(nx, ny, nz) from the values (reached cells,); NaN elsewhere."""
         full = np.full(self.reached.shape, np.nan)

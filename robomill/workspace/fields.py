@@ -50,6 +50,7 @@ class Field(Tabled):
         """One row a cell, x slowest, z fastest: X, Y, Z and the quantity; NaN where the pose is not reached."""
         return map_columns([self])
 
+    @asked
     def to_xarray(self) -> DataArray:
         """The quantity as an xarray DataArray, in SI.
 
@@ -99,15 +100,18 @@ class ComplianceMap(SolvedGrid, Tabled):
     <ComplianceMap slavkovic_5r: 2 x 1 x 1 cells at X, Y, Z = 0 to 200 mm; -1300 mm; 0 mm, tilt A, B 0.0, 0.0 deg, ...>
     """
 
+    @asked
     def values(self, name: str) -> FloatArray:
         """The quantity called ``name`` (see ``quantities``), (nx, ny, nz) in SI, NaN where not reached."""
         return map_quantity(self.robot, name).law(self)
 
+    @asked
     def field(self, name: str) -> Field:
         """The quantity as a ``Field``."""
         what = map_quantity(self.robot, name)
         return Field(self.robot, self.grid, self.A, self.B, what, what.law(self), int(self.reached.sum()))
 
+    @asked
     def fields(self, names: Sequence[str] | None = None) -> list[Field]:
         """The quantities called ``names``; None: every one that the robot has."""
         return [self.field(name) for name in (map_quantities(self.robot) if names is None else names)]
@@ -116,6 +120,7 @@ class ComplianceMap(SolvedGrid, Tabled):
         """One row a cell, x slowest, z fastest: X, Y, Z and every quantity; NaN where the pose is not reached."""
         return map_columns(self.fields())
 
+    @asked
     def to_xarray(self, names: Sequence[str] | None = None) -> Dataset:
         """Quantities as an xarray Dataset, in SI; of one alone ``field(name).to_xarray()`` is the DataArray.
 

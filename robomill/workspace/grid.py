@@ -135,9 +135,9 @@ def box_grid(lower: ArrayLike, upper: ArrayLike, step: float) -> Grid:
     >>> rm.box_grid([-0.6, -1.6, 0.0], [0.6, -1.0, 0.0], 0.1).shape
     (13, 7, 1)
     """
-    step = float(as_floats(step, "Grid, step (m)", (), error=WorkspaceError, finite=False))
-    low = as_floats(lower, "Box, lower corner", (3,), error=WorkspaceError)
-    high = as_floats(upper, "Box, upper corner", (3,), error=WorkspaceError)
+    step = float(as_floats(step, "Grid, step (m)", (), error=WorkspaceError, finite=False, one=True))
+    low = as_floats(lower, "Box, lower corner", (3,), error=WorkspaceError, one=True)
+    high = as_floats(upper, "Box, upper corner", (3,), error=WorkspaceError, one=True)
     longest = float(np.abs(high - low).max())
     if longest > 0.0 and step > SLIPPED * longest:
         raise WorkspaceError(
@@ -180,9 +180,9 @@ def plane_grid(normal: str, at: float, lower: ArrayLike, upper: ArrayLike, step:
     """
     if normal not in ("x", "y", "z"):
         raise WorkspaceError(f"Plane: the normal is {normal!r}; expected 'x', 'y' or 'z'.")
-    low = np.array(as_floats(lower, "Plane, lower corner", (3,), error=WorkspaceError))
-    high = np.array(as_floats(upper, "Plane, upper corner", (3,), error=WorkspaceError))
-    at = float(as_floats(at, "Plane, at (m)", (), error=WorkspaceError))
+    low = np.array(as_floats(lower, "Plane, lower corner", (3,), error=WorkspaceError, one=True))
+    high = np.array(as_floats(upper, "Plane, upper corner", (3,), error=WorkspaceError, one=True))
+    at = float(as_floats(at, "Plane, at (m)", (), error=WorkspaceError, one=True))
     low["xyz".index(normal)] = high["xyz".index(normal)] = at
     return box_grid(low, high, step)
 

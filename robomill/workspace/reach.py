@@ -73,7 +73,7 @@ def reach(robot: Robot, grid: Grid, tilts: Sequence[tuple[float, float]] = ((0.0
     """
     check_robot(robot)
     grid.check_budget(8 * 3 + 1)
-    if not tilts:
+    if len(tilts) == 0:
         raise WorkspaceError("Reach: give at least one tool tilt (A, B).")
     points = grid.points().reshape(-1, 3)
     mask = np.ones(len(points), dtype=bool)

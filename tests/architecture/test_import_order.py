@@ -19,6 +19,7 @@ STOREYS = [
         "unit_words",
         "typed_numbers",
         "arguments",
+        "kinds",
         "arrays",
         "vectors",
         "errors",

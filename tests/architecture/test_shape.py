@@ -40,7 +40,6 @@ RUNNING = (
 UNUSED = {
     "__getattr__": "Python asks the package for a public name",
     "over_time": "public: forces from arrays",
-    "from_dh": "public: robots in code",
     "__signature__": "what completion and help ask a function for",
     "to_dataframe": "public name",
     "run_*": "the parser of the command line finds what a verb runs by its name",

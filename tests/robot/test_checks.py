@@ -47,7 +47,7 @@ SHIFTED = np.diag([1.0, 1.0, 1.0, 1.0 + 1e-3])
         ("prismatic", "revolute", "prismatic: expected True where it slides or False where it turns, found .revolute."),
         ("prismatic", [0, 2], "prismatic, joint 2: expected True where it slides or False where it turns, found 2"),
         ("limits_all", [[-1.0, 1.0]], r"limits: expected \[lower, upper\] for 2 joints, found shape \(1, 2\)"),
-        ("limits_all", "wide", r"limits: expected \[lower, upper\] for each joint, found text"),
+        ("limits_all", "wide", r"limits: expected numbers, found 'wide'"),
         ("limits_all", [[-1.0, 1.0], [np.nan, 2.0]], "joint 2: lower limit is NaN"),
         ("limits_all", [[-1.0, np.inf], [0.0, 2.0]], "joint 1: upper limit is infinity"),
         ("limits_all", [[-1.0, 1.0], [1.0, 1.0]], "joint 2: the lower limit 57.2958° is not below the upper limit"),
