@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-from robomill.arguments import asking
+from robomill.arguments import asking, refuse_unknown
 from robomill.arrays import of_kind
 from robomill.errors import RobomillError
 
@@ -58,11 +58,15 @@ UNSTATED = Provenance("user", "not stated")
 GIVEN = Provenance("user", "given in code")
 
 
-def stated_blocks(said: Any, error: type[RobomillError]) -> dict[str, Provenance]:
-    """Where blocks of numbers come from, as a person gives it; ``error`` for what says nothing of a source."""
+def stated_blocks(said: Any, error: type[RobomillError], known: Iterable[str] | None = None) -> dict[str, Provenance]:
+    """Where blocks of numbers come from, as a person gives it; ``error`` for what says nothing of a source, and for a
+    block that is none of the ``known`` ones (None: any)."""
     of_kind(said, Mapping, "provenance", "a mapping of blocks to rm.Provenance", error)
-    for each in said.values():
+    for block, each in said.items():
+        of_kind(block, str, "provenance", "the name of a block", error)
         of_kind(each, Provenance, "provenance", 'rm.Provenance("measured", "where from")', error)
+    if known is not None:
+        refuse_unknown(said, known, "provenance")
     return dict(said)
 
 

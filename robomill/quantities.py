@@ -47,7 +47,9 @@ class Quantity:
     boxed     whether the page offers a box for it
     sliding   the unit of what belongs to a joint that slides, where it is another than that of one that turns
     slip      in SI: a plain number beyond it was meant in ``unit`` (mm given as m), see ``spelled``
-    tiny      in SI: a number below it (not 0) that was given in ``unit`` was meant in SI (m given as mm)
+    tiny      in SI: a number below it (not 0) that was given in ``unit`` was meant in SI (m given as mm); of an
+              ``extent`` only of several numbers (one coordinate alone may be as small)
+    quarters  of an angle whose ends are mostly quarter turns: 1.57 degrees were meant in rad
     name, key   of the field, and in files (with the unit in it)
     default     where nothing is given, unless it is ``needed``
     """
@@ -70,6 +72,8 @@ class Quantity:
     sliding: str | None = None
     slip: float | None = None
     tiny: float | None = None
+    extent: bool = False
+    quarters: bool = False
     name: str = ""
     key: str = ""
     default: Any = None

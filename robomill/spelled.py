@@ -8,11 +8,13 @@ with a cutter of 0.008 mm. Whoever does mean it has the first name. Arguments ar
 """
 
 import inspect
+import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import fields
 from functools import wraps
+from types import MappingProxyType
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -27,7 +29,7 @@ from robomill.units import SI_NAMES, format_plain, from_si, to_si, unit_label
 
 T = TypeVar("T")
 C = TypeVar("C", bound=type)
-_BESIDE: ContextVar[bool] = ContextVar("units_beside", default=False)
+_BESIDE: ContextVar[Mapping[str, str] | None] = ContextVar("units_beside", default=None)
 
 
 def in_units(
@@ -115,7 +117,8 @@ def one_of(
     """A number in SI that was given plainly or ``in_unit``. Raises ``error`` where both are given, or neither and there
     is no ``default``."""
     if plain is None and in_unit is None and default is None:
-        raise error(f"{declared.said_of(who)}: give {declared.name} or {declared.key}.", where=declared.name)
+        give = to_give(declared.key, "it is missing" if beside() else f"give {declared.name} or {declared.key}")
+        raise error(f"{declared.said_of(who)}: {give}.", where=declared.name)
     if plain is not None and in_unit is not None:
         raise error(f"{who}: {declared.name} and {declared.key} are the same; give one of them.", where=declared.name)
     if in_unit is not None:
@@ -154,7 +157,7 @@ def refuse_slip(declared: Quantity, value: Any, error: type[RobomillError], who:
     size = np.where(np.isfinite(found), np.abs(found), 0.0)
     if size.max(initial=0.0) > declared.slip:
         worst = float(found.ravel()[np.argmax(size)])
-        if _BESIDE.get():
+        if _BESIDE.get() is not None:
             bounded = declared.below is not None or declared.most is not None
             least = declared.expected if bounded else f"at most {declared.short(declared.slip)}"
             words = f"found {declared.short(worst)}; expected {least}."
@@ -164,13 +167,25 @@ def refuse_slip(declared: Quantity, value: Any, error: type[RobomillError], who:
 
 
 @contextmanager
-def units_beside() -> Iterator[None]:
-    """What is given meanwhile comes from boxes that say their units: a refusal says nothing of names in code."""
-    before = _BESIDE.set(True)
+def units_beside(names: Mapping[str, str] = MappingProxyType({})) -> Iterator[None]:
+    """What is given meanwhile comes from boxes or options that say their units: a refusal says nothing of names in
+    code. ``names`` are those of options, by the names in code."""
+    before = _BESIDE.set(names)
     try:
         yield
     finally:
         _BESIDE.reset(before)
+
+
+def beside() -> bool:
+    """Whether numbers come in with their units beside them, so that names in code and SI would only puzzle."""
+    return _BESIDE.get() is not None
+
+
+def to_give(name: str, plain: str) -> str:
+    """What to do for a number that is called ``name`` in code: to give its option where there is one, else ``plain``"""
+    option = (_BESIDE.get() or {}).get(name)
+    return plain if option is None else f"give {option}"
 
 
 def slip_words(declared: Quantity, worst: float, alone: bool = True) -> str:
@@ -194,10 +209,17 @@ def refuse_tiny(declared: Quantity, value: Any, error: type[RobomillError], who:
     if value is None:
         return
     sizes = np.abs(np.array(list(value.values()) if isinstance(value, Mapping) else value, dtype=np.float64))
-    largest = float(np.where(np.isfinite(sizes), sizes, 0.0).max(initial=0.0))
-    tiny = 0.0 < largest < (declared.tiny or 0.0)
-    if not (tiny or (declared.unit == "deg" and in_radians(float(from_si(largest, "deg"))))):
+    largest = float(sizes.max(initial=0.0))
+    if not math.isfinite(largest):
+        return  # what is no number is refused where it is settled
+    tiny = 0.0 < largest < (declared.tiny or 0.0) and (sizes.size > 1 or not declared.extent)
+    degrees = float(from_si(largest, "deg"))
+    radians = in_radians(degrees) or (declared.quarters and in_quarters(degrees))
+    if not (tiny or (declared.unit == "deg" and radians)):
         return
+    if beside():
+        least = f"at least {declared.short(declared.tiny)}" if tiny else f"an angle in degrees; {_in_degrees(largest)}"
+        raise error(f"{declared.said_of(who)}: found {declared.short(largest)}; expected {least}.", where=declared.name)
     unit, si = unit_label(declared.unit), SI_NAMES[declared.unit]
     found, meant = f"{float(from_si(largest, declared.unit)):.6g}", f"{largest:.6g}"
     least = f", expected at least {from_si(declared.tiny or 0.0, declared.unit):.3g}" if tiny else ""
@@ -216,6 +238,18 @@ def in_radians(angle: float) -> bool:
     """Whether a number of degrees is one of radians: a multiple of 15 degrees to four digits and more (1.5708)."""
     parts = angle / to_si(15.0, "deg")
     return 0.5 < parts < 24.5 and abs(angle - round(parts) * to_si(15.0, "deg")) < 5.1e-5 and angle != round(angle, 3)
+
+
+def in_quarters(angle: float) -> bool:
+    """Whether a number of degrees is one of radians, to two digits: a quarter turn or several (1.57, 3.14, 6.28)."""
+    parts = round(angle / to_si(90.0, "deg"))
+    return parts > 0 and abs(angle - round(parts * to_si(90.0, "deg"), 2)) < 1e-9
+
+
+def _in_degrees(largest: float) -> str:
+    """What an angle (rad) whose degrees are a number of radians would be, for people."""
+    number = float(from_si(largest, "deg"))
+    return f"{number:.6g} rad are {float(from_si(number, 'deg')):.5g}°"
 
 
 def state(value: Any) -> dict[str, Any]:

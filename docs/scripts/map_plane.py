@@ -11,7 +11,7 @@ field = cells.field("C_yy")
 
 table = field.to_dataframe()  # in the units that the columns name
 reached = table.dropna()
-worst = reached.loc[reached["C_yy_um/N"].idxmax()]
+worst = reached.nlargest(1, "C_yy_um/N").iloc[0]
 print(f"{len(reached)} of {len(table)} places are reached")
 print(f"worst: {worst['C_yy_um/N']:.4f} um/N at X {worst['X_mm']:.0f}, Y {worst['Y_mm']:.0f} mm")
 

@@ -15,6 +15,9 @@ from robomill.errors import RobomillError
 # Values of these options may begin with a minus ("-90,0,0"), which argparse would take for an option.
 SIGNED = ("--theta-deg", "--pose", "--x", "--y", "--z", "--a-deg", "--b-deg", "--yaw", "--keep-out")
 
+# What is called so in code goes here by an option.
+OPTIONS = {"feed_mm_min": "--feed", "unit": "--unit", "tip": "--tip"}
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one verb; without one, open the app."""
@@ -43,13 +46,17 @@ def _run(words: Sequence[str]) -> int:
     from robomill.cli.given import check_kept, check_once
     from robomill.cli.progress_line import ProgressLine
     from robomill.progress import Progress, watched
+    from robomill.spelled import units_beside
 
     check_once(arguments)
     check_kept(arguments)
     line = ProgressLine(sys.stderr)
     compiled.announce(line.announce)
     try:
-        with watched(Progress(say=line.say)):  # unwatched, work would not stop for Ctrl-C before it is done
+        with (
+            units_beside(OPTIONS),
+            watched(Progress(say=line.say)),
+        ):  # unwatched, work would not stop for Ctrl-C before it is done
             code: int = arguments.run(arguments)
     finally:
         line.clear()

@@ -5,6 +5,11 @@ from typing import Any
 
 from robomill.cli.saying import Written, say
 from robomill.errors import ToolpathError
+from robomill.provenance import Finding
+
+STANDING = Finding(
+    "warning", "the program starts no spindle, and its tool would plunge standing; give --spindle.", code="no-spindle"
+)
 
 
 def run_drawing(arguments: Any) -> int:
@@ -25,6 +30,8 @@ def run_drawing(arguments: Any) -> int:
     if arguments.out:
         write_gcode(arguments.out, path, title=drawing.name)
     record = drawing_record(drawing, path)
+    if not path.turns:
+        record["findings"].append(STANDING.record())
     return say(arguments, record, drawing_lines(record), files=files)
 
 

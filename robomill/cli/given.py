@@ -59,14 +59,14 @@ def stdin(kind: FileKind, error: type[RobomillError]) -> bytes:
     return data
 
 
-def robot(name: str) -> Any:
-    """The robot called so, of a file, or of standard input."""
+def robot(name: str, tip: str | None = None) -> Any:
+    """The robot called so, of a file, or of standard input; of a URDF up to the link ``tip``."""
     from robomill.io.robots import load_robot, read_robot
 
     if name != STDIN:
-        return load_robot(name)
+        return load_robot(name, tip=tip)
     data = stdin(ROBOT, RobotError)
-    return read_robot(data, "stdin.urdf" if data.lstrip().startswith(b"<") else "stdin.toml")
+    return read_robot(data, "stdin.urdf" if data.lstrip().startswith(b"<") else "stdin.toml", tip)
 
 
 def setup(name: str, allow_outside: bool) -> Any:
@@ -120,11 +120,12 @@ def points(name: str, unit: str = "", feed_mm_min: float | None = None) -> Any:
     """A table of points as the path of a set-up; None where the name ends otherwise."""
     from robomill.files import POINTS
     from robomill.io.point_tables import SUFFIXES, points_from_bytes
-    from robomill.units import to_si
+    from robomill.spelled import one_of
+    from robomill.toolpath.path import FEED
 
     if Path(name).suffix.lower() not in SUFFIXES:
         return None
-    feed = None if feed_mm_min is None else to_si(feed_mm_min, "mm/min")
+    feed = None if feed_mm_min is None else one_of(FEED, None, feed_mm_min, ToolpathError, "--feed")
     return points_from_bytes(read_file(name, POINTS, ToolpathError), name_of(name), unit, feed)
 
 

@@ -19,7 +19,7 @@ def run_identify(arguments: Any) -> int:
     from robomill.report.plain import identification_lines
     from robomill.simulation.assumptions import assumed_of_robot, assumed_of_tests
 
-    robot = given.robot(arguments.robot)
+    robot = given.robot(arguments.robot, arguments.tip)
     tests, called = given.load_tests(arguments.tests, robot)
     result = identify(robot, tests, *_asked(arguments))
     record, findings = identification_record(robot, tests, result)

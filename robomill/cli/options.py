@@ -48,15 +48,14 @@ def theta(robot: Any, text: str) -> Any:
 
 
 def axis(text: str, option: str) -> Any:
-    """Points of one axis in m from "low:high:step" or one number, in mm."""
-    from robomill.units import to_si
+    """Points of one axis from "low:high:step" or one number, in mm."""
     from robomill.workspace.grid import axis_points
 
     values = floats(text.split(":"))
     if len(values) not in (1, 3):
         raise RobomillError(f"{option}: expected low:high:step or one number, in mm, found {text!r:.80}.")
     low, *rest = values
-    return to_si(axis_points(low, rest[0], rest[1], option), "mm") if rest else to_si(low, "mm")
+    return axis_points(low, rest[0], rest[1], option) if rest else low
 
 
 def span(text: str | None, option: str) -> tuple[float, float] | None:

@@ -139,8 +139,18 @@ def _compliance_set(sub: argparse.ArgumentParser, text: str = "one of the robot'
     offered(sub.add_argument("--compliance-set", help=text), completers.compliance_sets)
 
 
-def _robot(sub: argparse.ArgumentParser, name: str = "robot") -> None:
-    _named(sub, name, "name of a robot, a .toml or .urdf file, or - for standard input", "robot")
+def _robot(sub: argparse.ArgumentParser) -> None:
+    _named(sub, "robot", "name of a robot, a .toml or .urdf file, or - for standard input", "robot")
+    _tip(sub)
+
+
+def _another_robot(sub: argparse.ArgumentParser) -> None:
+    _named(sub, "--robot", "another robot than the set-up's: a name or a file", "robot")
+    _tip(sub)
+
+
+def _tip(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("--tip", metavar="LINK", help="of a URDF: the link at which the arm ends (its only end)")
 
 
 def _pose_options(pose: argparse.ArgumentParser) -> None:
@@ -265,7 +275,7 @@ def _asked_for(sub: argparse.ArgumentParser) -> None:
 
 def _turn_options(sub: argparse.ArgumentParser) -> None:
     _setup(sub)
-    _named(sub, "--robot", "another robot than the set-up's: a name or a file", "robot")
+    _another_robot(sub)
     _asked_for(sub)
     sub.add_argument("--rate", type=float, metavar="DEG_MM", help="how fast the spin may change, degrees a mm (1)")
 
@@ -293,7 +303,7 @@ def _simulate_options(run: argparse.ArgumentParser) -> None:
     _setup(run)
     _named(run, "--program", "another program than the set-up's, or points (.csv, .parquet)", "program")
     _points_options(run)
-    _named(run, "--robot", "another robot than the set-up's: a name or a file", "robot")
+    _another_robot(run)
     run.add_argument("--tol", type=float, metavar="MM", help="another tolerance of walls and floors, mm")
     _compliance_set(run, "another of the robot's compliance sets")
     run.add_argument(

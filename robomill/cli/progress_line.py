@@ -10,15 +10,18 @@ FIRST_S, EACH_S = 0.5, 0.2  # nothing is said of what is done sooner
 
 
 class ProgressLine:
-    """A line on ``stream``, if that is a terminal; elsewhere nothing is said."""
+    """A line on ``stream``, if that is a terminal; elsewhere only what is announced is said, on a line of its own."""
 
     def __init__(self, stream: TextIO | None) -> None:
+        self._log = stream
         self._stream = stream if stream is not None and stream.isatty() else None
         self._next = time.monotonic() + FIRST_S
         self._shown = 0
 
     def announce(self, words: str) -> None:
         """Say at once what is about to take long."""
+        if self._stream is None and self._log is not None:
+            print(f"{words} ...", file=self._log, flush=True)
         self._put(f"{words} ...")
 
     def say(self, now: Progress) -> None:

@@ -48,7 +48,7 @@ def _asked(arguments: Any) -> Any:
     if arguments.robot:
         if setup.measured_map is not None:
             raise SetupError("--robot: the set-up's compliances were measured on its own robot ([measured_map]).")
-        changes["robot"] = given.robot(arguments.robot)
+        changes["robot"] = given.robot(arguments.robot, arguments.tip)
     if arguments.tol is not None:
         changes |= {"tolerance_mm": arguments.tol, "floor_tolerance": None}
         said["tolerance"] = Provenance("user", "--tol")

@@ -17,7 +17,7 @@ def run_turn(arguments: Any) -> int:
     if arguments.robot:
         if setup.measured_map is not None:
             raise SetupError("--robot: the set-up's compliances were measured on its own robot ([measured_map]).")
-        setup = setup.replace(robot=given.robot(arguments.robot))
+        setup = setup.replace(robot=given.robot(arguments.robot, arguments.tip))
     found = turn(setup, measure=arguments.measure, rate_deg_mm=arguments.rate)
     record = turning_record(found)
     return say(arguments, record, turning_lines(record), int(found.course.level in RED))

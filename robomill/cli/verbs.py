@@ -33,16 +33,19 @@ def run_ik(arguments: Any) -> int:
 
     from robomill.arrays import check_place
     from robomill.errors import RobomillError
+    from robomill.kinematics.asked import in_the_foot
     from robomill.kinematics.inverse import inverse_kinematics
     from robomill.kinematics.transforms import pose_from_world
     from robomill.report.plain import ik_lines
     from robomill.report.records import ik_record
     from robomill.units import to_si
 
-    robot = given.robot(arguments.robot)
+    robot = given.robot(arguments.robot, arguments.tip)
     values = np.array(options.numbers(arguments.pose, "--pose", 5, "X,Y,Z,A,B in mm and degrees"))
     x_M = np.append(to_si(values[:3], "mm"), to_si(values[3:], "deg"))
     check_place(x_M[:3], "--pose", RobomillError)
+    if in_the_foot(robot, x_M[:3]):
+        raise RobomillError("--pose: this lies in the middle of the robot's foot; X, Y, Z are in mm.")
     record = ik_record(robot, inverse_kinematics(robot, pose_from_world(x_M)))
     return say(arguments, record, ik_lines(record), 0 if record["reached"] else 1)
 
@@ -87,7 +90,7 @@ def run_map(arguments: Any) -> int:
     from robomill.workspace.grid import Grid
 
     robot = _robot(arguments)
-    grid = Grid(*(options.axis(getattr(arguments, axis), f"--{axis}") for axis in "xyz"))
+    grid = Grid(**{f"{axis}_mm": options.axis(getattr(arguments, axis), f"--{axis}") for axis in "xyz"})
     A, B = to_si(arguments.a_deg, "deg"), to_si(arguments.b_deg, "deg")
     everything = compliance_map(robot, grid, A, B)
     fields = [everything.field(name) for name in dict.fromkeys(",".join(arguments.quantity).split(","))]
@@ -150,5 +153,5 @@ def run_completion(arguments: Any) -> int:
 
 def _robot(arguments: Any) -> Any:
     """The robot asked for, with the compliance set asked for."""
-    robot = given.robot(arguments.robot)
+    robot = given.robot(arguments.robot, arguments.tip)
     return robot.with_compliance_set(arguments.compliance_set) if arguments.compliance_set else robot

@@ -83,7 +83,7 @@ def cartesian_compliance(robot: Robot, theta: ArrayLike) -> FloatArray:
     Raises
     ------
     KinematicsError
-        Where theta is not finite or has not n entries.
+        Where theta is infinite or has not n entries; NaN (a pose that is not reached) gives NaN.
 
     Examples
     --------

@@ -27,6 +27,7 @@ DISH = math.sin(to_si(0.5, "deg"))
 PRESSED = math.sin(to_si(0.05, "deg"))
 WIDEST, LONGEST = 0.6, 2.0  # m: hardly a cutter is wider, hardly one sticks out as far: was it meant in mm?
 THINNEST, SHORTEST = 0.05e-3, 0.2e-3  # m: no robot mills with less, none sticks out less: was it meant in m?
+SLIGHTEST, SHARPEST = to_si(1.5, "deg"), to_si(3.2, "deg")  # no helix is as slight, no tip as sharp: meant in rad?
 MOST_FLUTES = 100  # a tooth a millimetre on a face mill of 32 mm; a mistyped number costs memory and time
 
 Hand = Literal["right", "left"]
@@ -98,7 +99,14 @@ class Cutter(Value):
         hint="A right-hand helix on a right-hand cutter pulls the tool towards the part.",
     )
     helix_angle: float = quantity(
-        "Helix angle", "deg", default=to_si(30.0, "deg"), least=0.0, below=to_si(85.0, "deg"), digits=1, slip=math.tau
+        "Helix angle",
+        "deg",
+        default=to_si(30.0, "deg"),
+        least=0.0,
+        below=to_si(85.0, "deg"),
+        digits=1,
+        slip=math.tau,
+        tiny=SLIGHTEST,
     )
     flute_length: float | None = quantity(
         "Flute length",
@@ -121,7 +129,7 @@ class Cutter(Value):
         hint="Free length from the holder; tool bending grows with its cube.",
     )
     tip_angle: float | None = quantity(
-        "Full tip angle", "deg", optional=True, above=0.0, below=to_si(180.0, "deg"), slip=math.tau
+        "Full tip angle", "deg", optional=True, above=0.0, below=to_si(180.0, "deg"), slip=math.tau, tiny=SHARPEST
     )
     tip_diameter: float = quantity("Tip diameter", "mm", default=0.0, least=0.0, slip=WIDEST)
     hand: Hand = choice("Hand", HANDS, default="right")

@@ -2,7 +2,9 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
+
+import numpy as np
 
 from robomill.errors import LoadTestError
 from robomill.identification.folds import LEAVE_OUT
@@ -40,7 +42,7 @@ class Treatment:
             raise LoadTestError(f"robust: found {self.robust!r:.40}, expected True or False.")
         if self.bending != AUTO:
             object.__setattr__(self, "bending", _joints(self.bending))
-        object.__setattr__(self, "exclude", tuple(sorted(set(self.exclude))))
+        object.__setattr__(self, "exclude", _rows(self.exclude))
 
     @property
     def freed(self) -> tuple[Point, ...]:
@@ -52,6 +54,14 @@ def _joints(given: Iterable[int] | str) -> tuple[int, ...]:
     if isinstance(given, str):
         raise LoadTestError(f"bending: found {given!r}, expected joint numbers or auto.")
     return tuple(dict.fromkeys(int(joint) for joint in given))
+
+
+def _rows(exclude: Any) -> tuple[int, ...]:
+    """Rows that are left out, in order."""
+    found = list(exclude) if isinstance(exclude, Iterable) and not isinstance(exclude, str | bytes) else None
+    if found is None or not all(isinstance(row, int | np.integer) and not isinstance(row, bool) for row in found):
+        raise LoadTestError(f"exclude: found {exclude!r:.60}, expected numbers of rows, e.g. [2, 3].")
+    return tuple(sorted({int(row) for row in found}))
 
 
 STANDARD = Treatment()

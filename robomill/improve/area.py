@@ -29,7 +29,7 @@ RANGES = (
     Quantity("x", "mm", "array", shape=(2,), name="x", key="x_mm", slip=200.0, tiny=2e-3),
     Quantity("y", "mm", "array", shape=(2,), name="y", key="y_mm", slip=200.0, tiny=2e-3),
     Quantity("z", "mm", "array", shape=(2,), name="z", key="z_mm", slip=200.0, tiny=2e-3),
-    Quantity("yaw", "deg", "array", shape=(2,), name="yaw", key="yaw_deg", slip=4.0 * np.pi),
+    Quantity("yaw", "deg", "array", shape=(2,), name="yaw", key="yaw_deg", slip=4.0 * np.pi, quarters=True),
 )
 BOXES = Quantity("keep-out boxes", "mm", "array", name="keep_out", key="keep_out_mm", slip=200.0)
 

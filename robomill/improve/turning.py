@@ -39,7 +39,7 @@ WHO = "Spindle"
 ANGLES = 72
 RATE = to_si(1.0, "deg/mm")  # how fast the spin may change along the path
 TRIED = 3  # constant spins that are simulated in full
-RATE_ASKED = Quantity("Rate", "deg/mm", name="rate", key="rate_deg_mm")
+RATE_ASKED = Quantity("rate", "deg/mm", name="rate", key="rate_deg_mm", above=0.0)
 ONE_SPIN, HASTE = "spin-course", "spin-haste"
 
 
@@ -146,9 +146,7 @@ def turn(
     if measure not in ASKED:
         raise SetupError(f"{WHO}, measure: found {measure!r:.40}; expected {', '.join(ASKED)}.", where="measure")
     most = one_of(RATE_ASKED, rate, rate_deg_mm, SetupError, WHO, default=RATE)
-    if not (np.isfinite(most) and most > 0.0):
-        raise SetupError(f"{WHO}, rate: found {most!r:.40}; expected a number above 0.", where="rate")
-    return _Turned(uncoupled(setup), measure, float(most)).run(setup)
+    return _Turned(uncoupled(setup), measure, RATE_ASKED.settled(most, SetupError, WHO)).run(setup)
 
 
 @dataclass(frozen=True, eq=False)

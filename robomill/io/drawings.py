@@ -10,6 +10,7 @@ from robomill.io.dxf import Dxf, Read, metres
 from robomill.io.samples import find_sample
 from robomill.io.svg import Svg
 from robomill.provenance import Finding
+from robomill.spelled import to_give
 from robomill.toolpath.chaining import GAP, joined
 from robomill.toolpath.drawing import Drawing
 from robomill.units import format_count, format_many, format_short
@@ -77,7 +78,8 @@ def drawing_from_bytes(data: bytes, name: str, unit: str = "") -> Drawing:
     findings = _findings(read, twice, dots, file.unit, unit)
     drawing = Drawing(name, tuple(contours), taken or "mm", frozenset(read.hidden), findings)
     if not taken:
-        raise UnitAskedError(f"{name}: the drawing does not say its unit; {_sizes(drawing)}: say which.", where="unit")
+        give = to_give("unit", "say which")
+        raise UnitAskedError(f"{name}: the drawing does not say its unit; {_sizes(drawing)}: {give}.", where="unit")
     return _doubted(drawing)
 
 

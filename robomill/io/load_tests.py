@@ -131,6 +131,7 @@ def _pose_suspicions(table: Columns) -> tuple[Finding, ...]:
         (("y",), "mm", 10.0, np.inf, "m"),
         (vector, "deg", 6.3, np.inf, "rad"),
         ((*vector, *ABC, *WPR), "rad", 0.0, 6.3, "deg"),
+        ((*ABC, *WPR), "deg", 1.6, np.inf, "rad"),
     ):
         columns = [c for key, c in table.known.items() if key in names and c.unit == unit]
         largest = max((float(np.abs(from_si(table.values[c.quantity], unit)).max()) for c in columns), default=0.0)

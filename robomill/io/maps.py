@@ -56,6 +56,8 @@ def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
         raise WorkspaceError("Map: there is no quantity to write.")
     if any(field.grid is not fields[0].grid for field in fields):
         raise WorkspaceError("Map: the quantities of one file must share one grid.")
+    if path.is_dir():
+        raise WorkspaceError(f"Map: {str(path)!r} is a folder; give the name of a file.")
     if suffix not in SUFFIXES:
         raise WorkspaceError(f"Map: {path.name!r} ends in {suffix or 'nothing'!r}; expected {', '.join(SUFFIXES)}.")
     with written(path, WorkspaceError) as place:

@@ -22,7 +22,7 @@ from robomill.extras import needed
 from robomill.files import POINTS, check_size, name_of, read_file
 from robomill.io.columns import Columns, Layout, frame_columns, read_columns
 from robomill.provenance import Finding
-from robomill.spelled import one_of
+from robomill.spelled import one_of, to_give
 from robomill.toolpath.path import FEED, Toolpath
 from robomill.toolpath.source import PointsSource
 from robomill.units import format_many, format_short, from_si, to_si, unit_label
@@ -94,7 +94,7 @@ def points_from_bytes(data: bytes, name: str, unit: str = "", v_f: float | None 
     """What a person dropped or named, as ``read_points``."""
     check_size(len(data), POINTS, ToolpathError, name)
     if v_f is not None and not 0.0 < v_f < math.inf:
-        found = format_short(v_f, "mm/min")
+        found = "no number" if math.isnan(v_f) else format_short(v_f, "mm/min")
         raise ToolpathError(f"{name}: the feed of all moves is {found}; expected more than 0.", where="feed")
     parquet = data.startswith(b"PAR1") or PurePath(name).suffix.lower() == ".parquet"
     columns, _ = _of_parquet(data, name, _layout(unit)) if parquet else read_columns(data, _layout(unit), name)
@@ -151,7 +151,9 @@ def _path(columns: Columns, name: str, unit: str, v_f: float | None) -> Toolpath
     given: dict[str, Any] = {"k": _axis(columns, place)} if any(axis in columns for axis in AXIS) else {}
     if "feed" not in columns and v_f is None:
         raise ToolpathError(
-            f"{place}: there is no column of feeds; add one (feed_mm_min), or say the feed of all moves.", where="feed"
+            f"{place}: there is no column of feeds; add one (feed_mm_min), or "
+            f"{to_give('feed_mm_min', 'say the feed of all moves')}.",
+            where="feed",
         )
     if "spindle" in columns:
         given["n_s"] = columns.values["spindle"]
@@ -194,7 +196,8 @@ def _ask_unit(columns: Columns, place: str, unit: str) -> None:
         names += f" name{s} no unit; the path would be {', '.join(sizes[:-1])} or {sizes[-1]}"
     else:
         names += f" name{s} no unit"
-    raise UnitAskedError(f"{place}: {names}: write units into the header ({EXAMPLE}), or say which.", where="unit")
+    give = to_give("unit", "say which")
+    raise UnitAskedError(f"{place}: {names}: write units into the header ({EXAMPLE}), or {give}.", where="unit")
 
 
 def _axis(columns: Columns, place: str) -> FloatArray:

@@ -84,11 +84,7 @@ def load_robot(name_or_path: str | Path, *, tip: str | None = None) -> Robot:
     """
     path = sample_or_file("robot", name_or_path, RobotError)
     data, name = read_file(path, ROBOT, RobotError), name_of(path)
-    if tip is None:
-        return read_robot(data, name)
-    if not is_urdf(name):
-        raise RobotError(f"Robot {name!r:.80}: only a URDF has links; leave tip={tip!r:.40} out.", where="tip")
-    return read_urdf(data, tip=tip, where=name)
+    return read_robot(data, name, tip)
 
 
 def is_urdf(name: str) -> bool:
@@ -96,8 +92,10 @@ def is_urdf(name: str) -> bool:
     return Path(name).suffix.lower() in (".urdf", ".xml", ".xacro")
 
 
-def read_robot(data: bytes, name: str) -> Robot:
+def read_robot(data: bytes, name: str, tip: str | None = None) -> Robot:
     """The robot of a file's bytes: URDF or TOML, as its ``name`` ends. Raises RobotError."""
     if is_urdf(name):
-        return read_urdf(data, where=name)
+        return read_urdf(data, tip=tip, where=name)
+    if tip is not None:
+        raise RobotError(f"Robot {name!r:.80}: only a URDF has links; leave the tip {tip!r:.40} out.", where="tip")
     return robot_from_toml(*read_text(data, RobotError, ROBOT, name))

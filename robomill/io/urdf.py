@@ -18,9 +18,11 @@ from robomill.provenance import Provenance
 from robomill.robot.joints import ASSUMED_COMPLIANCE
 from robomill.robot.model import Robot
 from robomill.robot.table import doubtful_limit
+from robomill.spelled import to_give
 
 MOVING = ("revolute", "continuous", "prismatic")
 PARALLEL = 1e-9
+TIP = ("tip", "say which is the tip")
 ROS_TIP = "tool0"  # the tool frame that ROS-Industrial asks of every arm
 SAME_PLACE = 1e-9  # m, and of directions
 FARTHEST, SHORTEST = 20.0, 0.01  # m: no joint stands farther from the one before, no arm has links as short
@@ -192,7 +194,7 @@ def _serial_chain(joints: list[Joint], links: list[str], tip: str | None, where:
         if len(options) > 1:
             ends = _listed(repr(joint.child) for joint in options)
             raise RobotError(
-                f"{where}: the arm branches at link {link!r:.60} into {ends}; name the tip link of the branch you want."
+                f"{where}: the arm branches at link {link!r:.60} into {ends}; {to_give(*TIP)} of the branch you want."
             )
         chain.append(options[0])
         link = options[0].child
@@ -215,7 +217,7 @@ def _fixed_end(link: str, children: Mapping[str, list[Joint]], where: str) -> li
     if named or all(np.allclose(T, first, atol=SAME_PLACE) for T, _ in ends):
         return named[0] if named else taken
     names = _listed(way[-1].child for _, way in ends)
-    raise RobotError(f"{where}: several links are fixed to the last that moves ({names}); say which is the tip.")
+    raise RobotError(f"{where}: several links are fixed to the last that moves ({names}); {to_give(*TIP)}.")
 
 
 def _listed(names: Iterable[str]) -> str:
@@ -261,7 +263,10 @@ def _robot(chain: list[Joint], name: str, where: str) -> Robot:
                 "only revolute, continuous, prismatic and fixed joints can be read."
             )
         if joint.mimics:
-            raise RobotError(f"{where}: joint {joint.name!r:.60} mimics another; only independent joints can be read.")
+            raise RobotError(
+                f"{where}: joint {joint.name!r:.60} mimics another; only independent joints can be read. If the arm "
+                f"ends before it, {to_give(*TIP)}."
+            )
         axes.append(T_M[:3, :3] @ joint.axis)
         points.append(T_M[:3, 3].copy())
         moving.append(joint)

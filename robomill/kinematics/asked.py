@@ -10,14 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked
-from robomill.arrays import FloatArray, as_floats
+from robomill.arrays import FloatArray
 from robomill.errors import KinematicsError
 from robomill.kinematics import inverse
 from robomill.kinematics.result import IKResult
+from robomill.kinematics.transforms import poses
 from robomill.robot.model import Robot, check_robot
 from robomill.units import to_si
 
 P = ParamSpec("P")
+FOOT = 0.01  # m: where nothing can be milled
 SLIPPED = 30.0  # times as far as an arm reaches: such a place was meant in mm
 
 
@@ -28,9 +30,9 @@ def _in_metres(
     @wraps(solve)
     def in_metres(robot: Robot, T_MT: ArrayLike, *args: P.args, **choices: P.kwargs) -> IKResult:
         check_robot(robot)
-        poses = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
-        _check_places(robot, poses[..., :3, 3])
-        return solve(robot, poses, *args, **choices)
+        found = poses(T_MT)
+        _check_places(robot, found[..., :3, 3])
+        return solve(robot, found, *args, **choices)
 
     return in_metres
 
@@ -41,6 +43,14 @@ def longest_reach(robot: Robot) -> float:
     span = np.linalg.norm(chain.T_0[:3, 3]) + np.linalg.norm(chain.E[:, :3, 3], axis=1).sum()
     span += np.abs(robot.limits[slides]).max(axis=1).sum() + np.abs(chain.offset[slides]).sum()
     return float(span)
+
+
+def in_the_foot(robot: Robot, p: FloatArray) -> bool:
+    """Whether places (..., 3) m in {M} all lie within a few millimetres of the middle of the robot's foot, where
+    nothing can be milled: such places were meant in m. Its zero itself is nobody's slip."""
+    if robot.chain.prismatic[0] or not np.array_equal(robot.T_base, np.eye(4)):
+        return False
+    return bool(0.0 < np.abs(p).max(initial=0.0) < FOOT)
 
 
 def _check_places(robot: Robot, p: FloatArray) -> None:

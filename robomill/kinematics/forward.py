@@ -9,7 +9,8 @@ from robomill.arguments import asked
 from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.robot.model import Robot, check_robot
-from robomill.units import to_si
+from robomill.spelled import beside
+from robomill.units import format_short, to_si
 
 # Poses handled at a time where several arrays of them are needed: a block stays in the second-level cache.
 BLOCK = 4096
@@ -47,6 +48,10 @@ def _slipped(robot: Robot, theta: FloatArray, beyond: BoolArray) -> str:
     """What to say of a coordinate that lies beyond its limits as one in degrees or mm does."""
     joint = int(np.argwhere(beyond)[0][-1])
     value, number = float(theta[beyond][0]), robot.joint_numbers[joint]
+    if beside():
+        unit = robot.joint_units[joint]
+        found, low, high = (format_short(float(each), unit) for each in (value, *robot.limits[joint]))
+        return f"theta of {robot.name!r}: joint {number} is at {found}, far beyond its limits of {low} to {high}."
     if robot.chain.prismatic[joint]:
         is_m, meant = f"{value:g} m", f"{value:g} mm are {value * to_si(1.0, 'mm'):g}"
     else:
@@ -76,7 +81,7 @@ def tool_pose(robot: Robot, theta: ArrayLike) -> FloatArray:
     Raises
     ------
     KinematicsError
-        Where theta is not finite or has not n entries.
+        Where theta is infinite or has not n entries; NaN (a pose that is not reached) gives NaN.
 
     Examples
     --------
@@ -112,7 +117,7 @@ def joint_frames(robot: Robot, theta: ArrayLike) -> FloatArray:
     Raises
     ------
     KinematicsError
-        Where theta is not finite or has not n entries.
+        Where theta is infinite or has not n entries; NaN (a pose that is not reached) gives NaN.
 
     Examples
     --------

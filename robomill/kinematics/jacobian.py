@@ -32,7 +32,7 @@ def geometric_jacobian(robot: Robot, theta: ArrayLike) -> FloatArray:
     Raises
     ------
     KinematicsError
-        Where theta is not finite or has not n entries.
+        Where theta is infinite or has not n entries; NaN (a pose that is not reached) gives NaN.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def task_jacobian(robot: Robot, theta: ArrayLike) -> FloatArray:
     Raises
     ------
     KinematicsError
-        Where theta is not finite or has not n entries.
+        Where theta is infinite or has not n entries; NaN (a pose that is not reached) gives NaN.
 
     Examples
     --------

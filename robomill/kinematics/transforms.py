@@ -16,7 +16,8 @@ from robomill.quantities import Quantity
 from robomill.spelled import refuse_slip
 from robomill.vectors import angle_between
 
-TILT = Quantity("tilt", "deg", name="A or B", key="", slip=2.0 * np.pi)
+UNIT = 1e-6  # to which the axes of a pose are unit and square, as files and controllers round them
+TILT = Quantity("A or B", "deg", name="A or B", key="", slip=2.0 * np.pi)
 
 
 def _rotation(angle: ArrayLike, i: int, j: int) -> FloatArray:
@@ -137,7 +138,7 @@ def world_from_pose(T_MT: ArrayLike) -> FloatArray:
     Raises
     ------
     KinematicsError
-        Where T_MT is not finite or not of that shape.
+        Where T_MT is not finite, not of that shape, or no pose: a rotation and a shift.
 
     Examples
     --------
@@ -145,8 +146,22 @@ def world_from_pose(T_MT: ArrayLike) -> FloatArray:
     >>> rm.world_from_pose(rm.pose_from_world([0.1, -1.2, 0.05, 0.0, 0.25])).tolist()
     [0.1, -1.2, 0.05, -0.0, 0.25]
     """
-    T_MT = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
+    T_MT = poses(T_MT)
     return np.concatenate([T_MT[..., :3, 3], tilt_from_axis(T_MT[..., :3, 2])], axis=-1)
+
+
+def poses(T_MT: ArrayLike) -> FloatArray:
+    """Poses (..., 4, 4) as a person gives them. Raises KinematicsError for what is none: no rotation, or no shift."""
+    T = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
+    R = T[..., :3, :3]
+    off = np.abs(np.swapaxes(R, -1, -2) @ R - np.eye(3)).max(initial=0.0)
+    mirrored = bool((np.linalg.det(R) < 0.0).any())
+    if off > UNIT or mirrored or np.abs(T[..., 3, :] - [0.0, 0.0, 0.0, 1.0]).max(initial=0.0) > UNIT:
+        raise KinematicsError(
+            "T_MT: this is no pose; expected three unit axes that are square and right-handed, beside them the place, "
+            "and 0 0 0 1 as the last row."
+        )
+    return T
 
 
 def tilt_from_axis(k: ArrayLike) -> FloatArray:

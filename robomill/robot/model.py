@@ -21,7 +21,8 @@ from robomill.provenance import UNSTATED, Provenance, stated_blocks
 from robomill.quantities import Quantity, quantities, quantity
 from robomill.robot import checks
 from robomill.robot.dh import Chain, build_chain
-from robomill.robot.sources import COMPLIANCE, USER_SET, changed_sources, of_set
+from robomill.robot.plausible import checked
+from robomill.robot.sources import COMPLIANCE, USER_SET, changed_sources, of_set, stated_of_robot
 from robomill.spelled import in_si
 from robomill.units import format_count, from_si
 from robomill.values import Tabled
@@ -82,8 +83,11 @@ class Robot(Tabled):
     def __post_init__(self) -> None:
         put = lambda key, value: object.__setattr__(self, key, value)  # noqa: E731
         where = f"Robot {(self.title or self.name)!r}"
-        if not isinstance(self.name, str) or not self.name.strip():
-            raise RobotError("Robot: the name is empty; give it a short name.")
+        for said in (self.name, self.title):
+            of_kind(said, str, "Robot, name", "a short text", RobotError)
+        if not self.name.strip() or not self.name.isprintable():
+            found = "does not stand on a line" if self.name.strip() else "is empty"
+            raise RobotError(f"Robot: the name {found}; give it a short name.")
         if self.convention not in ("standard", "modified"):
             raise RobotError(f"{where}: convention is {self.convention!r}; expected 'standard' or 'modified'.")
         declared = quantities(Robot)
@@ -220,7 +224,7 @@ class Robot(Tabled):
         from robomill.robot.table import robot_fields
 
         given = {key: value for key, value in locals().items() if key not in ("cls", "robot_fields")}
-        return cls(**robot_fields(given, quantities(cls)))
+        return checked(cls(**robot_fields(given, quantities(cls))), given)
 
     # ---- views --------------------------------------------------------------------------------------------------
     @property
@@ -336,10 +340,9 @@ class Robot(Tabled):
         from robomill.robot.table import COLUMN_UNITS, OTHERS, changed_fields, refuse_printed
 
         known = [f.name for f in fields(self)]
-        columns = [f"{name}{unit}" for name, unit in COLUMN_UNITS.items()]
-        who = f"Robot {self.name!r}"
+        columns, who = [f"{name}{unit}" for name, unit in COLUMN_UNITS.items()], f"Robot {self.name!r}"
         refuse_unknown(changes, [*known, "C_theta", "limits", *columns, *OTHERS], who)
-        said = stated_blocks(changes.get("provenance", {}), RobotError)
+        said, asked_for = stated_of_robot(changes.get("provenance", {})), changes
         with kinds_told(Robot.__init__, who, changes), kinds_told(Robot.from_dh, who, changes):
             changes = in_si(Robot, changed_fields(self, changes))
             for short, full in (("C_theta", "C_theta_all"), ("limits", "limits_all")):
@@ -358,7 +361,7 @@ class Robot(Tabled):
         if other.compliance_set != USER_SET:
             found.pop(COMPLIANCE, None)  # of numbers that are in force no more
         object.__setattr__(other, "provenance", MappingProxyType(found))
-        return other
+        return checked(other, asked_for)
 
     def _filled(self, value: Any, current: FloatArray) -> Any:
         if no_number(value):

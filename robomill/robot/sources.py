@@ -6,7 +6,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.provenance import GIVEN, Provenance
+from robomill.errors import RobotError
+from robomill.provenance import GIVEN, Provenance, stated_blocks
 
 USER_SET = "user"
 """The compliance set of numbers that are of no named one."""
@@ -49,6 +50,12 @@ def of_set(name: str) -> str:
 def is_of_robot(block: str) -> bool:
     """Whether a block speaks for numbers of a robot."""
     return block in BLOCKS or block.partition(".")[0] == COMPLIANCE
+
+
+def stated_of_robot(said: Any) -> dict[str, Provenance]:
+    """``said`` by blocks, as a person gives it of a robot. Raises RobotError, ArgumentError for an unknown block."""
+    found = stated_blocks(said, RobotError)
+    return stated_blocks(found, RobotError, (*BLOCKS, COMPLIANCE, *filter(is_of_robot, found)))
 
 
 def changed_blocks(before: Sourced, after: Sourced) -> list[str]:

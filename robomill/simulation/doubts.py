@@ -11,6 +11,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.kinematics.asked import longest_reach
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
+from robomill.robot.plausible import hardly_an_arm
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_count, format_many, format_short, format_si
@@ -44,7 +45,10 @@ def _of_sizes(setup: SimulationSetup, path: Toolpath) -> Iterator[str]:
 
 
 def _of_robot(robot: Robot, zero: FloatArray) -> Iterator[str]:
-    """Where the part lies, and the tool."""
+    """Where the part lies, the tool, and how stiff the joints are."""
+    doubt = "" if robot.assumes_compliances else hardly_an_arm(robot)
+    if doubt:
+        yield f"The joints: {doubt}: were their stiffnesses or compliances given in another unit?"
     chain = robot.chain
     off = zero - chain.T_0[:3, 3]
     from_axis = float(np.linalg.norm(np.cross(off, chain.T_0[:3, 2])))

@@ -15,11 +15,13 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
+from robomill.kinematics.asked import in_the_foot
 from robomill.provenance import Provenance, stated_blocks
 from robomill.quantities import Quantity
 from robomill.robot.model import Robot, check_robot
+from robomill.simulation import sources
 from robomill.simulation.sources import AROUND, UNSTATED_TOLERANCE, unstated
-from robomill.spelled import one_of
+from robomill.spelled import one_of, refuse_slip
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Sketch
@@ -30,11 +32,11 @@ from robomill.units import format_many
 PART_ZERO = Quantity("Zero", "mm", "array", shape=(3,), axes=tuple("XYZ"), digits=2, key="zero_mm", slip=200.0)
 PART_TURN = Quantity("Turn about Z", "deg", key="rotation_z_deg", slip=2.0 * np.pi)
 SPIN = Quantity("Turn about z_T", "deg", name="spin", key="spin_deg", digits=1, slip=4.0 * np.pi)
-FOOT = 0.01  # m: where nothing can be milled
 PART = ("part_zero", "part_zero_mm", "part_rotation_z", "part_rotation_z_deg")
 OTHERS = (*PART, "spin_deg")
 """The names beside those of the fields."""
 _ZERO = replace(PART_ZERO, name="part_zero", key="part_zero_mm")
+_FRAME = replace(PART_ZERO, label="place", name="T_MW", key="part_zero_mm")
 _TURN = replace(PART_TURN, name="part_rotation_z", key="part_rotation_z_deg")
 
 
@@ -55,6 +57,8 @@ def taken(given: Mapping[str, Any], T_MW: FloatArray | None = None, robot: Any =
         found["source"] = PointsSource(found["source"])
     elif isinstance(found.get("source"), Sketch):
         found["source"] = SketchSource(found["source"])
+    if np.shape(found.get("T_MW", ())) == (4, 4):
+        refuse_slip(_FRAME, np.asarray(found["T_MW"])[:3, 3], SetupError, "Part zero")
     if any(given.get(name) is not None for name in PART):
         if "T_MW" in found:
             raise SetupError("Part zero: T_MW and part_zero are both given; keep one of them.", where="T_MW")
@@ -83,10 +87,7 @@ def _placed(given: Mapping[str, Any], before: FloatArray | None) -> FloatArray:
 
 def _check_zero(zero: FloatArray, robot: Any) -> None:
     """Refuse a part zero (3,) m that was given in mm and would lie in the middle of the robot's foot."""
-    if not isinstance(robot, Robot) or robot.chain.prismatic[0] or not np.array_equal(robot.T_base, np.eye(4)):
-        return
-    farthest = float(np.abs(zero).max())
-    if 0.0 < farthest < FOOT:
+    if isinstance(robot, Robot) and in_the_foot(robot, zero):
         found = format_many(zero, "mm", 3)
         raise SetupError(
             f"Part zero: {found} lies in the middle of the robot's foot: part_zero_mm is in mm. If m are meant, give "
@@ -138,5 +139,5 @@ def stated(given: Mapping[str, Any]) -> dict[str, Any]:
     cutter = unstated(found.get("cutter"))
     if cutter is not None:
         said["cutter"] = cutter
-    found["provenance"] = {**said, **stated_blocks(found.get("provenance", {}), SetupError)}
+    found["provenance"] = {**said, **sources.stated(found.get("provenance", {}))}
     return found

@@ -20,11 +20,11 @@ from robomill.errors import SetupError
 from robomill.identification.measured_field import MeasuredField
 from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.lazy import cached_property
-from robomill.provenance import Provenance, stated_blocks
+from robomill.provenance import Provenance
 from robomill.quantities import quantity, settle, switch, told
 from robomill.robot.model import Robot
 from robomill.simulation import given
-from robomill.simulation.sources import changed_sources
+from robomill.simulation.sources import changed_sources, stated
 from robomill.spelled import Replaceable, in_units
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
@@ -34,6 +34,7 @@ from robomill.units import format_limit, format_many, to_si
 from robomill.values import Value
 
 FINEST = 1e-6  # m: no robot mills as precisely: was it meant in m?
+COARSEST = 0.05  # m: what is off by more is no part: was it meant in um, or in mm as m?
 NO_TOOLS = ToolTable()
 TOLERANCES = ("wall", "floor", "feed")
 
@@ -93,23 +94,25 @@ class SimulationSetup(Replaceable, Value):
     cutter: Cutter
     force: ForceModel
     stock: Stock | None = None
-    tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0, slip=0.05, tiny=FINEST)
+    tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0, most=COARSEST, slip=COARSEST, tiny=FINEST)
     floor_tolerance: float | None = quantity(
         "Tolerance of floors",
         "mm",
         optional=True,
-        slip=0.05,
+        slip=COARSEST,
         tiny=FINEST,
         above=0.0,
+        most=COARSEST,
         hint="Along the tool axis. Left out: the one tolerance holds for walls and floors.",
     )
     feed_tolerance: float | None = quantity(
         "Tolerance along the feed",
         "mm",
         optional=True,
-        slip=0.05,
+        slip=COARSEST,
         tiny=FINEST,
         above=0.0,
+        most=COARSEST,
         hint="Of the tip on its way, and where a cut begins or ends in the material. Left out: given, but not judged.",
     )
     step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0, slip=0.5, tiny=1.5e-6)
@@ -217,7 +220,7 @@ class SimulationSetup(Replaceable, Value):
 
     def _taken(self, changes: dict[str, Any]) -> dict[str, Any]:
         found = given.taken(changes, self.T_MW, self.robot)
-        said = stated_blocks(found.get("provenance", {}), SetupError)
+        said = stated(found.get("provenance", {}))
         return {**found, "provenance": {**changed_sources(self, found), **said}}
 
     def _take_spin(self) -> None:

@@ -10,9 +10,11 @@ import numpy as np
 from robomill.arrays import digest
 from robomill.cutting.force import BY_HAND
 from robomill.cutting.tool import Cutter
-from robomill.provenance import GIVEN, Provenance
+from robomill.errors import SetupError
+from robomill.provenance import GIVEN, Provenance, stated_blocks
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
+from robomill.robot.sources import BLOCKS as ROBOT_BLOCKS
 from robomill.robot.sources import changed_blocks, is_of_robot
 
 BLOCKS = {
@@ -25,6 +27,8 @@ BLOCKS = {
     **dict.fromkeys(("tolerance", "floor_tolerance", "feed_tolerance"), "tolerance"),
 }
 """The block of a set-up's provenance that speaks for a field."""
+KNOWN = (*dict.fromkeys(BLOCKS.values()), "measured_map")
+"""All blocks of a set-up's own; what is of its robot may be said there, too (``is_of_robot``)."""
 UNSTATED_TOLERANCE = Provenance("assumed", "nobody has stated one")
 AROUND = Provenance("computed", "a block around what the path cuts")
 OF_ONE_CUT = ("paper", "measured")
@@ -47,6 +51,12 @@ class Sourced(Protocol):
     def measured_map(self) -> Any: ...
     @property
     def provenance(self) -> Mapping[str, Provenance]: ...
+
+
+def stated(said: Any) -> dict[str, Provenance]:
+    """``said`` by blocks, as a person gives it of a set-up. Raises SetupError, ArgumentError for an unknown block."""
+    found = stated_blocks(said, SetupError)
+    return stated_blocks(found, SetupError, (*KNOWN, *filter(is_of_robot, found), *ROBOT_BLOCKS))
 
 
 def changed_sources(setup: Sourced, changes: Mapping[str, Any], mark: Provenance = GIVEN) -> dict[str, Provenance]:

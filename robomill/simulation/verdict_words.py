@@ -9,6 +9,7 @@ import numpy as np
 from robomill.provenance import named
 from robomill.simulation.seen import Run
 from robomill.units import format_beside, format_count, format_percent, format_share
+from robomill.values import Value
 
 TIGHT_FROM = 0.8
 Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
@@ -49,8 +50,8 @@ class Reading:
         return self.stated and self.worst >= 0
 
 
-@dataclass(frozen=True)
-class Verdict:
+@dataclass(frozen=True, eq=False, repr=False)
+class Verdict(Value):
     """``level`` ok | tight | out | unjudged | unreached | missed; ``share`` of the tolerance used by what decides; one
     sentence for a foreman.
 
@@ -95,6 +96,9 @@ class Verdict:
     @property
     def red(self) -> bool:
         return self.level in RED
+
+    def _said(self) -> str:
+        return f"{self.level}: {self.sentence}"
 
     @property
     def deciding(self) -> tuple[str, Reading] | None:

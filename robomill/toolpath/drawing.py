@@ -20,7 +20,8 @@ from robomill.quantities import Quantity, choice, quantity, settle
 from robomill.spelled import Replaceable, in_units, one_of
 from robomill.toolpath.contour import Contour
 from robomill.toolpath.parallel import beside_line
-from robomill.toolpath.sketch import DEEPEST, FASTEST, MAX_ELEMENTS, Element, Sketch
+from robomill.toolpath.path import SLOWEST
+from robomill.toolpath.sketch import DEEPEST, FASTEST, MAX_ELEMENTS, SHALLOWEST, Element, Sketch
 from robomill.units import format_count, format_many, format_si
 from robomill.values import Value
 
@@ -32,7 +33,10 @@ SIDES = {
     "outside": "outside",
 }
 ORIGINS = {"drawing": "as drawn", "corner": "lower left corner", "centre": "middle"}
-DIAMETER = Quantity("Diameter of the cutter", "mm", name="diameter", key="diameter_mm", above=0.0, slip=0.6)
+THINNEST = 0.05e-3  # m: no robot mills with less: was it meant in m?
+DIAMETER = Quantity(
+    "Diameter of the cutter", "mm", name="diameter", key="diameter_mm", above=0.0, slip=0.6, tiny=THINNEST
+)
 
 
 @in_units(ToolpathError, "Cut along a drawing")
@@ -54,8 +58,8 @@ class LayerCut(Replaceable):
     """
 
     layer: str
-    depth: float = quantity("Depth", "mm", above=0.0, digits=2, slip=DEEPEST)
-    v_f: float = quantity("Feed", "mm/min", above=0.0, key="feed_mm_min", slip=FASTEST)
+    depth: float = quantity("Depth", "mm", above=0.0, digits=2, slip=DEEPEST, tiny=SHALLOWEST)
+    v_f: float = quantity("Feed", "mm/min", above=0.0, key="feed_mm_min", slip=FASTEST, tiny=SLOWEST)
     side: str = choice("Side", SIDES, default="on")
     step_down: float | None = quantity("Step down", "mm", optional=True, above=0.0, digits=2, slip=DEEPEST)
 

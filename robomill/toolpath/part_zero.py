@@ -11,9 +11,12 @@ from numpy.typing import ArrayLike
 from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import ToolpathError
+from robomill.quantities import Quantity
+from robomill.spelled import refuse_slip
 from robomill.units import format_si, to_si
 
 CLOSEST = 1e-3
+TOUCHED = Quantity("place", "mm", "array", shape=(3,), name="points", slip=20.0)
 SMALLEST_ANGLE = to_si(2.0, "deg")
 
 
@@ -68,6 +71,8 @@ def frame_from_points(zero: ArrayLike, on_x: ArrayLike, in_xy: ArrayLike) -> Tou
         as_floats(point, f"Part zero, {name}", (3,), error=ToolpathError, one=True)
         for name, point in zip(names, (zero, on_x, in_xy), strict=True)
     )
+    for name, point in zip(names, (o, a, b), strict=True):
+        refuse_slip(TOUCHED, point, ToolpathError, f"Part zero, {name}")
     x, side = a - o, b - o
     base, reach = float(np.linalg.norm(x)), float(np.linalg.norm(side))
     for name, distance in ((names[1], base), (names[2], reach)):

@@ -122,7 +122,7 @@ class Sketch(Replaceable):
     v_plunge: float = quantity(
         "Plunge feed", "mm/min", default=5e-3, above=0.0, key="plunge_mm_min", slip=FASTEST, tiny=SLOWEST
     )
-    clearance: float = quantity("Clearance", "mm", default=5e-3, least=APPROACH, digits=2)
+    clearance: float = quantity("Clearance", "mm", default=5e-3, least=APPROACH, digits=2, slip=DEEPEST)
     n_s: float = quantity("Spindle", "1/min", default=0.0, least=0.0, key="spindle_1_min", slip=1000.0)
     v_f: float = quantity("Feed", "mm/min", default=30e-3, above=0.0, key="feed_mm_min", compare=False, slip=FASTEST)
     depth: float = quantity("Depth", "mm", default=2e-3, above=0.0, digits=2, compare=False, slip=DEEPEST)

@@ -25,6 +25,7 @@ SLIPPED = 10.0  # times the longest side of a box: such a step was meant in mm
 
 
 FARTHEST = 200.0  # m: no robot reaches as far: was it meant in mm?
+NEAREST = 2e-3  # m: nobody maps as little about the middle of a robot's foot: was it meant in m?
 
 
 @in_units(WorkspaceError, "Grid")
@@ -46,9 +47,9 @@ class Grid(Value):
     <Grid 25 x 13 x 1 cells at X, Y, Z = -600 to 600 mm; -1600 to -1000 mm; 0 mm>
     """
 
-    x: FloatArray = quantity("axis x", "mm", shape=(None,), slip=FARTHEST)
-    y: FloatArray = quantity("axis y", "mm", shape=(None,), slip=FARTHEST)
-    z: FloatArray = quantity("axis z", "mm", shape=(None,), slip=FARTHEST)
+    x: FloatArray = quantity("axis x", "mm", shape=(None,), slip=FARTHEST, tiny=NEAREST, extent=True)
+    y: FloatArray = quantity("axis y", "mm", shape=(None,), slip=FARTHEST, tiny=NEAREST, extent=True)
+    z: FloatArray = quantity("axis z", "mm", shape=(None,), slip=FARTHEST, tiny=NEAREST, extent=True)
 
     if TYPE_CHECKING:
 
@@ -68,6 +69,9 @@ class Grid(Value):
             axis = np.atleast_1d(as_floats(getattr(self, name), f"Grid axis {name}", (), error=WorkspaceError))
             if axis.ndim != 1 or len(axis) == 0:
                 raise WorkspaceError(f"Grid: axis {name} needs at least one coordinate.")
+            if float(np.abs(axis).max()) > FARTHEST:
+                ends = f"{format_si(float(np.abs(axis).max()), 'm', 0)} off; expected {FARTHEST:g} m at most"
+                raise WorkspaceError(f"Grid: a point of axis {name} lies {ends}.")
             if (np.diff(axis) <= 0).any():
                 raise WorkspaceError(f"Grid: the coordinates of axis {name} must rise.")
             object.__setattr__(self, name, frozen(axis))

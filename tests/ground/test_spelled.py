@@ -135,7 +135,7 @@ SHORT_PATH = [[-0.02, 0.0, -0.002], [0.02, 0.0, -0.002]]
         (
             lambda: rm.Cutter("drill", diameter_mm=8, tip_angle_deg=1.5708),
             lambda: rm.Cutter("drill", diameter_mm=8, tip_angle=math.radians(1.5708)),
-            "found 1.5708°: .*give tip_angle=1.5708 or tip_angle_deg=90;",
+            "found 1.5708°.*give tip_angle=1.5708 or tip_angle_deg=90;",
         ),
         (
             lambda: rm.ToolBending(diameter_mm=8, stick_out_mm=0.04),
@@ -215,3 +215,46 @@ def test_who_types_beside_a_unit_is_told_the_bound_and_no_name_in_code() -> None
             cutter.replace(diameter=8.0)
     with pytest.raises(CuttingError, match="diameter_mm=8"):
         cutter.replace(diameter=8.0)
+
+
+SLIPS = {
+    "a tolerance in um as mm": (lambda: rm.load_setup("paper_flute").replace(tolerance_mm=300), "50 mm"),
+    "a helix in rad as degrees": (lambda: rm.Cutter("flat", diameter_mm=8, helix_angle_deg=0.52), "helix_angle=0.52"),
+    "a point in rad as degrees": (lambda: rm.Cutter("drill", diameter_mm=8, tip_angle_deg=2.06), "tip_angle=2.06"),
+    "half turns of yaw in rad": (lambda: rm.place(rm.load_setup("paper_flute"), yaw_deg=(-1.57, 1.57)), "1.57 rad"),
+    "a plane in m as mm": (lambda: rm.Grid(x_mm=[-0.6, 0.6], y_mm=-1300, z_mm=0), "0.6 m is meant"),
+    "a place beyond all robots": (lambda: rm.Grid(x_mm=0, y_mm=1e9, z_mm=0), "200 m at most"),
+    "a clearance in mm as m": (lambda: rm.Sketch(clearance=5), "clearance_mm=5"),
+    "touched points in mm as m": (
+        lambda: rm.frame_from_points([0, -1300, 0], [100, -1300, 0], [0, -1200, 0]),
+        "in m. If -1300 mm",
+    ),
+    "a frame of the part in mm": (
+        lambda: rm.load_setup("paper_flute").replace(T_MW=[[1, 0, 0, 0], [0, 1, 0, -1300], [0, 0, 1, 0], [0, 0, 0, 1]]),
+        "give T_MW in m, or part_zero_mm",
+    ),
+    "a cut along a drawing in m": (lambda: rm.LayerCut("a", depth_mm=0.003, feed_mm_min=600), "depth=0.003"),
+    "its feed in m/s": (lambda: rm.LayerCut("a", depth_mm=3, feed_mm_min=0.01), "v_f=0.01"),
+}
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+def test_what_a_stranger_gave_in_another_unit_is_refused(slip: str) -> None:
+    make, words = SLIPS[slip]
+    with pytest.raises(rm.RobomillError, match=words):
+        make()
+
+
+def test_a_height_of_a_map_may_be_half_a_millimetre() -> None:
+    """One coordinate alone says nothing of its unit; several within two millimetres do."""
+    assert rm.Grid(x_mm=[-100, 100], y_mm=-1300, z_mm=0.5).shape == (2, 1, 1)
+
+
+def test_at_another_door_a_refusal_names_what_stands_there() -> None:
+    with units_beside({"feed_mm_min": "--feed"}):
+        with pytest.raises(rm.RobomillError) as caught:
+            rm.read_points("X_mm,Y_mm,Z_mm\n0,0,0\n10,0,0\n")
+        assert "or give --feed." in str(caught.value)
+        with pytest.raises(rm.RobomillError) as caught:
+            rm.load_setup("paper_flute").replace(tolerance_mm=0.0003)
+    assert str(caught.value) == "Set-up, Tolerance: found 0.0003 mm; expected at least 0.001 mm."

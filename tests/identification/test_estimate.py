@@ -408,3 +408,12 @@ def test_what_is_held_at_zero_is_what_both_fits_say():
         ), seed
         seen |= {*zip(at_zero.tolist(), below.tolist())}
     assert len(seen) == 4, "every combination comes up"
+
+
+def test_rows_to_leave_out_are_numbers() -> None:
+    """A text was taken letter by letter: "2,3" asked for a row named ","."""
+    robot = rm.load_robot("slavkovic_5r")
+    tests = rm.read_load_tests("nine_points", robot)
+    for wrong in ("2,3", 99, [1.5]):
+        with pytest.raises(rm.RobomillError, match=r"exclude: found .*, expected numbers of rows, e\.g\. \[2, 3\]"):
+            rm.identify(robot, tests, exclude=wrong)

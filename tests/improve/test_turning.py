@@ -82,7 +82,7 @@ def test_where_nothing_is_left_to_turn_is_said() -> None:
     ("given", "said"),
     [
         ({"measure": "speed"}, "measure: found 'speed'"),
-        ({"rate_deg_mm": 0}, "rate: found 0.0; expected a number above 0"),
+        ({"rate_deg_mm": 0}, "rate: found 0 °/mm; expected more than 0"),
         ({"rate": 1.0, "rate_deg_mm": 1.0}, "are the same; give one of them"),
     ],
 )

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+import robomill as rm
 from robomill.kinematics.transforms import (
     axis_from_tilt,
     invert,
@@ -76,3 +79,10 @@ def test_turns_about_x_the_new_y_and_the_new_z_lead_there_and_back():
     R = rotation_from_turns(turns)
     np.testing.assert_allclose(R, Rotation.from_euler("XYZ", turns).as_matrix(), atol=1e-15)
     np.testing.assert_allclose(rotation_from_turns(turns_from_rotation(R)), R, atol=1e-14)
+
+
+@pytest.mark.parametrize("T", [np.zeros((4, 4)), 2 * np.eye(4), np.diag([1.0, 1.0, -1.0, 1.0]), np.eye(4)[::-1]])
+def test_a_matrix_that_is_no_pose_is_refused(T) -> None:
+    for call in (rm.world_from_pose, partial(rm.inverse_kinematics, rm.load_robot("slavkovic_5r"))):
+        with pytest.raises(rm.RobomillError, match="this is no pose"):
+            call(T)

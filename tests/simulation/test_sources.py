@@ -97,3 +97,14 @@ def test_a_map_that_was_measured_on_one_arm_is_assumed_on_another() -> None:
     assert softer.provenance["measured_map"] == MINE
     assert longer.provenance["measured_map"].kind == "assumed"
     assert "measured_map" not in longer.replace(measured_map=None).provenance
+
+
+def test_a_block_that_nothing_has_is_told() -> None:
+    """A slip of the pen left its number assumed, in silence."""
+    said = rm.Provenance("measured", "gauge of 3 May")
+    setup = rm.load_setup("paper_flute")
+    with pytest.raises(rm.RobomillError, match="no 'tolerence'; did you mean tolerance"):
+        setup.replace(provenance={"tolerence": said})
+    with pytest.raises(rm.RobomillError, match="no 'foo'; it takes geometry"):
+        setup.robot.replace(provenance={"foo": said})
+    assert setup.replace(provenance={"geometry": said}).provenance["geometry"] is said

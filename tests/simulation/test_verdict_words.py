@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -133,3 +134,13 @@ def test_an_arm_whose_compliances_nobody_has_given_is_not_judged_until_they_are(
     said = rm.simulate(setup.replace(robot=given)).verdict
     assert said.level == "ok"
     assert said.wall.value == rm.simulate(setup.replace(robot=arm)).verdict.wall.value
+
+
+def test_verdicts_of_equal_runs_are_equal() -> None:
+    """What has no number (NaN) is as equal as the rest; a pickled one, too, and it is said on one line."""
+    setup = rm.load_setup("paper_flute").replace(step_mm=10, cell_mm=0.5)
+    verdict = rm.simulate(setup).verdict
+    assert verdict == rm.simulate(setup).verdict
+    assert pickle.loads(pickle.dumps(verdict)) == verdict
+    assert verdict != rm.simulate(setup.replace(tolerance_mm=0.2)).verdict
+    assert repr(verdict).startswith("<Verdict ok: The groove is")

@@ -1,0 +1,70 @@
+"""Joints that are far stiffer or softer than those of any arm: their numbers were meant in another unit."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol, TypeVar
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import RobotError
+from robomill.robot.dh import Chain
+from robomill.units import format_short
+
+# Of published arms that mill, no joint is stiffer than 7.6e6 N m/rad (KUKA KR 500), and the tip gives 1.1e-5 m/N and
+# more with all links in a row. An arm a thousand times as stiff (N m taken for kN m) lies beyond either bound.
+STIFFEST_SOFTEST = 1e7  # N m/rad: no arm's softest joint is as stiff
+STIFFEST_TIP, SOFTEST_TIP = 3e-7, 5e-3  # m/N: no arm gives less; none that mills gives more
+NAMES = {"k_theta_kNm_per_rad": ("kN m/rad", "N m/rad", "k_theta_Nm_per_rad")}
+NAMES |= {"k_theta_Nm_per_rad": ("N m/rad", "kN m/rad", "k_theta_kNm_per_rad")}
+
+
+class Arm(Protocol):
+    """What of a robot is asked here."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def chain(self) -> Chain: ...
+    @property
+    def C_theta(self) -> FloatArray: ...
+
+
+A = TypeVar("A", bound=Arm)
+
+
+def tip_compliance(robot: Arm) -> float:
+    """m/N: at most so much gives the tip by the joints, all links in a row (a joint that slides by itself alone)."""
+    length = np.linalg.norm(robot.chain.E[:, :3, 3], axis=1)
+    lever = np.where(robot.chain.prismatic, 1.0, np.cumsum(length[::-1])[::-1])
+    return float(robot.C_theta @ lever**2)
+
+
+def hardly_an_arm(robot: Arm) -> str:
+    """What to say of joints that are far stiffer, or softer, than those of any arm; "" of an arm that may be, and where
+    joints are said to be rigid."""
+    turns = ~robot.chain.prismatic
+    C_theta, gives = robot.C_theta[turns], tip_compliance(robot)
+    if not turns.any() or not (robot.C_theta > 0.0).all():
+        return ""
+    if gives < STIFFEST_TIP or 1.0 / C_theta.max() > STIFFEST_SOFTEST:
+        softest = format_short(1.0 / float(C_theta.max()), "kN m/rad")
+        return f"no arm's joints are as stiff (its softest has {softest})"
+    if gives > SOFTEST_TIP:
+        return f"no arm that mills is as soft (1 N would move the tip by up to {format_short(gives, 'mm')})"
+    return ""
+
+
+def checked(robot: A, given: Mapping[str, Any]) -> A:
+    """``robot``, made of what was ``given``. Raises RobotError where its stiffnesses were hardly meant in their unit;
+    whoever does mean them gives ``C_theta``."""
+    for name, (unit, other, key) in NAMES.items():
+        doubt = hardly_an_arm(robot) if given.get(name) is not None else ""
+        if doubt:
+            raise RobotError(
+                f"Robot {(robot.title or robot.name)!r}: {name}: {doubt}: {name} is in {unit}. If {other} are meant, "
+                f"give {key}; if these stiffnesses are, give C_theta, one over each.",
+                where=name,
+            )
+    return robot

@@ -1,0 +1,85 @@
+"""Stiffnesses in the wrong thousand: published arms are taken as they are, and refused a thousand times as stiff."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import RobotError
+from robomill.robot.plausible import hardly_an_arm, tip_compliance
+
+# Stiffnesses of arms in N m/rad as they are published, with the links of a milling robot of that size (m).
+PUBLISHED = {
+    "KUKA KR 270": ([350, 1250, -55, 0, 0, 0], [750, 0, 0, 1300, 0, 300], [3.8e6, 6.6e6, 3.9e6, 5.6e5, 6.6e5, 4.7e5]),
+    "its tenth": ([350, 1250, -55, 0, 0, 0], [750, 0, 0, 1300, 0, 300], [3.8e5, 6.6e5, 3.9e5, 5.6e4, 6.6e4, 4.7e4]),
+    "KUKA KR 500": ([500, 1300, -55, 0, 0, 0], [1045, 0, 0, 1025, 0, 290], [6.5e6, 7.6e6, 3.08e6, 5e5, 6e5, 4e5]),
+    "FANUC R-2000iC": (
+        [312, 1075, 225, 0, 0, 0],
+        [670, 0, 0, 1280, 0, 215],
+        [861600, 2856000, 1848000, 279400, 418700, 277700],
+    ),
+    "a light arm": ([0, 425, 392, 0, 0, 0], [89, 0, 0, 109, 95, 82], [2e4, 2e4, 2e4, 1e4, 1e4, 1e4]),
+}
+ALPHA = [-90, 0, -90, 90, -90, 0]
+
+
+def arm(name: str, **stiffness: object) -> rm.Robot:
+    a, d, _ = PUBLISHED[name]
+    return rm.Robot.from_dh(a_mm=a, d_mm=d, alpha_deg=ALPHA, limits_deg=(-180, 180), **stiffness)
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_newton_metres_under_a_name_of_kilonewton_metres_are_refused(name: str) -> None:
+    """They make an arm a thousand times as stiff: its deviation was a thousandth, and green."""
+    k = np.array(PUBLISHED[name][2])
+    right = arm(name, k_theta_kNm_per_rad=k / 1000)
+    np.testing.assert_allclose(right.C_theta, 1 / k)
+    assert hardly_an_arm(right) == ""
+    with pytest.raises(RobotError, match="k_theta_kNm_per_rad.* (If N m/rad are meant|in another unit)"):
+        arm(name, k_theta_kNm_per_rad=k)
+    with pytest.raises(RobotError, match="k_theta_kNm_per_rad.* (If N m/rad are meant|in another unit)"):
+        right.replace(k_theta_kNm_per_rad=k)
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_kilonewton_metres_under_a_name_of_newton_metres_are_refused(name: str) -> None:
+    k = np.array(PUBLISHED[name][2])
+    with pytest.raises(RobotError, match="k_theta_Nm_per_rad"):
+        arm(name, k_theta_Nm_per_rad=k / 1000)
+
+
+def test_the_sentence_says_both_ways_out() -> None:
+    with pytest.raises(RobotError) as caught:
+        arm("its tenth", k_theta_kNm_per_rad=PUBLISHED["its tenth"][2])
+    assert str(caught.value) == (
+        "Robot 'robot': k_theta_kNm_per_rad: no arm's joints are as stiff (its softest has 47000 kN m/rad): "
+        "k_theta_kNm_per_rad is in kN m/rad. If N m/rad are meant, give k_theta_Nm_per_rad; if these stiffnesses are, "
+        "give C_theta, one over each."
+    )
+
+
+def test_whoever_means_them_gives_the_compliances() -> None:
+    k = np.array(PUBLISHED["KUKA KR 270"][2]) * 100
+    np.testing.assert_allclose(arm("KUKA KR 270", C_theta=1 / k).C_theta, 1 / k)
+
+
+def test_rigid_joints_are_nobodys_slip() -> None:
+    """A joint of infinite stiffness says so: what is left may give as little as it likes."""
+    stiff = arm("KUKA KR 270", k_theta_kNm_per_rad=[np.inf, np.inf, np.inf, np.inf, np.inf, 470])
+    assert (stiff.C_theta[:-1] == 0.0).all()
+
+
+def test_the_tip_gives_what_the_joints_give_over_all_links() -> None:
+    """Two joints, links of 0.5 and 0.4 m: C_1 (0.9)^2 + C_2 (0.4)^2, the stretched arm by hand."""
+    two = rm.Robot.from_dh(a_mm=[500, 400], k_theta_kNm_per_rad=[800, 500])
+    assert tip_compliance(two) == pytest.approx(0.9**2 / 8e5 + 0.4**2 / 5e5, rel=1e-12)
+
+
+def test_what_comes_in_without_a_unit_is_doubted_beside_the_result() -> None:
+    """A file or plain SI may say what no arm is: it is run, and said."""
+    setup = rm.load_setup("paper_flute").replace(step_mm=10, cell_mm=0.5)
+    for times, words in ((1e-3, "no arm's joints are as stiff"), (1e3, "no arm that mills is as soft")):
+        result = rm.simulate(setup.replace(robot=setup.robot.replace(C_theta=times * setup.robot.C_theta)))
+        assert [note for note in result.notes if note.code == "unit-doubt" and words in note.message]
+    assert not [note for note in rm.simulate(setup).notes if note.code == "unit-doubt"]
