@@ -19,20 +19,17 @@ from robomill.toolpath.fitting import Piece
 from robomill.toolpath.gcode.legs import Leg
 from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.program import TRAVERSE, Program
-from robomill.toolpath.gcode.scan import AXES, CENTRES, ROTARY, Token, joined, scan, without
+from robomill.toolpath.gcode.scan import AXES, CENTRES, ROTARY, Token, joined, scan, unscaled, without
 from robomill.toolpath.gcode.trace import Executed, Modes
 from robomill.units import format_plain, from_si
 
-DIGITS = {"mm": 4, "in": 5}
-ANGLE_DIGITS = 4
+DIGITS, ANGLE_DIGITS = {"mm": 4, "in": 5}, 4
 BY_RADIUS = math.radians(170.0)  # an arc of more is told by its centre: R is too rough there
-STOPS = {"M0", "M1", "M2", "M30", "M60"}
-MOTIONS = {"G0", "G1", "G2", "G3"}
+STOPS, MOTIONS = {"M0", "M1", "M2", "M30", "M60"}, {"G0", "G1", "G2", "G3"}
 CYCLES = {f"G{n}" for n in (73, 81, 82, 83, 85, 86, 89)}
 ELSEWHERE = {"G28", "G30", "G53", "G5", "G5.1", "G5.2", "G33", "G33.1", "G76", "G74", "G84", "G87", "G88"}
 TURNED_INTO_PLACES = {"G40", "G41", "G42", "G41.1", "G42.1", "G15", "G16", "G7", "G8"}
-SCALES = {"G50", "G51", "G50.1", "G51.1"}
-AS_BEFORE = ""
+SCALES, AS_BEFORE = {"G50", "G51", "G50.1", "G51.1"}, ""
 CORNERS = ("R=", "C=", "RND=", "RNDM=", "CHF=", "CHR=")
 SHAPES = (*CORNERS, "CR=", "AR=", "TURN=", "ANG=")
 PLACES = AXES + ROTARY + CENTRES + "R"
@@ -157,6 +154,9 @@ class Rewriter:
         """A line that makes no move."""
         if _MODAL_CALL.match(text):
             self.unrolled["canned cycles"] = None
+            return
+        if (left := unscaled(text)) is not None:
+            self.lines += left
             return
         if self.others and tokens is not None:
             if codes & SCALES:

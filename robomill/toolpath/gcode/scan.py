@@ -12,6 +12,7 @@ _PART = re.compile(
     r"|(?P<computed>(?P<of>[A-Z])\s*(?:=\s*[^\s;]+|[-+]?(?:#<[^>]*>|#+\d+|#*\[)))",
     re.IGNORECASE,
 )
+_SCALED = re.compile(r"\s*((?:N\d+\s*)?)(A?)(?:MIRROR|SCALE)\b", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -79,3 +80,12 @@ def without(tokens: list[Token], gone: set[int]) -> list[Token]:
     """The tokens but those at some places, each with the space before it."""
     also = {i - 1 for i in gone if i > 0 and tokens[i - 1].is_space}
     return [token for i, token in enumerate(tokens) if i not in gone | also]
+
+
+def unscaled(text: str) -> list[str] | None:
+    """What is left of a Sinumerik line that mirrors or scales, once places are written as they are; None for others.
+
+    MIRROR and SCALE end TRANS and ROT too, AMIRROR and ASCALE do not.
+    """
+    found = _SCALED.match(text)
+    return None if found is None else [] if found[2] else [f"{found[1]}TRANS"]

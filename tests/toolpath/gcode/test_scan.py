@@ -2,7 +2,7 @@
 
 import pytest
 
-from robomill.toolpath.gcode.scan import joined, scan, without
+from robomill.toolpath.gcode.scan import joined, scan, unscaled, without
 
 LINES = [
     "N10 G01 X-1.5Y+.25 Z 3. F100 (a comment; with X9) M8 ; and Y1",
@@ -46,3 +46,11 @@ def test_a_word_goes_with_the_space_before_it_and_gets_another_number() -> None:
     at = [token.letter for token in tokens].index("Y")
     assert joined(without(tokens, {at})) == "G1 X10 F5"
     assert tokens[at].said("-3.5").text == "Y-3.5"
+
+
+@pytest.mark.parametrize(
+    ("text", "left"),
+    [("N7 MIRROR X0", ["N7 TRANS"]), ("scale", ["TRANS"]), (" AMIRROR Y0", []), ("ASCALE X2", []), ("G1 X5", None)],
+)
+def test_what_is_left_of_lines_that_mirror_and_scale(text: str, left: list[str] | None) -> None:
+    assert unscaled(text) == left
