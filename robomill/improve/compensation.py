@@ -18,10 +18,12 @@ from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.provenance import Finding, named
 from robomill.simulation.band import deviation_band
-from robomill.simulation.gauge import Readings
+from robomill.simulation.gauge import Gauge, Readings
+from robomill.simulation.gauge import gauge as gauge_at
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.verdict import judge
 from robomill.toolpath.source import GCodeSource
 from robomill.units import format_count, format_si, from_si, to_si
 from robomill.values import Tabled, Value
@@ -32,6 +34,7 @@ FINEST, COARSEST = 0.2e-6, 1e-3  # m: bounds that can be asked for
 WRONG = 1.2  # how much softer or stronger than is known
 FARTHEST = 2e-3  # m: an arm that is pushed further off is not predicted by its springs at rest
 MOST_HELD = 0.05  # of the length cut: so much may have no force that agrees with its place
+MEASURED = 6000  # samples: of longer programs no more are measured, and those that are most off
 TURNED = to_si(5.0, "deg")  # a joint that stands further off than this stands otherwise
 STILL = 1e-7  # rad: a joint that turns no further rests
 
@@ -71,9 +74,14 @@ class Errors(Value):
         return f"{format_si(self.max, 'mm', 4)} at most, {format_si(self.rms, 'mm', 4)} root mean square"
 
 
-def errors_of(run: SimulationResult) -> Errors:
-    """What a run leaves, against the path that it is of."""
-    gauge = run.gauge
+def measured(run: SimulationResult) -> Gauge:
+    """What a gauge reads on a run, of a long one at ``MEASURED`` of its samples and those that are most off."""
+    return run.gauge if int(run.judged.sum()) <= MEASURED else gauge_at(run, MEASURED)
+
+
+def errors_of(run: SimulationResult, gauge: Gauge | None = None) -> Errors:
+    """What a run leaves, against the path that it is of; ``gauge`` is what was ``measured`` on it, if it was."""
+    gauge = measured(run) if gauge is None else gauge
     return Errors(_size(gauge.walls), _size(gauge.floors), np.array([run.max_deviation, run.rms_deviation]))
 
 
@@ -190,9 +198,12 @@ def compensation(
     with step(0, 4, "The program as it is"):
         back = writing(setup, write_gcode)
         wanted = along(setup, back.moves.wanted)
-        check_trusted(wanted)
+        before = measured(wanted)
+        check_trusted(wanted, before)
         back.moves = back.moves.finer(wanted)
-        wanted = wanted if back.moves.wanted is wanted.path else along(setup, back.moves.wanted)
+        if back.moves.wanted is not wanted.path:
+            wanted = along(setup, back.moves.wanted)
+            before = measured(wanted)
     with step(1, 4, "Correcting the path"):
         found = correct(setup, wanted, chosen)
         check_found(found, wanted)
@@ -202,19 +213,20 @@ def compensation(
         led = against(run, wanted.path)
         check_reached(run, wanted)
     with step(3, 4, "What remains"):
-        return _measured(found, led, written, chosen, (bound, known))
+        return _measured(found, (led, before), written, chosen, (bound, known))
 
 
 def _measured(
     found: Correction,
-    led: SimulationResult,
+    seen: tuple[SimulationResult, Gauge],
     written: Written,
     chosen: tuple[str, ...],
     asked: tuple[float, Knowledge | None],
 ) -> Compensation:
-    wanted = found.first
+    """``seen``: the run along the corrected path, and what was measured on the one along the wanted path."""
+    wanted, (led, gauge) = found.first, seen
     bound, known = asked
-    before, after = errors_of(wanted), errors_of(led)
+    before, after = errors_of(wanted, gauge), errors_of(led)
     if not after.max < before.max:
         raise CompensationError(
             f"The path is not corrected: {format_si(before.max, 'mm', 4)} would become "
@@ -253,12 +265,12 @@ def checked_components(components: Iterable[str]) -> tuple[str, ...]:
     return tuple(each for each in COMPONENTS if each in given)
 
 
-def check_trusted(run: SimulationResult) -> None:
-    """Raises CompensationError where the prediction itself is not to be trusted."""
+def check_trusted(run: SimulationResult, gauge: Gauge) -> None:
+    """Raises CompensationError where the prediction itself is not to be trusted, by what was measured on it."""
     errors = [finding for finding in run.setup.toolpath.findings if finding.level == "error"]
     if errors:
         raise CompensationError(f"The path is not corrected: {errors[0].sentence}")
-    verdict = run.verdict
+    verdict = judge(run, gauge)
     if verdict.level in ("unjudged", "unreached", "missed"):
         raise CompensationError(
             f"The path is not corrected, since its prediction is not to be trusted. {verdict.sentence}"
