@@ -35,7 +35,7 @@ class March:
     steeply the tool's end ``sinks`` (None: as the feed says). A step is met where
     it ends, in what was left before it; a step of no length that begins a cut at that place, ahead of which the next
     one goes. ``really`` (m, 3) m is where the tip goes, if not where it is told to: the chip stays that of the feed it
-    is told. Steps that are not finite or not at feed cut nothing. Steps are cut in the order of the path; ``meet`` and
+    is told, and where a cut begins elsewhere than the tip was, the link to there is cut first. Steps that are not finite or not at feed cut nothing. Steps are cut in the order of the path; ``meet`` and
     ``cut`` take their ends anew, ``run`` knows straight runs of them as one move.
     Raises SurfaceError for a cell size that does not fit and a tool axis too close to level.
     """
@@ -85,6 +85,11 @@ class March:
     def _at_start(self) -> BoolArray:
         """(n,) which of ``steps`` only begin a move."""
         return np.asarray(self._move[self.steps] != self.steps)
+
+    @cached_property
+    def _links(self) -> BoolArray:
+        """(n,) which of those bring the tip to another place all the same."""
+        return np.asarray(self._at_start & (self._ends[:, 3:] != self._ends[:, :3]).any(axis=1))
 
     @cached_property
     def _ends(self) -> FloatArray:
@@ -140,12 +145,13 @@ class March:
         move, axes, tool = self._move[self.steps], self._axes[1], self.tooling.of_step[self.steps]
         other = (axes[:-1] != axes[1:]).any(axis=1) | (tool[:-1] != tool[1:])
         begins = ((self._bends > STRAIGHT) | other) & (move[:-1] != move[1:])
+        begins |= self._links[1:] | self._links[:-1]
         return np.append(np.ones(min(len(move), 1), dtype=bool), begins)
 
     @cached_property
     def _stops(self) -> BoolArray:
         """(n,) bool: steps from whose end none goes on, round a ``CORNER`` at most, and covers their front."""
-        return np.append(self._bends > CORNER, np.ones(min(len(self.steps), 1), dtype=bool))
+        return np.append(self._bends > CORNER, np.ones(min(len(self.steps), 1), dtype=bool)) | self._links
 
     @cached_property
     def _bends(self) -> FloatArray:
@@ -300,6 +306,7 @@ class March:
             runs[0],
             runs[1].astype(np.int64),
             runs[2].astype(np.int64),
+            self._links[n].astype(np.int64),
         )
         march(world, room, steps, found, sectors, do)
         halves = np.empty((len(n), len(room.sectors), 4), dtype=np.float16)

@@ -50,7 +50,7 @@ HALF_BITS, HALF_BIAS = 13, (127 - 15) << 23  # fewer in its fraction than in sin
 class Steps(NamedTuple):
     """Steps of a path: ends (n, 6) m, then the tip (m), unit feed, axis of the tool and heading (see ``step_at``)
     where each is looked at (n, 3), how steeply it sinks for its end, the run it belongs to, whether it begins it and
-    whether nothing goes on from its end (n,)."""
+    whether nothing goes on from its end, and whether it is but a link to where a cut begins (n,)."""
 
     ends: Out2
     tip: Out2
@@ -61,6 +61,7 @@ class Steps(NamedTuple):
     run: OutInt1
     begins: OutInt1
     stops: OutInt1
+    links: OutInt1
 
 
 @part
@@ -266,13 +267,18 @@ def note_place(world: World, r: int, place: tuple[float, float, float]) -> None:
 @kernel
 def march(world: World, room: Room, steps: Steps, found: Out2, sectors: Singles2, do: tuple[bool, bool]) -> None:
     """Steps one after the other: ``do`` (meet, cut) them; what they meet goes to ``found`` (n, 8 e + 7), ``sectors``
-    (n, 4 s)."""
+    (n, 4 s). A link is cut, then the cut that begins at its end is met."""
     for n in range(len(steps.ends)):
         r, ends = steps.run[n], steps.ends[n]
+        links = do[0] and do[1] and steps.links[n] == 1
+        if links:
+            go_on(world.runs[r], ends, True)
+            cut_run(world, r, True)
         if do[0]:
-            step = step_at(steps.tip[n], steps.axis[n], steps.feed[n], steps.heading[n], (steps.sinks[n], r))
+            but = NOBODY if links else r
+            step = step_at(steps.tip[n], steps.axis[n], steps.feed[n], steps.heading[n], (steps.sinks[n], but))
             add_part(room, world, shape_of(world.runs[r]), step, found[n], sectors[n])
-        if do[1]:
+        if do[1] and not links:
             go_on(world.runs[r], ends, steps.begins[n] == 1)
             if n + 1 == len(steps.ends) or steps.begins[n + 1] == 1:
                 cut_run(world, r, steps.stops[n] == 1)

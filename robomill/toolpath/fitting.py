@@ -55,22 +55,48 @@ def _kept(f: FloatArray, q: FloatArray, bound: float) -> list[int]:
 def arc_pieces(f: FloatArray, q: FloatArray, plane: int, sweep: float, bound: float) -> list[Piece]:
     """Points of an arc that turns by ``sweep`` (rad) in a ``plane``: one arc where that holds, several or chords where
     those are fewer."""
-    pieces = _arcs(f, q, plane, sweep, bound)
+    arcs = _arcs(f, q, plane, sweep, bound)
     chords = straight_pieces(f, q, bound)
-    return chords if pieces is None or len(pieces) > len(chords) else pieces
+    return chords if len(arcs) > len(chords) else arcs
 
 
-def _arcs(f: FloatArray, q: FloatArray, plane: int, sweep: float, bound: float) -> list[Piece] | None:
-    """Arcs through the points, halved until they hold; None where too few points are left for one."""
-    if len(f) < FEWEST:
-        return None
-    found = _one_arc(f, q, plane, sweep * float(f[-1] - f[0]), bound)
-    if found is not None:
-        return [found]
-    middle = len(f) // 2
-    first = _arcs(f[: middle + 1], q[: middle + 1], plane, sweep, bound)
-    rest = None if first is None else _arcs(f[middle:], q[middle:], plane, sweep, bound)
-    return None if first is None or rest is None else first + rest
+def _arcs(f: FloatArray, q: FloatArray, plane: int, sweep: float, bound: float) -> list[Piece]:
+    """Arcs, each as long as it holds, and chords where none does."""
+    pieces: list[Piece] = []
+    begin, at, last = 0, 0, len(f) - 1
+    while at < last:
+        end, piece = _longest(f[at:], q[at:], plane, sweep, bound)
+        if piece is not None:
+            some = slice(begin, at + 1)
+            pieces += [*(straight_pieces(f[some], q[some], bound) if at > begin else []), piece]
+            begin = at + end
+        at += end
+    return pieces + (straight_pieces(f[begin:], q[begin:], bound) if last > begin else [])
+
+
+def _longest(f: FloatArray, q: FloatArray, plane: int, sweep: float, bound: float) -> tuple[int, Piece | None]:
+    """Up to which of the points the longest arc from the first one holds, and the arc; a step without one."""
+
+    def to(end: int) -> Piece | None:
+        some = slice(0, end + 1)
+        return _one_arc(f[some], q[some], plane, sweep * float(f[end] - f[0]), bound)
+
+    last = len(f) - 1
+    if last < FEWEST - 1:
+        return 1, None
+    whole = to(last)
+    if whole is not None:
+        return last, whole
+    low, high, found = 1, FEWEST - 1, None
+    while high < last and (piece := to(high)) is not None:
+        low, high, found = high, 2 * high, piece
+    high = min(high, last)
+    while found is not None and high - low > 1:
+        middle = (low + high) // 2
+        piece = to(middle)
+        low, high, found = (middle, high, piece) if piece is not None else (low, middle, found)
+    shorter = to(low - 1) if low == last - 1 and low > FEWEST - 1 else None  # two steps are left for another
+    return (low, found) if shorter is None else (low - 1, shorter)
 
 
 def _one_arc(f: FloatArray, q: FloatArray, plane: int, sweep: float, bound: float) -> Piece | None:

@@ -148,6 +148,22 @@ def test_arcs_stay_arcs_where_their_correction_is_even() -> None:
     assert found.lines_out < 12
 
 
+def test_a_full_circle_becomes_some_arcs_that_lie_where_they_are_meant() -> None:
+    """Its axial correction rises and falls by 0.25 mm on the way round, so one arc cannot do; read again, the arcs lie
+    on the corrected places."""
+    lines = ("G21 G90", "S12000 M3", "G0 X20 Y0 Z10", "G1 Z-2 F600", "G3 X20 Y0 I-20 J0 F1800", "G0 Z10", "M2")
+    found = rm.compensate(rm.load_setup("pocket_arcs").replace(source=rm.GCodeSource("\n".join(lines) + "\n", "c.nc")))
+    assert found.after.max < 0.01 * found.before.max
+    assert found.lines_out < 40
+    assert sum("I" in line for line in found.text.splitlines()) > 10
+    read = rm.read_gcode(found.text, chord_error=1e-7).p
+    meant = (found.wanted.path.p + found.c)[found.wanted.path.cutting]
+    way = np.diff(read, axis=0)
+    share = np.einsum("mni,ni->mn", meant[:, None] - read[:-1], way) / np.maximum((way**2).sum(axis=1), 1e-30)
+    nearest = read[:-1] + np.clip(share, 0.0, 1.0)[..., None] * way
+    assert np.linalg.norm(meant[:, None] - nearest, axis=2).min(axis=1).max() < 0.5e-6
+
+
 def test_paths_that_are_no_program_are_written_as_one() -> None:
     setup = rm.load_setup(SLOT)
     path = rm.Toolpath.from_points(p_mm=[[-50, 0, -2], [50, 0, -2]], feed_mm_min=1800)

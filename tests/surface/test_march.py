@@ -173,3 +173,17 @@ def test_a_path_keeps_only_the_cells_it_can_reach_and_meets_the_same(monkeypatch
     assert np.abs(of_all).max() > 0.0
     np.testing.assert_allclose(found, of_all, rtol=1e-9, atol=1e-15)
     np.testing.assert_array_equal(sectors, their_sectors)
+
+
+def test_a_link_to_where_a_cut_begins_is_cut_before_the_cut_is_met():
+    """A tool led 0.18 mm aside between two cuts meets what it meets where that way is a cut of its own."""
+    told = np.array([[-10, 0, -2], [5, 0, -2], [5, 0, -2], [5, -8, -2]]) * 1e-3
+    led = np.array([[-10, 0, -2], [5, 0, -2], [5.1, 0.15, -2], [5.1, -8, -2]]) * 1e-3
+    alone = np.array([[-10, 0, -2], [5, 0, -2], [5.1, 0.15, -2], [5.1, 0.15, -2], [5.1, -8, -2]]) * 1e-3
+    cutting = np.array([False, True, True, True])
+    found = engage(March(STOCK, 2e-4, TOOLS["flat"], told, cutting=cutting, really=led))
+    expected = engage(March(STOCK, 2e-4, TOOLS["flat"], alone, cutting=np.append(cutting, True)))
+    assert found.a_e[2] > 1e-4
+    for name in ("phi_st", "phi_ex", "a_p", "a_e"):
+        np.testing.assert_allclose(getattr(found, name)[2:], getattr(expected, name)[3:], rtol=1e-6)
+    np.testing.assert_allclose(found.part.moments[2:], expected.part.moments[3:], atol=1e-9)
