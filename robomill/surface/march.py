@@ -32,11 +32,12 @@ class March:
 
     The path gives feeds, axes and tools: entry i is the move p[i-1] -> p[i], k (3,) or (m, 3) unit tool axis (None:
     upright), cutting (m,) bool, ``way`` (m, 3) the unit feed at its end (None: that of the move), ``steep`` (m,) how
-    steeply the tool's end ``sinks`` (None: as the feed says). A step is met where
-    it ends, in what was left before it; a step of no length that begins a cut at that place, ahead of which the next
-    one goes. ``really`` (m, 3) m is where the tip goes, if not where it is told to: the chip stays that of the feed it
-    is told, and where a cut begins elsewhere than the tip was, the link to there is cut first. Steps that are not finite or not at feed cut nothing. Steps are cut in the order of the path; ``meet`` and
-    ``cut`` take their ends anew, ``run`` knows straight runs of them as one move.
+    steeply the tool's end ``sinks`` (None: as the feed says). A step is met where it ends, in what was left before it;
+    a step of no length that begins a cut at that place, ahead of which the next one goes. ``really`` (m, 3) m is where
+    the tip goes, if not where it is told to: the chip stays that of the feed it is told, and where a cut begins
+    elsewhere than the tip was, the link to there is cut first. Steps that are not finite or not at feed cut nothing.
+    Steps are cut in the order of the path; ``meet`` and ``cut`` take their ends anew, ``run`` knows straight runs of
+    them as one move.
     Raises SurfaceError for a cell size that does not fit and a tool axis too close to level.
     """
 
