@@ -28,7 +28,7 @@ def test_force_reaches_the_tiles(app: AppTest) -> None:
 @pytest.mark.parametrize(
     ("key", "value", "sentence"),
     [
-        ("tolerance:mm", 0.0, "Tolerance: found 0 mm; expected more than 0 mm."),
+        ("tolerance:mm", 0.0, "Tolerance: found 0 mm; expected more than 0 mm to 50 mm."),
         ("step:mm", -1.0, "Step along the path: found −1 mm; expected more than 0 mm."),
         ("cutter.diameter:mm", 0.0, "Cutter, Diameter: found 0 mm"),
         ("cutter.flutes", 0, "Cutter, Flutes: found 0"),
