@@ -383,10 +383,16 @@ def announce(say: Callable[[str], Any]) -> None:
     _announced.append(say)
 
 
-def _prepare() -> None:
-    if _announced and missing() and not _tried:
+def prepare() -> None:
+    """Build what is missing, aloud, before processes begin that would each compile it."""
+    if missing() and not _tried:
         _say()
         build()
+
+
+def _prepare() -> None:
+    if _announced:
+        prepare()
 
 
 def _say() -> None:

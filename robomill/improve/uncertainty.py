@@ -27,7 +27,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.units import format_percent
 
 MANY, FULL, MOST = 10_000, 200, 1_000_000  # draws: usual, usual where each is a run in full, and most
-CHECKED = 6  # draws that are run in full, too: those that use most of the tolerance
+CHECKED = 6  # draws that are run in full, too: those with the largest errors
 AGREES = 0.02  # of the tolerance: by how much these may differ
 NAMES = ("wall", "floor", "end", "feed", "tip")
 DIFFERS, REDRAWN, IN_FULL, OTHERS = "draws-differ", "draws-again", "draws-in-full", "other-compliances"
@@ -77,7 +77,7 @@ def uncertainty(
     Inputs are normal; compliances and coefficients that would change their sign are drawn again. Each draw is the cut
     run with those numbers, the joints solved anew. Exact in compliances, force components and coefficients per area or
     length; of second order in lengths and places, first in exponents; what a gauge reads moves with the tip. The draws
-    that use most of the tolerance are run in full besides (``checked``). What a length or the tool's length changes
+    with the largest errors are run in full besides (``checked``). What a length or the tool's length changes
     of where the tool stands, rather than of how much it gives, is taken up when the part is set up, and is not in it.
 
     Examples
@@ -104,7 +104,7 @@ def uncertainty(
     work = _Work(unsure, run, measure, expansion)
     errors = work.errors(change, "Draws")
     share = share_of(measure, setup, errors)
-    checked = work.checked(change, share)
+    checked = work.checked(change, errors, share)
     return Uncertainty(
         run=run,
         measure=measure,
@@ -180,20 +180,23 @@ class _Work:
         except RobomillError:
             return nothing
 
-    def checked(self, change: FloatArray, share: FloatArray) -> tuple[int, float]:
-        """Draws run in full, and by how much of the tolerance they differ at most from what was said of them."""
+    def checked(self, change: FloatArray, errors: Errors, share: FloatArray) -> tuple[int, float]:
+        """Draws run in full, and by how much of the tolerance an error differs at most from what was said of it."""
         if self.expansion is None:
             return 0, 0.0
+        names = ("wall", "floor", "tip") if self.measure == "verdict" else (self.measure,)
+        ends = [int(np.argmax(np.nan_to_num(errors[name]))) for name in names]
         worst = np.argsort(-np.nan_to_num(share), kind="stable")[:CHECKED]
-        told = change[worst].copy()
+        told = change[list(dict.fromkeys([*ends, *worst]))[:CHECKED]]
         told[:, self.unsure.named("springs", "model")] = 0.0  # which no set-up says
-        said = share_of(self.measure, self.unsure.setup, self.expansion.errors(told))
-        found = []
+        said, found = self.expansion.errors(told), []
         for i, each in enumerate(told):
             with step(i, len(told), "Draws in full"):
-                found.append({name: np.array(value) for name, value in self._in_full(each).items()})
-        full = np.array([share_of(self.measure, self.unsure.setup, each) for each in found])
-        return len(told), float(np.abs(np.nan_to_num(full - said, nan=np.inf)).max())
+                found.append(self._in_full(each))
+        differ = [
+            np.abs([each[name] for each in found] - said[name]) for name in names if np.isfinite(said[name]).all()
+        ]
+        return len(told), float(np.nan_to_num(differ, nan=np.inf).max() / self.unsure.setup.tolerance)
 
     def tornado(self, variance: float) -> Tornado:
         """Each input alone at the ends of its 95 % interval; its part of the variance by three points."""
@@ -224,8 +227,8 @@ def _findings(
     if checked[1] > AGREES:
         how = format_percent(checked[1]) if np.isfinite(checked[1]) else "all"
         text = (
-            f"Of {checked[0]} draws that were run in full, too, one differs by {how} of the tolerance: the spread is "
-            "too wide to be expanded, or what a gauge reads does not go with the tip. State less, or judge the tip."
+            f"Of {checked[0]} draws that were run in full, too, an error of wall, floor or tip differs by {how} of the "
+            "tolerance: the spread is too wide to be expanded, or what a gauge reads does not go with the tip there."
         )
         said.append(Finding("warning", text, code=DIFFERS))
     if again > AGREES:

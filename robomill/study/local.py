@@ -13,6 +13,7 @@ from contextlib import suppress
 from dataclasses import asdict
 from typing import IO, Any
 
+from robomill import compiled
 from robomill.study.point import Row, Task, failed
 
 ONE_THREAD = {f"{name}_NUM_THREADS": "1" for name in ("OMP", "OPENBLAS", "MKL", "NUMBA")}
@@ -32,6 +33,7 @@ def run_locally(
     """Rows as they come; None from time to time, for whoever wants to stop."""
     if not todo:
         return
+    compiled.prepare()
     open_: queue.SimpleQueue[int] = queue.SimpleQueue()
     for point in todo:
         open_.put(point)
@@ -116,7 +118,11 @@ class _Hand:
                 stdout=subprocess.PIPE,
                 text=True,
                 encoding="utf-8",
-                env={**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+                env={
+                    **os.environ,
+                    **ONE_THREAD,
+                    "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path),
+                },
                 start_new_session=True,  # Ctrl-C is for the one that writes down what is finished
             )
             source, _ = _pipes(self._process)

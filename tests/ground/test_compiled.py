@@ -366,3 +366,18 @@ for a, b in zip(few, many):
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert found.stdout.split() == ["False", "True"], found.stderr
     assert found.returncode == 0, found.stderr
+
+
+def test_processes_that_would_each_compile_wait_for_one_build_that_is_announced(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    said: list[str] = []
+    for name, value in (
+        ("missing", lambda: ("some.kernels",)),
+        ("build", lambda: said.append("built")),
+        ("_tried", False),
+        ("_announced", [said.append]),
+    ):
+        monkeypatch.setattr(compiled, name, value)
+    compiled.prepare()
+    assert said == [compiled.WORDS, "built"]

@@ -143,6 +143,17 @@ def test_draws_that_are_not_reached_do_not_keep_the_tolerance() -> None:
     assert found.quantile(1.0) == np.inf
 
 
+def test_walls_that_another_tool_has_made_are_said_to_be_off() -> None:
+    """They do not go with the tip: by up to 15 um of 0.5 mm, which the draws in full show."""
+    setup = rm.load_setup("two_tools").replace(step=4e-3, cell=4e-4)
+    found = rm.uncertainty(setup, samples=400)
+    worst = int(np.argmax(found.wall))
+    run = by_hand(setup, {each.key: each.value + found.change[worst, i] for i, each in enumerate(found.inputs)})
+    differs = abs(abs(run.verdict.wall.value) - found.wall[worst])
+    assert differs > 1e-6
+    assert found.checked[1] >= differs / setup.tolerance * 0.999
+
+
 def test_the_same_seed_gives_the_same_numbers_and_another_others() -> None:
     one, again, other = (rm.uncertainty(slot(), samples=50, seed=seed) for seed in (1, 1, 2))
     assert one == again
