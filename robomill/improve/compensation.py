@@ -24,6 +24,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.verdict import judge
+from robomill.simulation.verdict_words import Level
 from robomill.toolpath.source import GCodeSource
 from robomill.units import format_count, format_si, from_si, to_si
 from robomill.values import Tabled, Value
@@ -77,6 +78,11 @@ class Errors(Value):
 def measured(run: SimulationResult) -> Gauge:
     """What a gauge reads on a run, of a long one at ``MEASURED`` of its samples and those that are most off."""
     return run.gauge if int(run.judged.sum()) <= MEASURED else gauge_at(run, MEASURED)
+
+
+def level_of(run: SimulationResult) -> Level:
+    """The verdict's level by what was ``measured`` on a run."""
+    return judge(run, measured(run)).level
 
 
 def errors_of(run: SimulationResult, gauge: Gauge | None = None) -> Errors:

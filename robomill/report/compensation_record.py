@@ -3,7 +3,7 @@
 from typing import Any
 
 from robomill import __version__
-from robomill.improve.compensation import Compensation, Errors, reversals
+from robomill.improve.compensation import Compensation, Errors, level_of, reversals
 from robomill.report.records import shown
 from robomill.simulation.assumptions import assumed_of_setup
 from robomill.units import format_count, format_value
@@ -29,7 +29,7 @@ def compensation_record(found: Compensation) -> dict[str, Any]:
         "lines_out": found.lines_out,
         "unrolled": list(found.unrolled),
         "reversals": {"before": reversals(found.wanted), "after": reversals(found.led)},
-        "verdict": {"before": found.wanted.verdict.level, "after": found.led.verdict.level},
+        "verdict": {"before": level_of(found.wanted), "after": level_of(found.led)},
         "findings": [finding.record() for finding in found.findings],
         "assumed": [each.record() for each in assumed_of_setup(found.setup)],
         "digest": found.digest(),
