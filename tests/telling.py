@@ -13,10 +13,10 @@ from robomill.progress import Progress, watched
 class _Listener(Progress):
     heard: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
 
-    def reach(self, share: float | None = None, stage: str = "") -> None:
+    def reach(self, share: float | None = None, stage: str = "", beside: str = "") -> None:
         if share is not None:
             self.heard[stage].append(share)
-        super().reach(share, stage)
+        super().reach(share, stage, beside)
 
 
 def told(work: Callable[[], object]) -> dict[str, list[float]]:
