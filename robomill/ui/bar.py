@@ -18,6 +18,7 @@ from robomill.ui.pieces import Tile
 from robomill.units import format_beside, format_limit, format_share, format_si
 
 ENDS_AT, MOST = 1.25, 6.0  # of the tolerance: where the gauge ends, where it ends at most
+ROOM_FOR_ZERO = 35.0  # % of the track: where the tolerance lies nearer, its number stands alone
 MILLING = "pages/6_Milling.py"
 
 
@@ -130,11 +131,13 @@ def _gauge(found: Verdict | None, unit: str) -> Html:
     ends = min(max(ENDS_AT, 1.05 * found.share), MOST)
     at = 100 * min(found.share, ends) / ends
     tight, full = (100 * each / ends for each in (TIGHT_FROM, 1.0))
+    zero = "0" if full > ROOM_FOR_ZERO else ""
     return Html(
         f'<div class="rm-gauge" role="meter" aria-label="{html.escape(said, quote=True)}" '
         f'title="{html.escape(said, quote=True)}" aria-valuemin="0" aria-valuemax="{100 * ends:.0f}" '
         f'aria-valuenow="{100 * min(found.share, ends):.0f}">'
         f'<div class="rm-track" style="--tight:{tight:.1f}%;--full:{full:.1f}%"><i style="width:{at:.1f}%"></i>'
         f'<b style="left:{at:.1f}%"></b></div>'
-        f'<div class="rm-scale"><span>0</span><span style="left:{full:.1f}%">{html.escape(allowed)}</span></div></div>'
+        f'<div class="rm-scale"><span>{zero}</span>'
+        f'<span style="left:{full:.1f}%">{html.escape(allowed)}</span></div></div>'
     )

@@ -39,8 +39,9 @@ def places_map(
                 "symbol": "star" if name == "best" else "circle-open",
                 "size": 15,
                 "color": "#FFFFFF",
-                "line": {"width": 2.5, "color": "#FFFFFF"},
+                "line": {"width": 2, "color": "#0B1C28" if name == "best" else "#FFFFFF"},
             },
+            cliponaxis=False,
             hovertemplate=f"{name}<br>X %{{x:.0f}}, Y %{{y:.0f}} {unit}<extra></extra>",
         )
         _named(fig, name, at_x, at_y, yshift=18)

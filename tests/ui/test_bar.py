@@ -125,3 +125,11 @@ def test_the_force_of_a_material_that_somebody_said_is_computed_not_typed() -> N
     plain = preset_setup("paper_flute")
     typed = plain.replace(provenance={**plain.provenance, "force": Provenance("user", "entered in the app")})
     assert "rm-badge rm-user" in shown(typed)
+
+
+def test_zero_and_tolerance_do_not_stand_on_each_other(setup: SimulationSetup) -> None:
+    scale = r'<div class="rm-scale"><span>(.*?)</span><span style="left:([\d.]+)%">'
+    for tolerance, zero in ((0.3e-3, "0"), (0.05e-3, "")):
+        found = re.search(scale, shown(setup.replace(tolerance=tolerance)))
+        assert found is not None
+        assert found[1] == zero, f"the tolerance stands at {found[2]} % of the track"

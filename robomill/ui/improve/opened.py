@@ -158,7 +158,7 @@ def _placed(found: Placement, left: Left, result: SimulationResult, unit: str) -
         pieces.strong("Where the part lies")
         _places({"now": found.now, "best": found.best, "median": found.median, "worst": found.worst}, unit)
         pieces.note(
-            f"Best at X, Y, Z {format_many(found.best.zero, unit, 1 if unit == 'mm' else 3)}, turned by "
+            f"Best at X, Y, Z {format_many(found.best.zero, unit, 1)}, turned by "
             f"{format_si(found.best.yaw, 'deg', 1)}. {format_count(found.tried, 'place')} looked at, "
             f"{format_count(found.reached)} within reach, {format_count(found.allowed)} with room to limits and away "
             "from singular configurations."

@@ -180,7 +180,7 @@ def _of_place(found: Placement, now: SimulationResult, unit: str) -> Left:
     far = best.zero - now.setup.T_MW[:3, 3]
     error = error_at(best, unit)
     better = best.share < now.verdict.share - LEAST
-    cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0 if unit == 'mm' else 2)}"
+    cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0)}"
     turn = best.yaw - found.now.yaw
     cost += f", turned by {format_si(turn, 'deg', 0)}" if abs(turn) > TURNED else ""
     cost = cost if better else "no place is better than where it lies"
