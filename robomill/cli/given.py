@@ -81,16 +81,17 @@ def setup(name: str, allow_outside: bool) -> Any:
     return setup_from_toml(text, CALLED, Beside(Path.cwd(), allow_outside))
 
 
-def study(name: str) -> Any:
+def study(name: str, allow_outside: bool) -> Any:
     """The study of a sample, a file, or standard input, which names a set-up in the folder in which one stands."""
     from robomill.errors import StudyError
+    from robomill.io.beside import Beside
     from robomill.io.texts import read_text
     from robomill.study.described import load_study, study_from_toml
 
     if name != STDIN:
-        return load_study(name)
+        return load_study(name, allow_outside)
     text, _ = read_text(stdin(STUDY, StudyError), StudyError, STUDY, CALLED)
-    return study_from_toml(text, CALLED, Path.cwd())
+    return study_from_toml(text, CALLED, Beside(Path.cwd(), allow_outside))
 
 
 def program(name: str) -> Path | bytes:

@@ -247,8 +247,12 @@ def _identify_options(fit: argparse.ArgumentParser) -> None:
 
 def _setup(sub: argparse.ArgumentParser) -> None:
     _named(sub, "setup", "a set-up (.toml), its folder, a sample's name, or - for standard input", "set-up")
+    _outside(sub, "the set-up")
+
+
+def _outside(sub: argparse.ArgumentParser, what: str) -> None:
     sub.add_argument(
-        "--allow-outside", action="store_true", help="let the set-up name files that are not in its own folder or below"
+        "--allow-outside", action="store_true", help=f"let {what} name files that are not in its own folder or below"
     )
 
 
@@ -317,6 +321,7 @@ def _simulate_options(run: argparse.ArgumentParser) -> None:
 
 def _study_options(run: argparse.ArgumentParser) -> None:
     _named(run, "study", "a study (.toml), or a sample's name", "study")
+    _outside(run, "the study")
     run.add_argument(
         "--out", required=True, metavar="DIR", help="keep its points there; where some are there already, go on"
     )

@@ -18,7 +18,7 @@ def run_study(arguments: Any) -> int:
     absent = missing("A study", "study", "pyarrow")
     if absent is not None:
         raise absent
-    study = given.study(arguments.study)
+    study = given.study(arguments.study, arguments.allow_outside)
     place = Path(arguments.out) / RESULTS
     files = Written.before([place])
     try:

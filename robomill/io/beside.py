@@ -34,7 +34,7 @@ class Beside:
             )
         if not named.isprintable():
             raise table.refuse(key, f"{named!r:.80} is no name of a file. {PATHS}")
-        place = self._place(self.folder, named)
+        place = self.place(self.folder, named)
         if place is None:
             raise table.refuse(
                 key,
@@ -46,8 +46,8 @@ class Beside:
         except RobomillError as exc:
             raise table.refuse(key, str(exc)) from None
 
-    def _place(self, folder: Path, named: str) -> Path | None:
-        """Where the file is, links followed; None where it may not be."""
+    def place(self, folder: Path, named: str) -> Path | None:
+        """Where a file named in ``folder`` is, links followed; None where it may not be."""
         if "\0" in named or Path(named).drive not in ("", folder.drive):  # another machine is not even asked
             return None
         roots = [Path(os.path.realpath(root)) for root in (folder, samples_dir())]

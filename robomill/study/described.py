@@ -10,8 +10,9 @@ from typing import Any
 
 from robomill.arguments import asked
 from robomill.arrays import digest
-from robomill.errors import ProjectError, RobomillError, StudyError
+from robomill.errors import RobomillError, StudyError
 from robomill.files import STUDY
+from robomill.io.beside import ALLOW, Beside
 from robomill.io.projects import load_setup
 from robomill.io.samples import find_sample, sample_or_file
 from robomill.io.tables import Table, parse_toml
@@ -81,13 +82,15 @@ class Study(Value):
 
 
 @asked
-def load_study(study: str | Path | Mapping[str, Any]) -> Study:
+def load_study(study: str | Path | Mapping[str, Any], allow_outside: bool = False) -> Study:
     """A study from its TOML file.
 
     Parameters
     ----------
     study : str, Path or mapping
         The file, or a sample's name; or what stands in it, as a mapping, in which ``setup`` may be a set-up itself.
+    allow_outside : bool
+        Whether a file may name a set-up, and that one files, that lie neither in its own folder nor below.
 
     Returns
     -------
@@ -116,22 +119,22 @@ def load_study(study: str | Path | Mapping[str, Any]) -> Study:
     ['robot.joint[2].a_mm', 'part.zero_mm[2]']
     """
     if isinstance(study, Mapping):
-        return _read(Table(dict(study), "study", StudyError), Path.cwd())
+        return _read(Table(dict(study), "study", StudyError), Beside(Path.cwd(), outside=True))
     file = sample_or_file("study", study, StudyError)
     text, _ = read_text(file, StudyError, STUDY)
-    return study_from_toml(text, file.name, file.parent)
+    return study_from_toml(text, file.name, Beside(file.parent, allow_outside))
 
 
-def study_from_toml(text: str, where: str, folder: Path) -> Study:
-    """A study from TOML text; its set-up lies in ``folder`` or below, or is a sample."""
-    return _read(Table(parse_toml(text, where, StudyError), where, StudyError), folder)
+def study_from_toml(text: str, where: str, beside: Beside) -> Study:
+    """A study from TOML text; its set-up lies where ``beside`` allows, or is a sample."""
+    return _read(Table(parse_toml(text, where, StudyError), where, StudyError), beside)
 
 
-def _read(top: Table, folder: Path) -> Study:
+def _read(top: Table, beside: Beside) -> Study:
     found = top.text("format", FORMAT), top.whole("version", VERSION)
     if found != (FORMAT, VERSION):
         raise top.refuse("format", f"expected {FORMAT!r}, version {VERSION}; found {found[0]!r:.40}, {found[1]}.")
-    setup, called = _setup(top, folder)
+    setup, called = _setup(top, beside)
     design = top.table("design", {})
     kind: Any = design.choice("kind", KINDS, "grid")
     count = 0 if kind == "grid" else design.whole("points", COUNT)
@@ -159,17 +162,21 @@ def _read(top: Table, folder: Path) -> Study:
     return made
 
 
-def _setup(top: Table, folder: Path) -> tuple[SimulationSetup, str]:
+def _setup(top: Table, beside: Beside) -> tuple[SimulationSetup, str]:
     """The set-up, by a sample's name or a file beside the study, and what it is called."""
     if isinstance(top.data.get("setup"), SimulationSetup):
         top.asked.add("setup")
         return top.data["setup"], top.data["setup"].name
     named = top.text("setup")
-    beside = folder / named
+    place = beside.place(beside.folder or Path.cwd(), named)
+    sample = place is None or not place.exists()
+    if sample and find_sample("set-up", named) is None:
+        what = "neither a file beside the study nor a sample."
+        if place is None:
+            what = f"not in the folder of the study nor below it; bring it there, or allow it with {ALLOW}."
+        raise top.refuse("setup", f"{named!r:.80} is {what}")
     try:
-        if not beside.exists() and find_sample("set-up", named) is None:
-            raise ProjectError(f"{named!r:.80} is neither a file beside the study nor a sample.")
-        return load_setup(beside if beside.exists() else named), Path(named).stem
+        return load_setup(named if sample or place is None else place, beside.outside), Path(named).stem
     except RobomillError as refused:
         raise top.refuse("setup", str(refused)) from None
 

@@ -64,3 +64,18 @@ def test_what_is_wrong_is_named(given: dict, words: str) -> None:
 def test_a_file_that_is_not_there_is_refused() -> None:
     with pytest.raises(StudyError, match="cannot be opened"):
         rm.load_study("nowhere/study.toml")
+
+
+def test_a_study_reaches_its_own_folder_and_below(tmp_path: Path) -> None:
+    """As a set-up does: what lies elsewhere is not even looked for, unless that is allowed."""
+    rm.write_setup(tmp_path / "other.toml", rm.load_setup("paper_flute"))
+    (tmp_path / "study").mkdir()
+    place = tmp_path / "study" / "study.toml"
+    head = 'format = "robomill-study"\nversion = 1\n'
+    rest = '[parameters."part.zero_mm[2]"]\nvalues = [-1300.0]\n'
+    for named in ("../other.toml", str(tmp_path / "other.toml"), "../missing.toml"):
+        place.write_text(f"{head}setup = {named!r}\n{rest}", encoding="utf-8")
+        with pytest.raises(StudyError, match="not in the folder of the study nor below it"):
+            rm.load_study(place)
+    place.write_text(f"{head}setup = '../other.toml'\n{rest}", encoding="utf-8")
+    assert rm.load_study(place, allow_outside=True).setup == rm.load_setup(tmp_path / "other.toml")
