@@ -149,7 +149,8 @@ class Kernel:
         """Compiled or loaded. An entry of the cache that is not as it was written is removed and made again."""
         from numba import config
 
-        _prepare()
+        if _announced:
+            prepare()
         folder = kept_in()
         if folder is None or not _kept:
             return _compile(self.plain, keep=False)
@@ -388,11 +389,6 @@ def prepare() -> None:
     if missing() and not _tried:
         _say()
         build()
-
-
-def _prepare() -> None:
-    if _announced:
-        prepare()
 
 
 def _say() -> None:
