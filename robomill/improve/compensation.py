@@ -281,6 +281,12 @@ def check_trusted(run: SimulationResult, gauge: Gauge) -> None:
         raise CompensationError(
             f"The path is not corrected, since its prediction is not to be trusted. {verdict.sentence}"
         )
+    if run.coupling is not None and not run.coupling.converged:
+        lines = run.coupling.lines
+        raise CompensationError(
+            f"The path is not corrected: force and deflection do not agree at {run.path.block_name} {lines[0]}"
+            f"{f' and {len(lines) - 1} more' if len(lines) > 1 else ''}; cut less at once, or with a stiffer arm."
+        )
 
 
 def check_found(found: Correction, wanted: SimulationResult) -> None:

@@ -254,3 +254,11 @@ def test_a_bound_that_no_program_keeps_is_refused(bound_um: float) -> None:
 def test_joints_that_turn_back_are_counted(slot: Compensation) -> None:
     """Along a straight slot in front of the arm only joints that see its middle turn back, once each."""
     assert 0 < reversals(slot.wanted) <= slot.setup.robot.n
+
+
+def test_a_path_on_which_force_and_deflection_do_not_agree_is_refused() -> None:
+    """An arm twelve times softer: at some places no deflection answers to its own force."""
+    setup = rm.load_setup(SLOT / "setup_process.toml")
+    soft = setup.robot.replace(C_theta=12.0 * setup.robot.C_theta)
+    with pytest.raises(CompensationError, match="force and deflection do not agree at line"):
+        rm.compensate(setup.replace(robot=soft, coupling=True, step_mm=5.0, cell_mm=0.4))
