@@ -124,7 +124,7 @@ class CutConditions:
     @property
     def sinks(self) -> FloatArray:
         """(m,) how steeply the end of the tool sinks, 0 to 1."""
-        return sinks(self.along) if self.steep is None else self.steep
+        return sealed(sinks(self.along) if self.steep is None else self.steep)
 
     def f_z(self, flutes: ArrayLike) -> FloatArray:
         """Feed per tooth (m,) m: v_f / (n_s flutes); 0 outside the material, NaN where the speed is not known.

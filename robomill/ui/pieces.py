@@ -121,15 +121,15 @@ def table(rows: Sequence[Sequence[str]], kinds: str, head: Sequence[str] = (), s
     titled = "w" in kinds and all(head)
     named = [f' data-title="{html.escape(title, quote=True)}"' if titled else "" for title in head or kinds]
 
-    def row(tag: str, cells: Sequence[str], style: str = "") -> str:
+    def row(tag: str, cells: Sequence[str], titles: Sequence[str], style: str = "") -> str:
         inner = "".join(
             f'<{tag if cell else "td"} class="{kind}"{title}>{as_html(cell)}</{tag if cell else "td"}>'
-            for kind, title, cell in zip(kinds, named, cells, strict=True)
+            for kind, title, cell in zip(kinds, titles, cells, strict=True)
         )
         return f"<tr{style}>{inner}</tr>"
 
-    body = "".join(row("td", cells, ' class="rm-strong"' if i == strong else "") for i, cells in enumerate(rows))
-    top = row("th", head) if head else ""
+    body = "".join(row("td", cells, named, ' class="rm-strong"' if i == strong else "") for i, cells in enumerate(rows))
+    top = row("th", head, [""] * len(head)) if head else ""
     remarks = " rm-remarks" if kinds[0] == "q" and kinds[-1] == " " else " rm-titled" if titled else ""
     st.html(f'<div class="rm-wide"><table class="rm-facts{remarks}">{top}{body}</table></div>')
 

@@ -57,7 +57,7 @@ def test_what_is_too_large_is_refused_with_what_fits_and_that_fits(monkeypatch: 
 
     monkeypatch.setenv(budgets.PLACE, "2")
     setup = rm.load_setup("samples/paper_flute")
-    with pytest.raises(RobomillError, match=r"0\.0120 mm needs .* million cells") as refused:
+    with pytest.raises(RobomillError, match=r"0\.012 mm needs .* million cells") as refused:
         setup.replace(cell=0.012e-3)
     fits = to_si(float(str(refused.value).split("so use ")[1].split(" mm")[0]), "mm")
     cells = stock_grid(setup.stock_block, fits)
