@@ -7,14 +7,15 @@ import signal
 import sys
 from types import FrameType
 
+from robomill.console import heard
+
 INTERRUPTED, CRASHED = 130, 70
 DEBUG = "ROBOMILL_DEBUG"
-_heard: list[int] = []  # signals that came in, whatever became of their exceptions on the way
 
 
 def main() -> int:
     """Run the command line; returns the exit code, also of whoever interrupts while it loads, and of a crash."""
-    _heard.clear()
+    heard.clear()
     signal.signal(signal.SIGINT, _interrupt)
     try:
         code = _run()
@@ -22,14 +23,16 @@ def main() -> int:
         code = INTERRUPTED
     except Exception as exc:
         code = CRASHED
-        if not _heard:  # some libraries make another exception of an interrupt
+        if not heard:  # some libraries make another exception of an interrupt
             _tell(exc)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is done or given up: nothing is left to be interrupted
-    return INTERRUPTED if _heard else code
+    code = INTERRUPTED if heard else code
+    heard.clear()
+    return code
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
-    _heard.append(number)
+    heard.append(number)
     raise KeyboardInterrupt
 
 

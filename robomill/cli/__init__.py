@@ -9,7 +9,7 @@ import sys
 from collections.abc import Sequence
 
 from robomill.cli.parser import make_parser
-from robomill.console import refuse
+from robomill.console import heard, refuse
 from robomill.errors import RobomillError
 
 # Values of these options may begin with a minus ("-90,0,0"), which argparse would take for an option.
@@ -55,7 +55,7 @@ def _run(words: Sequence[str]) -> int:
     try:
         with (
             units_beside(OPTIONS),
-            watched(Progress(say=line.say)),
+            watched(Progress(stop=lambda: bool(heard), say=line.say)),
         ):  # unwatched, work would not stop for Ctrl-C before it is done
             code: int = arguments.run(arguments)
     finally:

@@ -409,9 +409,9 @@ def test_ctrl_c_in_the_midst_of_a_run_ends_it_with_130_and_one_line(tmp_path) ->
     text = (folder / "setup_process.toml").read_text()
     setup = folder / "long.toml"
     setup.write_text(text.replace("step_mm = 1.0", "step_mm = 0.002\ncoupling = true"))
-    code = "import sys; from robomill.cli import main; sys.exit(main(['simulate', sys.argv[1]]))"
+    command = [sys.executable, "-m", "robomill", "simulate", str(setup)]
     leader, terminal = pty.openpty()
-    process = subprocess.Popen([sys.executable, "-c", code, str(setup)], stdout=subprocess.PIPE, stderr=terminal)
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=terminal)
     os.close(terminal)
     said = b""
     while b"step by step: " not in said and process.poll() is None:

@@ -15,6 +15,7 @@ import pytest
 
 from robomill import __main__, cli, console
 from robomill.errors import RobomillError
+from robomill.progress import checkpoint
 
 POSE = ["pose", "slavkovic_5r", "--theta-deg", "0,0,0,0,0"]
 
@@ -67,6 +68,25 @@ def test_an_interrupt_that_a_library_makes_something_else_of_stays_one(monkeypat
         return 0
 
     monkeypatch.setattr(cli, "main", run)
+    assert __main__.main() == 130
+    assert capsys.readouterr().err == ""
+
+
+def test_an_interrupt_that_gets_lost_ends_the_work_at_its_next_step(monkeypatch, capsys) -> None:
+    """Python drops what is raised while it clears away: here, in a finalizer."""
+
+    class Gone:
+        def __del__(self) -> None:
+            signal.raise_signal(signal.SIGINT)
+
+    def run(arguments: object) -> int:
+        Gone()
+        checkpoint()
+        pytest.fail("the work went on")
+
+    monkeypatch.setattr("sys.unraisablehook", lambda lost: None)
+    monkeypatch.setattr("robomill.cli.verbs.run_robots", run)
+    monkeypatch.setattr(sys, "argv", ["robomill", "robots"])
     assert __main__.main() == 130
     assert capsys.readouterr().err == ""
 
