@@ -3,11 +3,12 @@
 Exit codes beside those of the verbs: 130 interrupted at any time, 70 a mistake of robomill's own (``EX_SOFTWARE``).
 """
 
+import os
 import signal
 import sys
 from types import FrameType
 
-from robomill.console import heard
+from robomill.interrupts import heard
 
 INTERRUPTED, CRASHED = 130, 70
 DEBUG = "ROBOMILL_DEBUG"
@@ -57,7 +58,6 @@ def _run() -> int:
 
 def _tell(exc: Exception) -> None:
     """A sentence for whoever sees it, and the details in a file, or shown where that is asked for."""
-    import os
     import tempfile
     import traceback
 
@@ -82,4 +82,7 @@ def _tell(exc: Exception) -> None:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    left = main()
+    if left == INTERRUPTED:  # Python would end itself by the signal where it came in the midst of an import in C
+        os._exit(left)
+    raise SystemExit(left)

@@ -379,9 +379,9 @@ def compile_all() -> None:
         seals.finish(folder, modules())
 
 
-def announce(say: Callable[[str], Any]) -> None:
+def announce(say: Callable[[str], Any] | None) -> None:
     """From now on the first kernel that is needed and missing has ``say(WORDS)`` called, then all are built."""
-    _announced.append(say)
+    _announced[:] = [] if say is None else [say]
 
 
 def prepare() -> None:

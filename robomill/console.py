@@ -13,7 +13,6 @@ from typing import Any, TextIO
 
 from robomill.errors import RobomillError
 
-heard: list[int] = []  # signals of whoever wants it to end, whatever became of their exceptions on the way
 SPELLING = "robomill"
 # Handlers that somebody chose (PYTHONIOENCODING=ascii:replace) stay; those that Python chooses itself do not.
 OF_PYTHON = ("strict", "surrogateescape", "backslashreplace")

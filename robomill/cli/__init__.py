@@ -9,8 +9,9 @@ import sys
 from collections.abc import Sequence
 
 from robomill.cli.parser import make_parser
-from robomill.console import heard, refuse
+from robomill.console import refuse
 from robomill.errors import RobomillError
+from robomill.interrupts import heard
 
 # Values of these options may begin with a minus ("-90,0,0"), which argparse would take for an option.
 SIGNED = ("--theta-deg", "--pose", "--x", "--y", "--z", "--a-deg", "--b-deg", "--yaw", "--keep-out")
@@ -59,6 +60,7 @@ def _run(words: Sequence[str]) -> int:
         ):  # unwatched, work would not stop for Ctrl-C before it is done
             code: int = arguments.run(arguments)
     finally:
+        compiled.announce(None)
         line.clear()
     return code
 

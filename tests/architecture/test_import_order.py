@@ -30,6 +30,7 @@ STOREYS = [
         "files",
         "compiled",
         "console",
+        "interrupts",
         "provenance",
         "quantities",
         "spelled",
