@@ -94,6 +94,10 @@ class WorkspaceError(RobomillError):
     """A grid or map that cannot be computed."""
 
 
+class LearnError(RobomillError):
+    """A student number, an exercise or a file of answers that cannot be used."""
+
+
 class ProjectError(RobomillError):
     """A project file that cannot be opened."""
 

@@ -46,7 +46,7 @@ STOREYS = [
     {"simulation"},
     {"improve"},
     {"report", "viz", "io"},
-    {"study"},
+    {"study", "learn"},
     {"ui"},
     {"cli"},
     {"__main__"},

@@ -1,0 +1,56 @@
+"""An exercise as data: what is asked, the answer, how near is right, and what usual slips would give instead."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from robomill.units import unit_label
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A usual mistake: the ``value`` (SI) that it leads to, and the sentence that names it."""
+
+    says: str
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
+class Exercise:
+    """An exercise with one student's numbers.
+
+    ``answer`` is in SI, asked for in ``unit`` (a key of ``robomill.units.UNITS``); right is what lies within
+    ``tolerance`` of it, a share of its size (0: that number alone). ``equation`` is TeX, ``number`` its number in the
+    paper. ``data`` are columns of readings where there are some. ``seed`` names what its numbers are drawn from.
+
+    Examples
+    --------
+    >>> from robomill import learn
+    >>> given = learn.exercise("tip", 1234567)
+    >>> given.unit, given.number, len(given.hints)
+    ('mm', '(15), (16)', 3)
+    """
+
+    id: str
+    title: str
+    text: str
+    seed: str
+    unit: str
+    tolerance: float
+    hints: tuple[str, ...]
+    equation: str
+    number: str
+    answer: float = field(repr=False)
+    slips: tuple[Slip, ...] = field(repr=False)
+    data: Mapping[str, tuple[float, ...]] = field(default_factory=dict, repr=False)
+
+    @property
+    def asked(self) -> str:
+        """The unit of the answer as people read it; a word where there is none."""
+        return unit_label(self.unit) or "a number"
+
+    def holds(self, value: float, other: float | None = None) -> bool:
+        """Whether a value (SI) is the answer, or the ``other`` value, within the tolerance."""
+        wanted = self.answer if other is None else other
+        return abs(value - wanted) <= max(self.tolerance, 1e-9) * abs(wanted)
