@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 from types import FrameType
+from typing import NoReturn
 
 from robomill.interrupts import heard
 
@@ -81,8 +82,13 @@ def _tell(exc: Exception) -> None:
         refuse(f"this is a mistake of robomill's own ({type(exc).__name__}), not of what you gave it. {where}")
 
 
+def leave() -> NoReturn:
+    """The process of the command line, to its end."""
+    code = main()
+    if code == INTERRUPTED:  # Python would end itself by the signal where it came in the midst of an import in C
+        os._exit(code)
+    raise SystemExit(code)
+
+
 if __name__ == "__main__":
-    left = main()
-    if left == INTERRUPTED:  # Python would end itself by the signal where it came in the midst of an import in C
-        os._exit(left)
-    raise SystemExit(left)
+    leave()

@@ -24,6 +24,8 @@ from robomill.viz.render_queue import RenderQueue
 from robomill.viz.worker import NO_OPENGL, RenderWorker
 
 ROOT = Path(__file__).resolve().parents[2]
+PAGES = ("app", *sorted(file.stem for file in (ROOT / "pages").glob("[0-9]_*.py")))
+"""Every page, the start page first."""
 
 
 class NoPictures(RenderWorker):

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Grid, errors, go, number, store, words
+from conftest import PAGES, Grid, errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
 import robomill as rm
@@ -17,17 +17,6 @@ from robomill.robot.model import Robot
 from robomill.ui import beside
 from robomill.ui.project import project_from_toml, project_to_toml
 
-PAGES = [
-    "1_Robot",
-    "2_Workspace",
-    "3_Compliance",
-    "4_Identification",
-    "5_Toolpath",
-    "6_Milling",
-    "7_Improve",
-    "8_Learn",
-    "app",
-]
 # ABB's public description of an IRB 120: origin of each joint in its parent link, m, and its axis.
 IRB_120: list[Any] = [
     ((0.0, 0.0, 0.0), (0, 0, 1), (-2.87979, 2.87979)),

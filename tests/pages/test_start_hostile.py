@@ -6,7 +6,7 @@ import html
 import re
 
 import pytest
-from conftest import errors, go, store, words
+from conftest import PAGES, errors, go, store, words
 from streamlit import config
 from streamlit.testing.v1 import AppTest
 
@@ -18,17 +18,6 @@ from robomill.ui.shell import _open
 HOSTILE = (
     "<style>*{display:none}</style><img src='http://foreign.example/x.png'>![x](http://foreign.example/y.png)"
     "[a](javascript:b) $\\LaTeX$ :red[c] `d` | **e**"
-)
-PAGES = (
-    "app",
-    "1_Robot",
-    "2_Workspace",
-    "3_Compliance",
-    "4_Identification",
-    "5_Toolpath",
-    "6_Milling",
-    "7_Improve",
-    "8_Learn",
 )
 OURS = re.compile(
     r"</?(?:style|h1|h2|i|b|p|div|span|small|sub|sup|table|tr|td|th|br|details|summary|svg|g|path|circle|text)\b[^<>]*>"

@@ -7,20 +7,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from conftest import go
+from conftest import PAGES, go
 from streamlit.testing.v1 import AppTest
 
-PAGES = (
-    "1_Robot",
-    "4_Identification",
-    "8_Learn",
-    "2_Workspace",
-    "3_Compliance",
-    "app",
-    "5_Toolpath",
-    "6_Milling",
-    "7_Improve",
-)
 METRIC = re.compile(r"(?<![\w_])(?:[µμ]m|mm|cm|m)(?:[²³]|/N|/min|/s|/tooth)?(?![\w'’_=])|(?<=\d)mm\b|/mm")
 SOURCES = re.compile(r'<span class="rm-badge.*?(?:</td>|</p>)', re.DOTALL)  # who says a number, in that one's own words
 KEPT = re.compile(  # torque, what a program is written in, units to choose from, and the program's own text
