@@ -288,6 +288,24 @@ WORDS: dict[str, dict[str, str]] = {
         "reasons": "Why points failed, the most frequent five: `count` and `reason`.",
         "digest": "Fingerprint of the study and all of its rows.",
     },
+    "grade": {
+        "of": "The most that all exercises together earn.",
+        "marked": "Files that have marks.",
+        "unmarked": "Files that have none, for the reason that stands in their remarks.",
+        "mean": "The mean of the totals.",
+        "rows[].file": "The file in its folder.",
+        "rows[].student": "The student number in it.",
+        "rows[].name": "The student's name.",
+        "rows[].robot": "The robot whose exercises they are.",
+        "rows[].total": "The sum of the marks; null where the file cannot be marked.",
+        "rows[].exercises[].id": "Which exercise.",
+        "rows[].exercises[].kind": "`right`, `sign`, `unit`, `slip` (a mistake with a name), `wrong`, `unread` or "
+        "`missing`.",
+        "rows[].exercises[].marks": "What it earns: 2 for right, 1 where only sign or unit is wrong.",
+        "rows[].exercises[].why": "The reason in a sentence.",
+        "rows[].remarks": "What a teacher should look at: why a file is not marked, the same number twice, answers "
+        "that are right for another student.",
+    },
     "compensate": {
         "robomill": "The version that computed it.",
         "name": "What the set-up is called.",

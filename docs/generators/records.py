@@ -40,6 +40,7 @@ RUNS: dict[str, tuple[tuple[str, ...], ...]] = {
     "design": (("paper_flute", "--tolerance-mm", "0.2"),),
     "compensate": (("paper_flute/setup_process", "--out", "corrected.nc"), ("two_tools", "--out", "corrected.nc")),
     "study": (("paper_flute/study", "--out", "study"),),
+    "grade": (("answers", "--out", "marks.csv"),),
     "samples": (("heart",),),
     "reproduce": ((),),
 }

@@ -34,6 +34,7 @@ EXAMPLES = {
     "compensate": "robomill compensate paper_flute --out corrected.nc",
     "turn": "robomill turn paper_flute --robot fanuc_r2000ic",
     "study": "robomill study paper_flute/study --out study",
+    "grade": "robomill grade answers --out marks.csv",
     "samples": "robomill samples --copy samples",
     "reproduce": "robomill reproduce",
     "completion": "robomill completion bash",
@@ -52,12 +53,25 @@ NOTES = {
     "where the verdict is red at the best place, too.",
     "compensate": "Refused, with the reason, where the prediction itself is not to be trusted.",
     "study": "Stopped or failed, the same command goes on from what is finished. Exits 1 where no point came out.",
+    "grade": "A file that cannot be marked keeps its row and its reason, and the exit code is 1.",
     "reproduce": "Exits 1 where a claim of the paper that should hold does not.",
     "completion": "For bash, write it to ~/.local/share/bash-completion/completions/robomill; for zsh, to a file "
     "_robomill in a folder of $fpath; for fish, to ~/.config/fish/completions/robomill.fish.",
 }
 # Verbs with a module of their own.
-MODULES = {"simulate", "identify", "serve", "drawing", "advise", "design", "place", "turn", "compensate", "study"}
+MODULES = {
+    "simulate",
+    "identify",
+    "serve",
+    "drawing",
+    "advise",
+    "design",
+    "place",
+    "turn",
+    "compensate",
+    "study",
+    "grade",
+}
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
 
@@ -105,6 +119,7 @@ def make_parser() -> argparse.ArgumentParser:
     _study_options(
         told("study", "Many runs of a set-up: a grid, a Latin hypercube or Sobol's sequence of its numbers.")
     )
+    _grade_options(told("grade", "Mark the exercises of a class: its files of answers, with the reason of every mark."))
     given = told("samples", "List the samples, or copy them to work on.")
     _named(given, "names", "samples to list or copy (all)", "any", nargs="*")
     given.add_argument("--copy", metavar="DIR", help="copy them there; what is there and differs is never replaced")
@@ -347,4 +362,14 @@ def _compensate_options(run: argparse.ArgumentParser) -> None:
         default=2.0,
         metavar="UM",
         help="how near the program keeps to the corrected path, um (default 2)",
+    )
+
+
+def _grade_options(sub: argparse.ArgumentParser) -> None:
+    _named(sub, "folder", "a folder with files of answers (.toml), in it or below, or a sample's name", "answers")
+    sub.add_argument(
+        "--out", required=True, metavar="MARKS.csv", help="write the table of marks there; an older file is replaced"
+    )
+    sub.add_argument(
+        "--robot", metavar="NAME", help="the robot that the class was given (any that comes with robomill)"
     )

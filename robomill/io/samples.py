@@ -13,13 +13,13 @@ from robomill.arguments import asked
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import check_place
 
-SampleKind = Literal["set-up", "robot", "program", "load tests", "material", "drawing", "study"]
+SampleKind = Literal["set-up", "robot", "program", "load tests", "material", "drawing", "study", "answers"]
 TITLED: tuple[SampleKind, ...] = ("set-up", "robot", "material", "study")  # TOML files, which say what they are called
 
 
 @dataclass(frozen=True)
 class Sample:
-    """A file that comes with robomill: ``name`` is what commands take for it."""
+    """A file (of answers: a folder) that comes with robomill: ``name`` is what commands take for it."""
 
     kind: SampleKind
     name: str
@@ -74,6 +74,7 @@ def _found(folder: Path) -> Iterator[Sample]:
         yield Sample("program", path.parent.name, path)
     for path in sorted(folder.glob("drawings/*.dxf")) + sorted(folder.glob("drawings/*.svg")):
         yield Sample("drawing", path.stem if path.suffix == ".dxf" else path.name, path)
+    yield Sample("answers", "answers", folder / "answers/class")
     kinds: tuple[tuple[SampleKind, str], ...] = (
         ("robot", "robots/*.toml"),
         ("load tests", "load_tests/*.csv"),
@@ -170,5 +171,6 @@ def _to_copy(here: Path, names: Sequence[str]) -> list[Path]:
         if not found:
             raise ProjectError(f"{name!r:.80}: there is no such sample; 'robomill samples' lists them.")
         for sample in found:
-            files.update(sample.path.parent.glob("*.*") if sample.kind in ("set-up", "study") else [sample.path])
+            whole = sample.path if sample.kind == "answers" else sample.path.parent
+            files.update(whole.glob("*.*") if sample.kind in ("set-up", "study", "answers") else [sample.path])
     return sorted(files)

@@ -34,6 +34,7 @@ WORKS = {
     "place": ("place", "paper_flute", "--candidates", "9"),
     "design": ("design", "paper_flute", "--tolerance-mm", "0.2"),
     "compensate": ("compensate", str(SLOT / "setup.toml"), "--out", "corrected.nc"),
+    "grade": ("grade", "answers", "--out", "marks.csv"),
     "samples": ("samples",),
     "reproduce": ("reproduce",),
     "completion": ("completion", "bash"),

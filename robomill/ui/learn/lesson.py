@@ -17,6 +17,7 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.deflection import displacement
+from robomill.learn.push import ASIDE, Push, side
 from robomill.ui import fields, inputs, pieces, push, running, session
 from robomill.ui.arm import arm
 from robomill.ui.point import InHand, default_point, in_hand, place
@@ -28,7 +29,6 @@ from robomill.viz.arm import ArmScene, displacement_scale
 KEPT = "learn.lesson"
 PUSH = format_si(FORCE, "N", 0)
 ALIGHT = 5e-9  # m/N: what is less reads 0.00 um/N
-ASIDE = 0.02  # share of the displacement that counts as going somewhere
 HEIGHT, ASPECT = 380, 1.4  # of the picture
 SIDE = {
     "eye": {"x": 1.55, "y": -0.42, "z": 0.22},
@@ -74,66 +74,6 @@ BIG = """<style>
   font-variant-numeric: tabular-nums; }
 .rm-det small { font-size: 1.2rem; font-weight: 500; opacity: .75; }
 </style>"""
-
-
-@dataclass(frozen=True)
-class Push:
-    """A push along axis ``along`` (0, 1, 2) that leads most aside along ``aside``, and ``other`` is the third axis."""
-
-    along: int
-    aside: int
-    other: int
-
-    @classmethod
-    def of(cls, C: FloatArray) -> Push:
-        """The push that leads aside most, by the compliance C (3, 3)."""
-        size = np.abs(C)
-        across = size - np.diag(np.diag(size))
-        share = across.max(axis=0) / np.maximum(np.linalg.norm(C, axis=0), np.finfo(float).tiny)
-        along = int(np.argmax(np.round(share, 9)))
-        first, second = (i for i in range(3) if i != along)
-        aside = first if across[first, along] > across[second, along] else second
-        return cls(along, aside, 3 - along - aside)
-
-    @property
-    def name(self) -> str:
-        return "XYZ"[self.along]
-
-    @property
-    def force(self) -> FloatArray:
-        """(3,) N."""
-        return FORCE * np.eye(3)[self.along]
-
-    @property
-    def answers(self) -> dict[str, str]:
-        """What one may say: nowhere else, to either side, or along the third axis."""
-        start = f"Along {self.name}"
-        sides = {f"{sign}{self.aside}": f"{start} and {_side(self.aside, sign == '+')}" for sign in "+-"}
-        return {"alone": f"{start}, nowhere else", **sides, "other": f"{start} and along {'XYZ'[self.other]}"}
-
-    def went(self, delta: FloatArray) -> str:
-        """Which of the answers is right for a displacement (3,) under this push."""
-        aside, other = abs(delta[self.aside]), abs(delta[self.other])
-        if max(aside, other) < ASIDE * np.linalg.norm(delta):
-            return "alone"
-        if other > aside:
-            return "other"
-        return f"{'+' if delta[self.aside] > 0 else '-'}{self.aside}"
-
-    @property
-    def column(self) -> str:
-        """Which column of C says where this push leads."""
-        return ("first", "second", "third")[self.along]
-
-    def said(self, answer: str) -> str:
-        """An answer inside a sentence."""
-        return self.answers[answer].replace("Along", "along", 1)
-
-
-def _side(axis: int, plus: bool) -> str:
-    if axis == 2:
-        return "up" if plus else "down"
-    return f"towards {'+' if plus else '−'}{'XY'[axis]}"
 
 
 @dataclass(frozen=True)
@@ -227,7 +167,7 @@ def _answer(C: FloatArray, push: Push, now: Lesson) -> None:
 def _moves(delta: FloatArray, push: Push, unit: str) -> str:
     told = [
         f"<b>{format_si(abs(float(delta[i])), unit)}</b> "
-        + (f"along {push.name}" if i == push.along else _side(i, bool(delta[i] > 0)))
+        + (f"along {push.name}" if i == push.along else side(i, bool(delta[i] > 0)))
         for i in (push.along, *(i for i in range(3) if i != push.along))
         if abs(delta[i]) > ASIDE * np.linalg.norm(delta)
     ]

@@ -2,29 +2,26 @@
 
 import html
 
-import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
-from robomill.compliance.deflection import displacement
 from robomill.identification.estimate import identify
 from robomill.io.load_tests import read_load_tests
 from robomill.io.materials import sample_materials
 from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
+from robomill.learn.equations import component, product
+from robomill.learn.push import Push
 from robomill.report.paper import Statement
 from robomill.report.reproduction import reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
 from robomill.ui import cached, pieces
-from robomill.ui.learn.lesson import Push
 from robomill.ui.markup import Html
 from robomill.ui.project import DEFAULT_PRESET, preset_setup
-from robomill.units import from_si, unit_label
+from robomill.units import unit_label
 
 TONE = {"reproduced": "computed", "assumed": "assumed", "gap": "user", "not computed": "computed"}
 SHORT = {**WORDS, "assumed": "reproduced, assumed lengths"}
-SMALL = 5e-4
 
 
 def equations(pose: PoseReport, push: Push) -> None:
@@ -44,44 +41,10 @@ def equations(pose: PoseReport, push: Push) -> None:
         st.latex(r"\large " + component(pose, push.aside, push.along))
     with right:
         st.latex(r"\large \delta\mathbf{x} = C_{X\delta}\,\mathbf{F} \qquad (15)")
-        st.latex(r"\large " + product(pose.C, push))
+        st.latex(r"\large " + product(pose.C, push.force))
         pieces.note(
             f"In the paper's units: C in {unit_label('um/N')}, F in N, the displacement in µm; all in the robot frame."
         )
-
-
-def component(pose: PoseReport, row: int, column: int) -> str:
-    """C_ab as the sum of its joints with numbers, one below another as TeX; joints that add nothing are left out."""
-    name = "xyz"[row] + "xyz"[column]
-    shares = from_si(pose.shares(name), "um/N")
-    top = float(np.abs(shares).max())
-    terms = []
-    for i, number in enumerate(pose.robot.joint_numbers):
-        if abs(shares[i]) <= max(SMALL, 1e-3 * top):
-            continue
-        C = float(from_si(pose.robot.C_theta[i], "urad/(N m)"))
-        a, b = (float(pose.J[k, i]) for k in (row, column))
-        factors = rf"({a:.3f})^2" if row == column else rf"({a:.3f})({b:.3f})"
-        terms.append(rf"{C:.3f}\cdot {factors} && \small\text{{joint {number}}}")
-    sum_ = r" \\ &+ ".join(terms) if terms else "0"
-    return rf"\begin{{aligned}} C_{{{name}}} = {{}} & {sum_} \\ = {{}} & {shares.sum():.3f} \end{{aligned}}"
-
-
-def product(C: FloatArray, push: Push) -> str:
-    """C F = delta with numbers, as TeX."""
-    rows = from_si(C, "um/N")
-    matrix = r" \\ ".join(" & ".join(_number(v, 3) for v in row) for row in rows)
-    moved = r" \\ ".join(_number(v, 1) for v in from_si(displacement(C, push.force), "um"))
-    force = r" \\ ".join(f"{v:.0f}" for v in push.force)
-    return (
-        rf"\begin{{bmatrix}} {matrix} \end{{bmatrix}} \begin{{bmatrix}} {force} \end{{bmatrix}}"
-        rf" = \begin{{bmatrix}} {moved} \end{{bmatrix}}"
-    )
-
-
-def _number(value: float, digits: int) -> str:
-    text = f"{value:.{digits}f}"
-    return text.lstrip("-") if float(text) == 0 else text
 
 
 @cached.shared(lambda: "paper", "Computing the paper's tables and figures")

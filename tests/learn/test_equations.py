@@ -7,9 +7,17 @@ import re
 import numpy as np
 import pytest
 
+import robomill as rm
 from robomill.compliance.at_pose import PoseReport
-from robomill.ui.learn.lesson import Push
-from robomill.ui.learn.mathematics import component, product
+from robomill.learn.equations import component, product
+from robomill.learn.push import Push
+
+
+@pytest.fixture(scope="module")
+def found() -> PoseReport:
+    """The paper's arm at a point of its box."""
+    robot = rm.load_robot("slavkovic_5r")
+    return rm.at_pose(robot, rm.inverse_kinematics(robot, rm.pose_from_world([0.2, -1.2, -0.1, 0.0, 0.0])).theta)
 
 
 def test_the_equation_s_terms_add_up(found: PoseReport) -> None:
@@ -24,7 +32,7 @@ def test_the_equation_s_terms_add_up(found: PoseReport) -> None:
 
 def test_the_product_is_c_times_f(found: PoseReport) -> None:
     moved = re.findall(
-        r"bmatrix\} (-?[\d.]+) \\\\ (-?[\d.]+) \\\\ (-?[\d.]+) \\end", product(found.C, Push.of(found.C))
+        r"bmatrix\} (-?[\d.]+) \\\\ (-?[\d.]+) \\\\ (-?[\d.]+) \\end", product(found.C, Push.of(found.C).force)
     )[-1]
     np.testing.assert_allclose([float(v) for v in moved], found.C[:, Push.of(found.C).along] * 100e6, atol=0.06)
 
@@ -34,6 +42,8 @@ def test_the_product_is_for_the_push_of_the_question() -> None:
     C = 1e-6 * np.array([[1.0, 0.0, 0.9], [0.0, 2.0, 0.1], [0.9, 0.1, 4.0]])
     push = Push.of(C)
     assert (push.name, push.aside) == ("X", 2)
-    force, moved = re.findall(r"bmatrix\} (-?[\d.]+) \\\\ (-?[\d.]+) \\\\ (-?[\d.]+) \\end", product(C, push))[-2:]
+    force, moved = re.findall(r"bmatrix\} (-?[\d.]+) \\\\ (-?[\d.]+) \\\\ (-?[\d.]+) \\end", product(C, push.force))[
+        -2:
+    ]
     assert force == ("100", "0", "0")
     np.testing.assert_allclose([float(v) for v in moved], [100.0, 0.0, 90.0], atol=0.06)

@@ -1,0 +1,27 @@
+"""``robomill grade``: the answers of a class, marked, with the reason of every mark."""
+
+from pathlib import Path
+from typing import Any
+
+from robomill.cli.saying import Written, say
+from robomill.errors import LearnError
+
+
+def run_grade(arguments: Any) -> int:
+    """Mark and write the table; 1 where a file could not be marked."""
+    from robomill.io.results import write_files
+    from robomill.io.samples import find_sample
+    from robomill.learn.grading import grade
+    from robomill.learn.record import marks_lines, marks_record
+
+    place = Path(arguments.out)
+    if place.is_dir():
+        raise LearnError(f"--out {place}: this is a folder; give the name of a file.")
+    folder = find_sample("answers", arguments.folder) or Path(arguments.folder)
+    if place.suffix.lower() == ".toml":
+        raise LearnError(f"--out {place}: a table is written there; give a name that ends in .csv.")
+    found = grade(folder, arguments.robot, but=place)
+    files = Written.before([place])
+    write_files(place.parent, {place.name: found.csv()})
+    record = marks_record(found)
+    return say(arguments, record, marks_lines(record), 1 if found.unmarked else 0, files)

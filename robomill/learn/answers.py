@@ -1,0 +1,69 @@
+"""A student's answers as a file: plain TOML, as the Learn page exports it and as it can be typed by hand.
+
+format = "robomill answers"
+version = 1
+student = "1234567"
+name = "Ada Müller"
+robot = "slavkovic_5r"
+
+[answers]
+tip = "0,123 mm"
+share = 42.5
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from robomill.errors import LearnError
+from robomill.files import FileKind, read_file
+from robomill.io.tables import Table, parse_toml, toml_value
+from robomill.io.texts import read_text
+from robomill.learn.draws import student_number
+from robomill.learn.personal import BY_ID, ROBOT
+
+FORMAT, VERSION = "robomill answers", 1
+ANSWERS = FileKind("answers (.toml)", 1, any_code=True)
+LONGEST_NAME = 100
+
+
+@dataclass(frozen=True)
+class Answers:
+    """Whose answers, for which robot; ``given`` by exercise, as they were typed; ``strange`` names are none."""
+
+    student: str
+    name: str
+    robot: str
+    given: Mapping[str, Any]
+    strange: tuple[str, ...] = ()
+
+
+def answers_text(student: str | int, given: Mapping[str, str], name: str = "", robot: str = ROBOT) -> str:
+    """The file of a student's answers; what is blank is left out. Raises LearnError for what is no student number."""
+    head = {"format": FORMAT, "version": VERSION, "student": student_number(student), "name": name, "robot": robot}
+    lines = [f"{key} = {toml_value(value)}" for key, value in head.items()]
+    told = [f"{key} = {toml_value(given[key])}" for key in BY_ID if given.get(key, "").strip()]
+    return "\n".join([*lines, "", "[answers]", *told, ""])
+
+
+def read_answers(path: Path) -> Answers:
+    """The answers of a file. Raises LearnError where it is none, or does not say whose they are."""
+    where = path.name
+    text, _ = read_text(read_file(path, ANSWERS, LearnError, regular=True), LearnError, ANSWERS, where)
+    table = Table(parse_toml(text, where, LearnError), where, LearnError)
+    found = table.data.get("format")
+    if found != FORMAT:
+        raise LearnError(f"{where}: this is no file of answers: format is {found!r:.40}, expected {FORMAT!r}.")
+    if table.whole("version", VERSION) != VERSION:
+        raise LearnError(f"{where}: this file is of a newer robomill; expected version {VERSION}.")
+    number = table.data.get("student", "")
+    if isinstance(number, bool) or not isinstance(number, str | int):
+        raise LearnError(f"{where}, student: expected a student number, found {number!r:.40}.")
+    given = table.table("answers", {}).data
+    strange = tuple(f"{name:.40}" for name in given if name not in BY_ID)
+    known = {name: value for name, value in given.items() if name in BY_ID}
+    called = "".join(c for c in table.text("name", "") if c.isprintable())[:LONGEST_NAME]
+    return Answers(student_number(number), called, table.text("robot", ROBOT), known, strange)
