@@ -10,10 +10,13 @@ from typing import Any
 import pytest
 from screenshots import ARGUMENTS, CHROMIUM, served
 
+from robomill.compiled import prepare
+
 
 @pytest.fixture(scope="session")
 def url() -> Iterator[str]:
-    """Address of the running app."""
+    """Address of the running app, whose kernels are there: what waits is measured, not what is compiled."""
+    prepare()
     with served() as address:
         yield address
 

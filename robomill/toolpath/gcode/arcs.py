@@ -18,7 +18,7 @@ from robomill.units import from_si
 CHORD_ERROR = 1e-6
 """m: no chord lies farther than this from its arc, unless the caller asks for another figure."""
 
-MAX_POINTS = 20_000_000
+MAX_POINTS = 5_000_000
 MAX_STEP = math.radians(30.0)
 
 

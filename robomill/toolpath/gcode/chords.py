@@ -15,14 +15,21 @@ from robomill.units import to_si
 MAX_TILT_STEP = math.radians(2.0)
 TABLE_STEP = math.radians(0.5)
 """2 um off the circle that a table leads a tool round, 200 mm from its axis."""
+POINTS, POINTS_A_LINE = 600_000, 100
+"""So many points a path may have, and so many more for each line of its program: what needs more turns without end."""
 _BLOCK = 500_000
+
+
+def most_points(lines: int) -> int:
+    """How many points the path of a program of so many lines may have."""
+    return min(arcs.MAX_POINTS, POINTS + POINTS_A_LINE * lines)
 
 
 def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR, table: str = "") -> Toolpath:
     """The moves as points of {W}: arcs as chords within ``chord_error`` (m), turning axes in steps of 2 degrees.
 
     ``table`` is the rotary axis that turns the part (one of ``TABLES``): {W} turns with it, about part zero. Raises
-    GCodeError if nothing moves, a point is beyond any machine, or more than ``arcs.MAX_POINTS`` would be needed.
+    GCodeError if nothing moves, a point is beyond any machine, or more points than ``most_points`` would be needed.
     """
     if len(program) == 0:
         raise GCodeError("Program: found no motion; expected at least one G0, G1, G2 or G3 move.")
@@ -108,16 +115,16 @@ def _stays(program: Program) -> bool:
 
 def _pieces(program: Program, rows: IntArray, chord_error: float, most: float) -> IntArray:
     """Straight pieces of each move; ``rows`` are the arcs, ``most`` (rad) is how far an axis turns in one."""
-    counts = np.ones(len(program), dtype=np.int64)
+    counts, fit = np.ones(len(program), dtype=np.int64), most_points(program.lines)
     turns = program.arcs_of(rows)
     counts[rows] = arcs.chord_counts(turns.sweep, turns.bend, chord_error)
     if program.rotary.any() or program.rotary0.any():
         tilt = np.ceil(np.abs(program.rotary - program.rotary0).max(axis=1) / most - 1e-4)
-        if tilt.sum() > arcs.MAX_POINTS:
-            raise GCodeError(f"Program: the turning axes would need more than {arcs.MAX_POINTS} points.")
+        if tilt.sum() > fit:
+            raise GCodeError(f"Program: the turning axes would need more than {fit} points.")
         counts = np.maximum(counts, tilt.astype(np.int64))
-    if counts.sum() > arcs.MAX_POINTS:
-        raise GCodeError(f"Program: the path would need {counts.sum()} points; at most {arcs.MAX_POINTS} fit.")
+    if counts.sum() > fit:
+        raise GCodeError(f"Program: the path would need {counts.sum()} points; at most {fit} fit. Split the program.")
     return counts
 
 

@@ -29,7 +29,7 @@ MAX_READ = 25_000
 MAX_CODE = 3000
 """Characters of a Sinumerik line that can be read, without its comment."""
 
-LOOPING = 1.7
+LOOPING = 1.3
 """s of computing: longer no loop is followed, once as many lines were executed as the program has."""
 
 _CHECK_EVERY = 256

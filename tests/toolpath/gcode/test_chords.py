@@ -95,6 +95,14 @@ def test_the_tool_axis_is_that_of_the_rotations() -> None:
         np.testing.assert_allclose(tool_axis(np.array([a, b, c])), k, atol=1e-12)
 
 
+def test_one_arc_does_not_fill_the_memory_by_its_turns() -> None:
+    """A turn of 20 mm radius takes 2 pi / (2 acos(1 - 1e-6 / 0.02)) = 314.2 chords: 600 500 points are 1911 turns."""
+    helix = "G21 F60 G17\nG1 X0 Y0\nG1 X20\nG2 X20 Y0 Z-9 I-20 J0 P{}\nM2\n"
+    assert len(to_toolpath(interpret(helix.format(1909)))) > 599_000
+    with pytest.raises(GCodeError, match=r"the path would need \d+ points; at most 600500 fit. Split the program."):
+        to_toolpath(interpret(helix.format(1913)))
+
+
 def test_too_many_points_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(arcs, "MAX_POINTS", 20)
     twenty = "G21 F60\n" + "\n".join(f"G1 X{n + 1}" for n in range(20))
