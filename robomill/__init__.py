@@ -83,6 +83,8 @@ if TYPE_CHECKING:
     from robomill.kinematics.transforms import world_from_pose as world_from_pose
     from robomill.provenance import Finding as Finding
     from robomill.provenance import Provenance as Provenance
+    from robomill.report.html import report_html as report_html
+    from robomill.report.html import write_report as write_report
     from robomill.robot.model import Robot as Robot
     from robomill.simulation.result import SimulationResult as SimulationResult
     from robomill.simulation.run import simulate as simulate
@@ -193,6 +195,8 @@ _PUBLIC = {
     "world_from_pose": "robomill.kinematics.transforms",
     "Finding": "robomill.provenance",
     "Provenance": "robomill.provenance",
+    "report_html": "robomill.report.html",
+    "write_report": "robomill.report.html",
     "Robot": "robomill.robot.model",
     "SimulationResult": "robomill.simulation.result",
     "simulate": "robomill.simulation.run",

@@ -143,6 +143,8 @@ WORDS: dict[str, dict[str, str]] = {
         "alloy_spread[].*": "The same cut with every published row of the alloy.",
         "over_lengths": "Null where the robot's lengths are known, or a map is in force.",
         "over_lengths.*": "Least and largest error at that place over all geometries that meet the paper's claims.",
+        "ranges[].*": "Between which ends walls, floors, the tip and the share of the tolerance lie `over` what is "
+        "assumed, or as teeth come by.",
         "station_mm": "How far along the cut the largest deviation is.",
         "worst_block": "Its line of the program.",
         "reached.count": "Points of the path that the arm reaches.",
@@ -151,6 +153,12 @@ WORDS: dict[str, dict[str, str]] = {
         "reached.reason": "Why, at the first.",
         "groove[].*": "A section across the cut: what it is (`kind`), where, and the measures that a gauge has for it; "
         "null for those that this kind has not, `not_measured` with why.",
+        "worst_section.*": "The same of the section where what the verdict rests on is worst.",
+        "lines.counted_in": "What lines are here: line, row, shape or point.",
+        "lines.cutting": "How many of them cut.",
+        "lines.unknown": "How many of those have points that are not judged or not reached.",
+        "lines.worst[].*": "Those that use most of their tolerance: the largest error of what each leaves (null "
+        "where nothing is left), the share used, the largest deviation and force; points without a number.",
         "surface.*": "The milled surface against the ideal one: volumes, and the share of the area (walls by their "
         "length) that is out of tolerance.",
         "verdict": "`ok`, `tight`, `out`, `unjudged`, `unreached` or `missed` (the path never touches the stock).",
@@ -180,6 +188,10 @@ WORDS: dict[str, dict[str, str]] = {
         "rests_on[].source": "In words.",
         "not_written[].*": "With `--out`: files that could not be made, and why.",
         "digest": "Fingerprint of the set-up: equal set-ups have equal ones.",
+    },
+    "report": {
+        "remedies[].*": "With `--remedies`: what was tried, what it leaves in words, and the verdict then.",
+        "*": "All that `simulate` prints: the page is made of it.",
     },
     "advise": {
         "robomill": "The version that computed it.",

@@ -34,6 +34,7 @@ RUNS: dict[str, tuple[tuple[str, ...], ...]] = {
         ("paper_flute/setup_measured_map",),
         ("two_tools",),
     ),
+    "report": (("paper_flute", "--out", "report.html"),),
     "advise": (("paper_flute/setup_process",),),
     "turn": (("paper_flute", "--robot", "fanuc_r2000ic"),),
     "place": (("paper_flute", "--x", "-200:200", "--y", "-2300:-1100", "--candidates", "30", "--out", "moved.toml"),),

@@ -35,6 +35,7 @@ EXAMPLES = {
     "turn": "robomill turn paper_flute --robot fanuc_r2000ic",
     "study": "robomill study paper_flute/study --out study",
     "grade": "robomill grade answers --out marks.csv",
+    "report": "robomill report paper_flute --out report.html",
     "samples": "robomill samples --copy samples",
     "reproduce": "robomill reproduce",
     "completion": "robomill completion bash",
@@ -52,6 +53,7 @@ NOTES = {
     "place": "Left out, x and y are today's and 15 % of the arm's length to each side; height and yaw stay. Exits 1 "
     "where the verdict is red at the best place, too.",
     "compensate": "Refused, with the reason, where the prediction itself is not to be trusted.",
+    "report": "Exits as simulate does. An older report there is replaced, any other file is kept.",
     "study": "Stopped or failed, the same command goes on from what is finished. Exits 1 where no point came out.",
     "grade": "A file that cannot be marked keeps its row and its reason, and the exit code is 1.",
     "reproduce": "Exits 1 where a claim of the paper that should hold does not.",
@@ -71,6 +73,7 @@ MODULES = {
     "compensate",
     "study",
     "grade",
+    "report",
 }
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
@@ -111,6 +114,7 @@ def make_parser() -> argparse.ArgumentParser:
     _map_options(told("map", "A quantity over a plane or a box, NaN where the robot cannot reach."))
     _identify_options(told("identify", "Joint compliances from load tests, with their intervals."))
     _simulate_options(told("simulate", "Run a set-up: deviation, groove, verdict."))
+    _report_options(told("report", "Run a set-up and write what comes out as one HTML page, to print or hand over."))
     _setup(told("advise", "The same part cut otherwise: with another feed, turned round, in passes, once more."))
     _place_options(told("place", "Where in a box the part should lie so that its cut comes out best."))
     _turn_options(told("turn", "How the spindle should be turned about its axis along a path: six and seven axes."))
@@ -318,13 +322,17 @@ def _place_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--out", metavar="SETUP.toml", help="write the set-up moved there; an older file is replaced")
 
 
-def _simulate_options(run: argparse.ArgumentParser) -> None:
+def _cut_options(run: argparse.ArgumentParser) -> None:
     _setup(run)
     _named(run, "--program", "another program than the set-up's, or points (.csv, .parquet)", "program")
     _points_options(run)
     _another_robot(run)
     run.add_argument("--tol", type=float, metavar="MM", help="another tolerance of walls and floors, mm")
     _compliance_set(run, "another of the robot's compliance sets")
+
+
+def _simulate_options(run: argparse.ArgumentParser) -> None:
+    _cut_options(run)
     run.add_argument(
         "--out",
         metavar="DIR",
@@ -332,6 +340,14 @@ def _simulate_options(run: argparse.ArgumentParser) -> None:
         "runs again from there; what an earlier run wrote is replaced, other files stay",
     )
     run.add_argument("--full-stl", action="store_true", help="with --out: an STL of every cell, however large")
+
+
+def _report_options(run: argparse.ArgumentParser) -> None:
+    _cut_options(run)
+    run.add_argument(
+        "--out", required=True, metavar="FILE.html", help="write the page there; an older report is replaced"
+    )
+    run.add_argument("--remedies", action="store_true", help="compute remedies, too, and what each leaves (slower)")
 
 
 def _study_options(run: argparse.ArgumentParser) -> None:

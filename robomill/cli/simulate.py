@@ -23,7 +23,7 @@ def run_simulate(arguments: Any) -> int:
 
     if arguments.out:
         _check_folder(Path(arguments.out), arguments)
-    result = simulate(_asked(arguments))
+    result = simulate(asked_setup(arguments))
     record = simulation_record(result)
     lines, files = simulation_lines(record), []
     if arguments.out:
@@ -35,7 +35,7 @@ def run_simulate(arguments: Any) -> int:
     return say(arguments, record, lines, 1 if result.verdict.red else 0, files)
 
 
-def _asked(arguments: Any) -> Any:
+def asked_setup(arguments: Any) -> Any:
     """The set-up with what the options say in its stead, and who said so."""
     from robomill.provenance import Provenance
 
@@ -117,19 +117,19 @@ def _deviation(result: Any) -> bytes:
 
 def _section(result: Any) -> bytes:
     """The section at the largest deviation, or the first that there is."""
+    from robomill.simulation.stations import section_at
     from robomill.units import format_si
     from robomill.viz.plotted import png
     from robomill.viz.sections import section_figure
     from robomill.viz.views import section_drawing
 
-    worst = [result.groove(float(result.path.s[result.worst]))] if result.worst >= 0 else []
-    drawable = [each for each in (*worst, *result.sections) if len(each.w) and each.kind != "unknown"]
-    if not drawable:
+    found = section_at(result, result.worst)
+    if found is None:
         raise SurfaceError(f"No section can be drawn: {result.sections[0].note}.")
-    place = format_si(drawable[0].station, "mm", 1)
-    words = f"Section after {place} of cut{', at the largest deviation' * (drawable[:1] == worst)}"
+    worst = result.worst >= 0 and found.station == float(result.path.s[result.worst])
+    words = f"Section after {format_si(found.station, 'mm', 1)} of cut{', at the largest deviation' * worst}"
     words += "; looking along the feed"
-    return png(section_figure(section_drawing(drawable[0], "mm"), dark=False), [result.setup.name, words])
+    return png(section_figure(section_drawing(found, "mm"), dark=False), [result.setup.name, words])
 
 
 def _write(folder: Path, contents: Mapping[str, str | bytes]) -> list[Written]:

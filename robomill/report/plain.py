@@ -166,11 +166,19 @@ def _reading(found: dict[str, Any]) -> str:
     """One quantity of the verdict: its largest value, where, and how much of its tolerance it uses."""
     if found["line"] is None:
         return "none is left to measure"
-    size, limit = (float(to_si(found[name], "mm")) for name in ("value_mm", "tolerance_mm"))
-    value, allowed = format_beside(size, limit, "mm", sign=True), format_limit(limit, "mm")
+    return f"{reading_value(found)} at line {found['line']}, {reading_share(found)}"
+
+
+def reading_value(found: dict[str, Any]) -> str:
+    """The largest value of a quantity of the verdict, with the digits that tell it from what is allowed."""
+    return format_beside(to_si(found["value_mm"], "mm"), to_si(found["tolerance_mm"], "mm"), "mm", sign=True)
+
+
+def reading_share(found: dict[str, Any]) -> str:
+    """How much of its tolerance a quantity of the verdict uses."""
     if not found["judged"]:
-        return f"{value} at line {found['line']}, not judged by itself"
-    return f"{value} at line {found['line']}, {format_share(found['share'])} of {allowed}"
+        return "not judged by itself"
+    return f"{format_share(found['share'])} of {format_limit(to_si(found['tolerance_mm'], 'mm'), 'mm')}"
 
 
 def map_lines(record: dict[str, Any]) -> list[str]:

@@ -6,22 +6,27 @@ import numpy as np
 
 from robomill import __version__
 from robomill.arrays import FloatArray
+from robomill.identification.knowledge import Knowledge
+from robomill.report.lines_record import lines_record
 from robomill.report.paper_lengths import TRIED, over_lengths
+from robomill.report.ranges import Range, ranges
 from robomill.report.records import shown
 from robomill.simulation.assumptions import assumed_of_setup
 from robomill.simulation.origins import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import alloy_spread, peak_force
-from robomill.simulation.stations import largest_deviations, nearest_feed
+from robomill.simulation.stations import decides_at, largest_deviations, nearest_feed, section_at
 from robomill.simulation.tooth import LEFT_OUT, tooth
 from robomill.surface.groove import MEASURED, GrooveSection
 
 COMPONENTS = ("feed", "feed_normal", "axial")
 
 
-def simulation_record(result: SimulationResult) -> dict[str, Any]:
-    """One run. ``deviation_mm``, ``joint_share_mm`` and ``force_N`` are those of the worst point, in {M}."""
+def simulation_record(result: SimulationResult, known: Knowledge | None = None) -> dict[str, Any]:
+    """One run. ``deviation_mm``, ``joint_share_mm`` and ``force_N`` are those of the worst point, in {M}; ``known`` says
+    how sure the compliances are, for the ``ranges``."""
     i = result.worst
+    section = section_at(result, decides_at(result))
 
     def there(values: FloatArray, unit: str) -> Any:
         return shown(values[i] if i >= 0 else np.full(values.shape[1:], np.nan), unit)
@@ -50,6 +55,7 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
         "joint_shares_add_up": result.setup.measured_map is None,
         **_uncertain(result, i),
         "over_lengths": lengths_record(result, i),
+        "ranges": [range_record(each) for each in ranges(result, known)],
         "station_mm": shown(result.path.s[i], "mm") if i >= 0 else None,
         "worst_block": result.worst_block,
         "reached": {
@@ -59,6 +65,8 @@ def simulation_record(result: SimulationResult) -> dict[str, Any]:
             "reason": _first_reason(result),
         },
         "groove": [groove_record(result, section) for section in result.sections],
+        "worst_section": None if section is None else groove_record(result, section),
+        "lines": lines_record(result),
         "surface": surface_record(result),
         "verdict": verdict.level,
         "verdict_sentence": verdict.sentence,
@@ -90,6 +98,12 @@ def groove_record(result: SimulationResult, section: GrooveSection) -> dict[str,
         "force_share_mm": {name: shown(result.delta_component[i, c], "mm") for c, name in enumerate(COMPONENTS)},
         "note": section.note,
     }
+
+
+def range_record(found: Range) -> dict[str, Any]:
+    """Between which ends walls, floors, the tip and the share of the tolerance lie, over what."""
+    ends = {f"{name}_mm": shown(getattr(found, name), "mm") for name in ("wall", "floor", "tip")}
+    return {"over": found.over, "kind": found.kind, **ends, "share": list(found.share)}
 
 
 def lengths_record(result: SimulationResult, i: int) -> dict[str, Any] | None:

@@ -7,6 +7,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.compliance.deflection import shares_along
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread, alloy_spread
+from robomill.surface.groove import GrooveSection
 from robomill.surface.metrology import GrooveProfile
 from robomill.surface.swept import station_at
 from robomill.toolpath.path import Toolpath
@@ -21,6 +22,18 @@ def nearest_judged(result: SimulationResult, station: float) -> int:
     """Index of the sample nearest to ``station`` among those that count for the verdict; -1 where none does."""
     judged = np.flatnonzero(result.judged)
     return _nearest(result, judged, station) if len(judged) else -1
+
+
+def decides_at(result: SimulationResult) -> int:
+    """The sample of what the verdict rests on; of the tip's largest deviation where nothing decides; -1 without one."""
+    rests = result.verdict.deciding
+    return result.worst if rests is None else rests[1].worst
+
+
+def section_at(result: SimulationResult, i: int) -> GrooveSection | None:
+    """The section at sample i, or the first of ``result.sections`` that shows anything; None where none does."""
+    here = [result.groove(float(result.path.s[i]))] if i >= 0 else []
+    return next((each for each in (*here, *result.sections) if len(each.w) and each.kind != "unknown"), None)
 
 
 def _nearest(result: SimulationResult, among: IntArray, station: float) -> int:

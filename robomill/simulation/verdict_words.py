@@ -19,6 +19,12 @@ WORDS: dict[Level, str] = {
     "tight": "within tolerance, tight",
     "out": "out of tolerance",
 }
+TITLES: dict[Level, str] = {
+    **{level: words.capitalize() for level, words in WORDS.items()},
+    "unjudged": "Not judged",
+    "unreached": "Out of reach",
+    "missed": "Misses the stock",
+}
 NOTHING: dict[Level, str] = {
     "missed": "The path never touches the stock: move the stock or the path.",
     "unreached": "No point of the cut can be reached: move the part zero.",

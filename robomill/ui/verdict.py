@@ -10,19 +10,14 @@ from robomill.arrays import digest
 from robomill.identification.knowledge import Knowledge
 from robomill.report.ranges import Range, ranges
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.stations import decides_at as decides_at
 from robomill.simulation.tooth import LEFT_OUT
-from robomill.simulation.verdict_words import WORDS as JUDGED
-from robomill.simulation.verdict_words import Reading, Verdict, said, way
+from robomill.simulation.verdict_words import TITLES, Reading, Verdict, said, way
 from robomill.ui import cached, pieces, session, uncertainty
 from robomill.ui.pieces import Tile
 from robomill.units import format_beside, format_count, format_limit, format_many, format_share, format_si
 
-WORDS = {
-    **{level: words.capitalize() for level, words in JUDGED.items()},
-    "unjudged": "Not judged",
-    "unreached": "Out of reach",
-    "missed": "Misses the stock",
-}
+WORDS = TITLES
 TONES = {"unreached": "out", "missed": "out"}  # the others are their own
 OPEN = "open"  # hatched: nobody has said yet what is cut
 NOTHING = {"unreached": "nothing reached", "unjudged": "not judged"}
@@ -155,12 +150,6 @@ def open_question(result: SimulationResult) -> None:
         st.page_link("pages/6_Milling.py", label="Say it on the Milling page", icon=":material/help:")
     elif result.verdict.premise:
         st.page_link("pages/5_Toolpath.py", label="Say what it cuts", icon=":material/help:")
-
-
-def decides_at(result: SimulationResult) -> int:
-    """The sample of what the verdict rests on; of the tip's largest deviation where nothing decides; -1 without one."""
-    rests = result.verdict.deciding
-    return result.worst if rests is None else rests[1].worst
 
 
 def previous(result: SimulationResult) -> SimulationResult | None:

@@ -29,6 +29,7 @@ WORKS = {
     "map": (*MAP, "--out", "map.csv"),
     "identify": ("identify", "slavkovic_5r", str(TESTS / "one_joint_at_a_time.csv")),
     "simulate": ("simulate", str(SLOT / "setup.toml"), "--out", "result"),
+    "report": ("report", str(SLOT), "--out", "report.html"),
     "advise": ("advise", "paper_flute/setup_process"),
     "turn": ("turn", "paper_flute", "--robot", "fanuc_r2000ic"),
     "place": ("place", "paper_flute", "--candidates", "9"),

@@ -33,6 +33,8 @@ DRAWING = rm.read_drawing("bracket")
 # What is right of each function and class; every argument of it is then given wrongly.
 RIGHT: dict[str, dict[str, Any]] = {
     "advise": {"setup": SETUP},
+    "report_html": {"run": SETUP},
+    "write_report": {"path": "report.html", "run": SETUP},
     "at_pose": AT,
     "box_grid": {"lower": [0, 0, 0], "upper": [1, 1, 0], "step": 0.5},
     "cartesian_compliance": AT,

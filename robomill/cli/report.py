@@ -1,0 +1,53 @@
+"""``robomill report``: one run as an HTML page to hand over."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from robomill.cli.saying import Written, say
+from robomill.cli.simulate import asked_setup
+from robomill.errors import RobomillError
+
+
+def run_report(arguments: Any) -> int:
+    """Run and write the page; 1 where the verdict is red or nothing can be judged."""
+    from robomill.report.html import check_place, keep, page
+    from robomill.report.plain import simulation_lines
+    from robomill.report.simulation_record import simulation_record
+    from robomill.simulation.run import simulate
+
+    place = Path(arguments.out)
+    check_place(place)
+    result = simulate(asked_setup(arguments))
+    record = simulation_record(result)
+    rows = _remedies(result) if arguments.remedies else []
+    files = Written.before([place])
+    keep(place, page(result, record, rows))
+    lines = simulation_lines(record)[:2] + [f"remedy    {row.title}, {row.what}: {row.leaves}" for row in rows]
+    record["remedies"] = [vars(row) for row in rows]
+    return say(arguments, record, lines, 1 if result.verdict.red else 0, files)
+
+
+def _remedies(result: Any) -> list[Any]:
+    """All that may mend a cut, and of what does not apply why."""
+    from robomill.improve.advice import advise
+    from robomill.improve.design import design
+    from robomill.improve.placement import place
+    from robomill.improve.turning import turn
+    from robomill.io.compensated import compensate
+    from robomill.report.remedies_told import refused, told
+
+    tried: dict[str, Callable[[Any], Any]] = {
+        "Other ways to cut": advise,
+        "Corrected program": compensate,
+        "Another place of the part": place,
+        "Spindle turned about its axis": turn,
+        "Stiffer joints": design,
+    }
+    rows = []
+    for title, find in tried.items():
+        try:
+            rows += told(find(result.setup))
+        except RobomillError as exc:
+            rows.append(refused(title, exc))
+    return rows

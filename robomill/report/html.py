@@ -1,0 +1,200 @@
+"""A run as one HTML page to hand over: nothing is fetched, no script runs, and it prints on A4 or Letter.
+
+Every number is one of ``simulation_record``, which ``robomill simulate --json`` prints; pictures are of the same run.
+"""
+
+import platform
+from collections.abc import Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robomill import __version__
+from robomill.arguments import asked
+from robomill.errors import ProjectError
+from robomill.files import shown_place, written
+from robomill.report import sections_told
+from robomill.report.pictures import joints_picture, path_picture, section_picture
+from robomill.report.remedies_told import Remedy, Told, told
+from robomill.report.simulation_record import simulation_record
+from robomill.report.tags import Markup, escaped, joined, tag
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import simulate
+from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.stations import decides_at, section_at
+from robomill.units import format_si
+
+MARK = '<!doctype html>\n<html lang="en" data-made-by="robomill report">'  # how a report begins
+STYLE = Path(__file__).with_name("report.css")
+ALONE = "default-src 'none'; style-src 'unsafe-inline'"  # nothing is fetched, whatever words a file brings
+KEY = (
+    '<span class="key"><i class="left"></i>left on the part <i class="ideal"></i>as programmed '
+    '<i class="allowed"></i>allowed</span>'
+)
+KEY_OF_PATH = (
+    '<span class="key"><i></i>across the feed, left + <i class="floor"></i>along the tool, up + '
+    '<i class="limit"></i>allowed <i class="lost"></i>not judged or not reached</span>'
+)
+
+
+@asked
+def report_html(run: SimulationSetup | SimulationResult, remedies: Sequence[Remedy] = ()) -> str:
+    """A report of a run as the text of one HTML page, to hand over, print or keep.
+
+    Parameters
+    ----------
+    run : SimulationSetup or SimulationResult
+        A set-up is run first.
+    remedies : sequence
+        What ``rm.advise``, ``rm.compensate``, ``rm.design``, ``rm.place`` or ``rm.turn`` returned for the same set-up.
+
+    Returns
+    -------
+    str
+        The page. Its numbers are those of ``robomill simulate --json``, in mm and N.
+
+    Raises
+    ------
+    RobomillError
+        Where the set-up is refused, or a remedy is none.
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> page = rm.report_html(rm.load_setup("paper_flute"))
+    >>> "within tolerance (77 % of it used)" in page
+    True
+    """
+    result = run if isinstance(run, SimulationResult) else simulate(run)
+    return page(result, simulation_record(result), [row for each in remedies for row in told(each)])
+
+
+@asked
+def write_report(path: str | Path, run: SimulationSetup | SimulationResult, remedies: Sequence[Remedy] = ()) -> Path:
+    """A report of a run as an HTML file; see ``report_html``.
+
+    Parameters
+    ----------
+    path : str or Path
+        Where it shall stand.
+    run : SimulationSetup or SimulationResult
+        A set-up is run first.
+    remedies : sequence
+        What was computed to mend the cut.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    RobomillError
+        Where the set-up is refused; ProjectError for a place that cannot be written, or where another file stands that
+        is no report.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> import robomill as rm
+    >>> rm.write_report(pathlib.Path(tempfile.mkdtemp()) / "report.html", rm.load_setup("paper_flute")).name
+    'report.html'
+    """
+    check_place(Path(path))
+    return keep(Path(path), report_html(run, remedies))
+
+
+def check_place(place: Path) -> None:
+    """Refuse a place where something stands that is no report. Raises ProjectError."""
+    if place.is_dir():
+        raise ProjectError(f"{shown_place(place)}: this is a folder; give the name of a file.")
+    if not place.parent.is_dir():
+        raise ProjectError(f"{shown_place(place)}: the folder {shown_place(place.parent)} is not there; make it first.")
+    if not place.is_file():
+        return
+    try:
+        with place.open("rb") as stream:
+            begins = stream.read(len(MARK))
+    except OSError as exc:
+        raise ProjectError(f"{shown_place(place)}: cannot be opened ({exc.strerror}); give another place.") from None
+    if begins != MARK.encode():
+        raise ProjectError(f"{shown_place(place)}: another file stands there that is no report; give another name.")
+
+
+def keep(place: Path, text: str) -> Path:
+    """Write a report whole, or not at all. Raises ProjectError."""
+    with written(place, ProjectError) as beside:
+        beside.write_text(text, encoding="utf-8", newline="\n")
+    return place
+
+
+def page(
+    result: SimulationResult, record: dict[str, Any], remedies: Sequence[Told] = (), when: datetime | None = None
+) -> str:
+    """The page of a run and its record."""
+    made = (when or datetime.now().astimezone()).strftime("%d %B %Y, %H:%M UTC%z").lstrip("0")
+    parts = [
+        sections_told.header(record, made),
+        sections_told.verdict(record),
+        sections_told.tiles(record),
+        _pictures(result, record),
+        sections_told.measures(record),
+        sections_told.lines(record),
+        sections_told.remedies(remedies),
+        sections_told.rests_on(record),
+        sections_told.left_out(record),
+        sections_told.findings(record),
+        _made_with(record, made),
+    ]
+    return _whole(record["name"], parts)
+
+
+def _whole(name: str, parts: Sequence[object]) -> str:
+    head = tag(
+        "head",
+        tag("meta", charset="utf-8"),
+        tag("meta", http_equiv="Content-Security-Policy", content=ALONE),
+        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("title", f"{name} · milling report · robomill"),
+        tag("style", Markup(STYLE.read_text(encoding="utf-8"))),
+    )
+    return f"{MARK}{head}\n<body>\n{Markup(chr(10)).join(map(escaped, parts))}\n</body></html>\n"
+
+
+def _pictures(result: SimulationResult, record: dict[str, Any]) -> Markup:
+    """The section beside the joints, and the way along the path."""
+    if result.worst < 0:
+        return tag("p", "Nothing of the cut is judged, so there are no pictures of it.", class_="quiet")
+    section, joints = section_at(result, decides_at(result)), joints_picture(record)
+    pair = []
+    if section is not None:
+        said = f"Section {format_si(section.station, 'mm', 1)} along the cut, line {section.block}, to scale. "
+        pair.append(tag("figure", section_picture(section, result), tag("figcaption", said, Markup(KEY))))
+    if joints is not None:
+        said = f"Which joint gives: parts of the largest deviation, {_mm(record)} at line {record['worst_block']}."
+        pair.append(tag("figure", joints, tag("figcaption", said)))
+    elif not record["joint_shares_add_up"]:
+        pair.append(
+            tag("p", "The compliances were measured as a map, which says nothing of single joints.", class_="quiet")
+        )
+    along = tag("figure", path_picture(result), tag("figcaption", Markup(KEY_OF_PATH)))
+    return joined([tag("h2", "The cut"), along, tag("div", *pair, class_="pair") if pair else ""])
+
+
+def _mm(record: dict[str, Any]) -> str:
+    return sections_told.mm(record["max_deviation_mm"])
+
+
+def _made_with(record: dict[str, Any], made: str) -> Markup:
+    """Versions and the fingerprint by which the run is found again."""
+    versions = f"robomill {__version__}, Python {platform.python_version()}, NumPy {np.__version__}; {made}."
+    print_ = tag("span", record["digest"], class_="mono")
+    return joined(
+        [
+            tag("h2", "Made with"),
+            tag("p", versions, class_="quiet"),
+            tag("p", "Fingerprint of the set-up: ", print_, ". The same set-up gives it again.", class_="quiet"),
+        ]
+    )

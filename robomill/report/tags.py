@@ -1,0 +1,46 @@
+"""HTML made of tags: what is not markup already is escaped, so that words of files are shown and never read."""
+
+import html
+import re
+from collections.abc import Iterable
+
+# What steers a terminal, or turns what stands after it round, is no part of a page; neither is half a character.
+_STEERS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+VOID = {"meta", "rect", "line", "path", "polyline", "polygon", "circle", "col"}
+
+
+class Markup(str):
+    """Text that is HTML already."""
+
+    __slots__ = ()
+
+
+def escaped(words: object) -> Markup:
+    """Words as HTML that shows them; markup stays."""
+    if isinstance(words, Markup):
+        return words
+    return Markup(html.escape(_STEERS.sub("\ufffd", str(words))))
+
+
+def joined(parts: Iterable[object]) -> Markup:
+    """Parts one after the other."""
+    return Markup("".join(map(escaped, parts)))
+
+
+def tag(name: str, /, *children: object, **attributes: object) -> Markup:
+    """An element: ``tag("td", "1 < 2", class_="n")``; an attribute that is None is left out, ``_`` stands for ``-``."""
+    said = "".join(
+        f' {key.rstrip("_").replace("_", "-")}="{escaped(value)}"'
+        for key, value in attributes.items()
+        if value is not None
+    )
+    if name in VOID and not children:
+        return Markup(f"<{name}{said}/>")
+    return Markup(f"<{name}{said}>{joined(children)}</{name}>")
+
+
+def table(head: Iterable[object], rows: Iterable[Iterable[object]], kinds: str, class_: str | None = None) -> Markup:
+    """A table; ``kinds`` has a letter a column, the class of its cells: n a number, w words, m names in type."""
+    top = tag("thead", tag("tr", *(tag("th", title, class_=k, scope="col") for title, k in zip(head, kinds))))
+    body = (tag("tr", *(tag("td", cell, class_=k) for cell, k in zip(row, kinds, strict=True))) for row in rows)
+    return tag("table", top, tag("tbody", *body), class_=class_)
