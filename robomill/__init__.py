@@ -7,6 +7,8 @@ import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from robomill.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from robomill.compliance.at_pose import PoseReport as PoseReport
     from robomill.compliance.at_pose import at_pose as at_pose
@@ -116,8 +118,6 @@ if TYPE_CHECKING:
     from robomill.workspace.grid import plane_grid as plane_grid
     from robomill.workspace.quantities import map_quantities as map_quantities
     from robomill.workspace.reach import reach as reach
-
-__version__ = "0.1.0"
 
 _PUBLIC = {
     "PoseReport": "robomill.compliance.at_pose",

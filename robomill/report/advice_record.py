@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from robomill import __version__
 from robomill.improve.advice import Advice, Way
 from robomill.report.design_record import deviations
 from robomill.simulation.assumptions import assumed_of_setup
 from robomill.units import from_si
+from robomill.version import __version__
 
 
 def advice_record(found: Advice) -> dict[str, Any]:

@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from robomill import __version__
 from robomill.improve.compensation import Compensation, Errors, level_of, reversals
 from robomill.report.records import shown
 from robomill.simulation.assumptions import assumed_of_setup
 from robomill.units import format_count, format_value
+from robomill.version import __version__
 
 
 def compensation_record(found: Compensation) -> dict[str, Any]:

@@ -3,11 +3,11 @@
 import math
 from typing import Any
 
-from robomill import __version__
 from robomill.improve.design import Design
 from robomill.report.records import shown
 from robomill.simulation.assumptions import assumed_of_setup
 from robomill.simulation.result import SimulationResult
+from robomill.version import __version__
 
 
 def design_record(found: Design) -> dict[str, Any]:

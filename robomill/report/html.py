@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from robomill import __version__
 from robomill.arguments import asked
 from robomill.errors import ProjectError
 from robomill.files import shown_place, written
@@ -25,6 +24,7 @@ from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import decides_at, section_at
 from robomill.units import format_si
+from robomill.version import __version__
 
 MARK = '<!doctype html>\n<html lang="en" data-made-by="robomill report">'  # how a report begins
 STYLE = Path(__file__).with_name("report.css")

@@ -69,8 +69,8 @@ def _about_the_cut(w: FloatArray, z: FloatArray) -> slice:
 
 
 def _allowed(axes: Axes, w: FloatArray, z: FloatArray, tolerances: tuple[float, float]) -> Markup:
-    """All that is within the tolerances of walls (across) and floors (up) of an outline: a line as thick as they are, in
-    a picture that is stretched by each."""
+    """All that is within the tolerances of walls (across) and floors (up) of an outline: a line as thick as they are,
+    in a picture that is stretched by each."""
     (x_0, x_1), (y_0, y_1) = axes.x, axes.y
     across = from_si(tolerances[0], "mm") * axes.width / (x_1 - x_0)
     up = from_si(tolerances[1], "mm") * axes.height / (y_1 - y_0)

@@ -1,7 +1,7 @@
 """What remedies were tried for a cut and what each leaves, as rows that a report shows."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import singledispatch
 from typing import Any
 
 from robomill.errors import RobomillError
@@ -37,17 +37,7 @@ def refused(title: str, why: RobomillError) -> Told:
     return Told(title, "does not apply", str(why))
 
 
-@singledispatch
-def told(found: Any) -> list[Told]:
-    """The rows of a remedy that was computed. Raises RobomillError for what is none."""
-    raise RobomillError(
-        f"remedies: found {type(found).__name__}; expected what rm.advise, rm.compensate, rm.design, rm.place or rm.turn "
-        "return."
-    )
-
-
-@told.register
-def _(found: Advice) -> list[Told]:
+def _advice(found: Advice) -> list[Told]:
     rows = []
     for way in advice_record(found)["ways"][1:]:  # the first is the cut as it is
         if way["refused"]:
@@ -58,8 +48,7 @@ def _(found: Advice) -> list[Told]:
     return rows
 
 
-@told.register
-def _(found: Design) -> list[Told]:
+def _design(found: Design) -> list[Told]:
     record = design_record(found)
     stiffer = [
         f"joint {number} × {ratio:.2f}"
@@ -71,16 +60,14 @@ def _(found: Design) -> list[Told]:
     return [Told("Stiffer joints", what, leaves, TITLES[record["verdict"]])]
 
 
-@told.register
-def _(found: Placement) -> list[Told]:
+def _placement(found: Placement) -> list[Told]:
     best = placement_record(found)["best"]
     zero = ", ".join(format_value(each, "mm", 1, with_unit=False) for each in best["zero_mm"])
     what = f"part zero at ({zero}) mm, yaw {format_value(best['yaw_deg'], 'deg', 1)}"
     return [Told("Another place of the part", what, best["reason"] or best["verdict_sentence"], _title(best))]
 
 
-@told.register
-def _(found: Turning) -> list[Told]:
+def _turning(found: Turning) -> list[Told]:
     record = turning_record(found)
     spin = f"at {format_value(record['spin_deg'], 'deg', 0)} on the whole path"
     rows = (("constant", spin), ("course", "turning along the path"))
@@ -90,8 +77,7 @@ def _(found: Turning) -> list[Told]:
     ]
 
 
-@told.register
-def _(found: Compensation) -> list[Told]:
+def _compensation(found: Compensation) -> list[Told]:
     record = compensation_record(found)
     left = format_value(record["after_mm"]["max"], "mm", 4)
     wrong = max(record[f"after_if_{name}_20_percent_wrong_mm"] for name in ("compliance", "force"))
@@ -103,3 +89,22 @@ def _(found: Compensation) -> list[Told]:
 
 def _title(place: dict[str, Any]) -> str:
     return TITLES.get(place["verdict"], "")
+
+
+TOLD: dict[type, Callable[[Any], list[Told]]] = {
+    Advice: _advice,
+    Compensation: _compensation,
+    Design: _design,
+    Placement: _placement,
+    Turning: _turning,
+}
+
+
+def told(found: Remedy) -> list[Told]:
+    """The rows of a remedy that was computed. Raises RobomillError for what is none."""
+    if type(found) not in TOLD:
+        raise RobomillError(
+            f"remedies: found {type(found).__name__}; expected what rm.advise, rm.compensate, rm.design, rm.place or "
+            "rm.turn return."
+        )
+    return TOLD[type(found)](found)

@@ -15,8 +15,8 @@ from robomill.units import format_count, format_percent, format_share, format_va
 
 READINGS = {"wall": "Wall error", "floor": "Floor error", "end": "End of the cut", "feed": "Along the feed"}
 MODEL = (
-    "Static deflection: the mean cutting force bends joints (and springs, where there are any) that are linear; links are "
-    "stiff, deflections small."
+    "Static deflection: the mean cutting force bends joints (and springs, where there are any) that are linear; links "
+    "are stiff, deflections small."
 )
 MOST_FINDINGS, MOST_SOURCES = 20, 30
 LEVELS = {"error": "Error", "warning": "Warning", "suspicious": "Doubt", "ignored": "Ignored", "info": "Note"}

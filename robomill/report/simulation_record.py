@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from robomill import __version__
 from robomill.arrays import FloatArray
 from robomill.identification.knowledge import Knowledge
 from robomill.report.lines_record import lines_record
@@ -18,12 +17,13 @@ from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.simulation.stations import decides_at, largest_deviations, nearest_feed, section_at
 from robomill.simulation.tooth import LEFT_OUT, tooth
 from robomill.surface.groove import MEASURED, GrooveSection
+from robomill.version import __version__
 
 COMPONENTS = ("feed", "feed_normal", "axial")
 
 
 def simulation_record(result: SimulationResult, known: Knowledge | None = None) -> dict[str, Any]:
-    """One run. ``deviation_mm``, ``joint_share_mm`` and ``force_N`` are those of the worst point, in {M}; ``known`` says
+    """One run. ``deviation_mm``, ``joint_share_mm`` and ``force_N`` are those of the worst point, in {M}; ``known`` is
     how sure the compliances are, for the ``ranges``."""
     i = result.worst
     section = section_at(result, decides_at(result))

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from robomill import __version__
 from robomill.frames import Columns
 from robomill.simulation.assumptions import assumed_of_setup
 from robomill.study.responses import WORDS
 from robomill.study.running import StudyResult
 from robomill.units import format_count, format_si
+from robomill.version import __version__
 
 MOST_REASONS = 5  # that are told, the most frequent first
 

@@ -18,6 +18,7 @@ STOREYS = [
         "units",
         "unit_words",
         "typed_numbers",
+        "version",
         "arguments",
         "kinds",
         "arrays",
