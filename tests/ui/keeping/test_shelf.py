@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import errno
 import hashlib
+import multiprocessing
 import os
+import random
 import stat
+import sys
 import time
+from itertools import count
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -237,3 +242,30 @@ def test_an_entry_larger_than_the_whole_store_is_refused_and_leaves_it_as_it_was
     with pytest.raises(ProjectError, match=r"at most 0\.01 MB are kept"):
         put(shelf, "x" * 20_000, place=SECOND)
     assert shelf.get(KEY, TAB)[1] == ["a = 1\n"]
+
+
+def keep_on_writing(shelf: Shelf, kept: Any) -> None:
+    """Write one number after another, of 2 MB each, and tell those that are kept."""
+    for number in count(1):
+        put(shelf, f"a = {number}\n" * 200_000)
+        kept.send(number)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="a process is forked to be killed")
+def test_whatever_moment_its_writer_is_killed_at_the_last_work_that_was_kept_is_whole(shelf: Shelf) -> None:
+    draw, fork = random.Random(9), multiprocessing.get_context("fork")
+    for _ in range(12):
+        told, kept = fork.Pipe(duplex=False)
+        writer = fork.Process(target=keep_on_writing, args=(shelf, kept))
+        writer.start()
+        assert told.recv() == 1
+        time.sleep(draw.uniform(0.0, 0.05))
+        writer.kill()
+        writer.join()
+        last = 1
+        while told.poll():
+            last = told.recv()
+        text = Shelf(shelf.settings).get(KEY, TAB)[1][0]
+        number = int(text.split("\n")[0].removeprefix("a = "))
+        assert number in (last, last + 1)
+        assert text == f"a = {number}\n" * 200_000
