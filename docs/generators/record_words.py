@@ -135,6 +135,8 @@ WORDS: dict[str, dict[str, str]] = {
         "spring_share_mm": "What springs beside the joints give, in {M}.",
         "sag_mm": "What the arm's weight adds, where the masses of its links are given.",
         "sag_added": "Whether it is in the deviation.",
+        "wanted": "Of a corrected program what it was made of, from whose path deviations are told; null of others.",
+        "ahead_mm": "How far a corrected program sends the tool beside that path there, in {M}; null of any other.",
         "force_N": "The force on the tool there, in {M}.",
         "force_component_N.*": "The same along the feed, to its left, and along the tool axis.",
         "force_share_mm.*": "What each of these forces moves the tip by, in {M}.",

@@ -51,6 +51,8 @@ WORDS: dict[str, dict[str, str]] = {
         "program_name": "What a program given as text is called in messages.",
         "dialect": 'How the program is read: `"auto"` (guessed and said), `"linuxcnc"`, `"fanuc"`, `"grbl"`, '
         '`"sinumerik"`, `"heidenhain"`.',
+        "wanted": "Of a corrected program: the one that it was made of, from whose path deviations are told: its file, "
+        "or a table as `[path]` itself.",
         "rotary_axis": 'The rotary axis of the program that turns the part (`"A"`, `"-A"`, `"B"` ...), or '
         '`"tool"` where it leans the tool.',
         "lines_mm": "Straight cuts: rows of six numbers, X, Y, Z of the start and X, Y, Z of the end, in {W}.",

@@ -1,5 +1,6 @@
 """``robomill compensate``: the program that sends the tool elsewhere, so that it goes where it was meant to go."""
 
+import shlex
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,9 @@ def run_compensate(arguments: Any) -> int:
     files = Written.before([place])
     write_files(place.parent, {place.name: found.text})
     record = compensation_record(found)
-    return say(arguments, record, compensation_lines(record), files=files)
+    check = ["robomill", "simulate", arguments.setup, "--program", arguments.out]
+    lines = [*compensation_lines(record), f"to check  {shlex.join(check)}"]
+    return say(arguments, record, lines, files=files)
 
 
 def _check_kept(place: Path, setup: str, source: Any) -> None:

@@ -24,7 +24,8 @@ def check_once(arguments: Any) -> None:
 def check_kept(arguments: Any) -> None:
     """Refuse to write over what is read, and to write nowhere. Raises RobomillError."""
     said = vars(arguments)
-    reads = [Path(said[name]) for name in ("robot", "tests", "file", "setup", "program", "tools") if said.get(name)]
+    read = ("robot", "tests", "file", "setup", "program", "wanted", "tools")
+    reads = [Path(said[name]) for name in read if said.get(name)]
     written: list[Path] = []
     for name in ("out", "sheet", "moves"):
         if said.get(name) is None:

@@ -326,6 +326,8 @@ def _cut_options(run: argparse.ArgumentParser) -> None:
     _setup(run)
     _named(run, "--program", "another program than the set-up's, or points (.csv, .parquet)", "program")
     _points_options(run)
+    told = "of a corrected program: the one it was made of, from whose path the deviation is told"
+    _named(run, "--wanted", told, "program")
     _another_robot(run)
     run.add_argument("--tol", type=float, metavar="MM", help="another tolerance of walls and floors, mm")
     _compliance_set(run, "another of the robot's compliance sets")

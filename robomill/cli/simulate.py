@@ -1,6 +1,7 @@
 """``robomill simulate``: run a set-up, say the verdict, and write the result to a folder from which it runs again."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -45,6 +46,8 @@ def asked_setup(arguments: Any) -> Any:
     if arguments.program:
         changes["source"] = given.source(arguments.program, arguments.unit, arguments.feed)
         said["path"] = Provenance("user", f"{changes['source'].kind} {changes['source'].name}")
+    if arguments.wanted:
+        changes["source"] = _corrected_for(changes.get("source", setup.source), arguments.wanted)
     if arguments.robot:
         if setup.measured_map is not None:
             raise SetupError("--robot: the set-up's compliances were measured on its own robot ([measured_map]).")
@@ -58,12 +61,22 @@ def asked_setup(arguments: Any) -> Any:
     return setup.replace(**changes, provenance=said)
 
 
+def _corrected_for(source: Any, wanted: str) -> Any:
+    """The program with the path that was meant."""
+    if source.kind != "program":
+        raise SetupError(f"--wanted: it goes with a corrected program, and the path of this set-up is {source.name}.")
+    meant = given.source(wanted)
+    if meant.kind == "program":
+        meant = replace(meant, dialect=source.dialect, n_s=source.n_s, table=source.table)
+    return replace(source, wanted=meant)
+
+
 def _check_folder(folder: Path, arguments: Any) -> None:
     """Refuse, before anything is computed, a folder that is none, and one in which other work would be replaced."""
     if folder.exists() and not folder.is_dir():
         raise ProjectError(f"--out {folder}: this is a file; give a folder.")
-    given_as = (arguments.setup, arguments.program, arguments.robot, str(Path(arguments.setup) / SETUP))
-    read = {Path(name).resolve() for name in given_as if name}
+    given_as = (arguments.setup, arguments.program, arguments.wanted, arguments.robot)
+    read = {Path(name).resolve() for name in (*given_as, str(Path(arguments.setup) / SETUP)) if name}
     if {folder / name for name in NAMES} & read or {(folder / name).resolve() for name in NAMES} & read:
         raise ProjectError(f"--out {folder}: what this run reads stands there and would be replaced; give another.")
     if (folder / SETUP).exists() and not (folder / RECORD).exists():

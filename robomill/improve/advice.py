@@ -12,6 +12,7 @@ from robomill.arguments import asked
 from robomill.arrays import FloatArray, digest, of_kind
 from robomill.errors import RobomillError, SetupError
 from robomill.frames import Columns
+from robomill.improve.judged import refuse_corrected
 from robomill.improve.ways import fed, in_levels, turned_round
 from robomill.lazy import cached_property
 from robomill.progress import step
@@ -147,6 +148,7 @@ def advise(setup: SimulationSetup, run: Simulate = simulate) -> Advice:
     [('2 passes', 0.47), ('3 passes', 0.31), ('4 passes', 0.23)]
     """
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
+    refuse_corrected(setup)
     if not setup.force.follows_cut:
         raise SetupError(
             "The force of this set-up is stated and does not follow the cut: no other feed, way or number of passes "

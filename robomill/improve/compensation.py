@@ -12,22 +12,24 @@ from robomill.errors import CompensationError
 from robomill.frames import Columns
 from robomill.identification.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
-from robomill.improve.correction import COMPONENTS, Correction, against, correct, corrected_run
+from robomill.improve.correction import COMPONENTS, Correction, correct, corrected_run
+from robomill.improve.errors import Errors, errors_of, measured
+from robomill.improve.judged import refuse_corrected
 from robomill.improve.written import WriteGCode, Written, writing
 from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.provenance import Finding, named
 from robomill.simulation.band import deviation_band
-from robomill.simulation.gauge import Gauge, Readings
-from robomill.simulation.gauge import gauge as gauge_at
+from robomill.simulation.gauge import Gauge
+from robomill.simulation.led import against
+from robomill.simulation.meant import jump_notes
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.verdict import judge
-from robomill.simulation.verdict_words import Level
 from robomill.toolpath.source import GCodeSource
-from robomill.units import format_count, format_si, from_si, to_si
-from robomill.values import Tabled, Value
+from robomill.units import format_count, format_percent, format_si, from_si, to_si
+from robomill.values import Tabled
 
 BOUND = 2e-6  # m
 FITTED = 0.9  # of the bound: the rest is for the digits that are written
@@ -35,68 +37,8 @@ FINEST, COARSEST = 0.2e-6, 1e-3  # m: bounds that can be asked for
 WRONG = 1.2  # how much softer or stronger than is known
 FARTHEST = 2e-3  # m: an arm that is pushed further off is not predicted by its springs at rest
 MOST_HELD = 0.05  # of the length cut: so much may have no force that agrees with its place
-MEASURED = 6000  # samples: of longer programs no more are measured, and those that are most off
 TURNED = to_si(5.0, "deg")  # a joint that stands further off than this stands otherwise
 STILL = 1e-7  # rad: a joint that turns no further rests
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Errors(Value):
-    """What a gauge finds on the part, m: largest and root mean square of ``wall`` and ``floor`` errors and of the
-    ``vector`` by which the tip is off, each (2,). NaN where the cut leaves none.
-
-    Examples
-    --------
-    >>> import robomill as rm
-    >>> found = rm.compensate(rm.load_setup("paper_flute"))
-    >>> round(found.before.max * 1e3, 2), found.after.max < 0.01 * found.before.max
-    (0.23, True)
-    """
-
-    wall: FloatArray
-    floor: FloatArray
-    vector: FloatArray
-
-    @property
-    def max(self) -> float:
-        """m: the larger of wall and floor; where no surface is left to measure, that of the tip."""
-        return self._larger(0)
-
-    @property
-    def rms(self) -> float:
-        """m: the same of the root mean squares over the length."""
-        return self._larger(1)
-
-    def _larger(self, which: int) -> float:
-        surfaces = np.array([self.wall[which], self.floor[which]])
-        return float(np.nanmax(surfaces) if np.isfinite(surfaces).any() else self.vector[which])
-
-    def _said(self) -> str:
-        return f"{format_si(self.max, 'mm', 4)} at most, {format_si(self.rms, 'mm', 4)} root mean square"
-
-
-def measured(run: SimulationResult) -> Gauge:
-    """What a gauge reads on a run, of a long one at ``MEASURED`` of its samples and those that are most off."""
-    return run.gauge if int(run.judged.sum()) <= MEASURED else gauge_at(run, MEASURED)
-
-
-def level_of(run: SimulationResult) -> Level:
-    """The verdict's level by what was ``measured`` on a run."""
-    return judge(run, measured(run)).level
-
-
-def errors_of(run: SimulationResult, gauge: Gauge | None = None) -> Errors:
-    """What a run leaves, against the path that it is of; ``gauge`` is what was ``measured`` on it, if it was."""
-    gauge = measured(run) if gauge is None else gauge
-    return Errors(_size(gauge.walls), _size(gauge.floors), np.array([run.max_deviation, run.rms_deviation]))
-
-
-def _size(found: Readings) -> FloatArray:
-    """(2,) m: largest and root mean square over the length; NaN without any."""
-    if not len(found.error):
-        return np.full(2, np.nan)
-    weight = found.length if found.length.sum() > 0.0 else np.ones(len(found.error))
-    return np.array([np.abs(found.error).max(), np.sqrt(np.average(found.error**2, weights=weight))])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -121,7 +63,7 @@ class Compensation(Tabled):
     --------
     >>> import robomill as rm
     >>> found = rm.compensate(rm.load_setup("paper_flute"))
-    >>> found.text.splitlines()[4]
+    >>> found.text.splitlines()[6]
     'N30 G0 X-50 Y-0.2293 Z20'
     """
 
@@ -158,11 +100,12 @@ class Compensation(Tabled):
 
     @cached_property
     def source(self) -> GCodeSource:
-        """The corrected program as a source: ``setup.replace(source=...)`` runs it as any other."""
+        """The corrected program as a source: ``setup.replace(source=...)`` runs it as any other, and its deviation is
+        told from the path that was meant."""
         given = self.setup.source
         if isinstance(given, GCodeSource):
-            return replace(given, text=self.text, name=self.name)
-        return GCodeSource(self.text, self.name)
+            return replace(given, text=self.text, name=self.name, wanted=given)
+        return GCodeSource(self.text, self.name, wanted=given)
 
     @cached_property
     def _digest(self) -> str:
@@ -201,6 +144,7 @@ def compensation(
     if not FINEST <= bound <= COARSEST:
         ends = f"{format_si(FINEST, 'um', 1)} to {format_si(COARSEST, 'mm', 0)}"
         raise CompensationError(f"Bound: found {format_si(bound, 'um', 3)}; expected {ends}.", where="bound")
+    refuse_corrected(setup)
     with step(0, 4, "The program as it is"):
         back = writing(setup, write_gcode)
         wanted = along(setup, back.moves.wanted)
@@ -216,7 +160,7 @@ def compensation(
     with step(2, 4, "Writing the program"):
         written = back.write(found.c, FITTED * bound)
         run = corrected_run(wanted, written.q)
-        led = against(run, wanted.path)
+        led = against(run, wanted.path, wanted.R_MF)
         check_reached(run, wanted)
     with step(3, 4, "What remains"):
         return _measured(found, (led, before), written, chosen, (bound, known))
@@ -240,6 +184,7 @@ def _measured(
             "choose other components."
         )
     softer, stronger = _wrong(wanted, led, written.q)
+    findings = (*_met(after, softer, stronger, led), *_findings(found, led, written))
     return Compensation(
         setup=wanted.setup,
         components=chosen,
@@ -256,7 +201,7 @@ def _measured(
         c=written.q - wanted.path.p,
         lines_in=written.lines_in,
         unrolled=written.unrolled,
-        findings=_findings(found, led, written),
+        findings=findings,
     )
 
 
@@ -282,10 +227,9 @@ def check_trusted(run: SimulationResult, gauge: Gauge) -> None:
             f"The path is not corrected, since its prediction is not to be trusted. {verdict.sentence}"
         )
     if run.coupling is not None and not run.coupling.converged:
-        lines = run.coupling.lines
+        at = f"{run.path.block_name} {named(run.coupling.lines)}"
         raise CompensationError(
-            f"The path is not corrected: force and deflection do not agree at {run.path.block_name} {lines[0]}"
-            f"{f' and {len(lines) - 1} more' if len(lines) > 1 else ''}; cut less at once, or with a stiffer arm."
+            f"The path is not corrected: at {at} {run.coupling.why}; cut less at once, or with a stiffer arm."
         )
 
 
@@ -363,7 +307,9 @@ def _wrong(wanted: SimulationResult, led: SimulationResult, q: FloatArray) -> tu
         return worse, worse
     found = []
     for name in ("softer", "stronger"):
-        runs = [against(corrected_run(wanted, q, **{name: by}), wanted.path) for by in (WRONG, 2.0 - WRONG)]
+        runs = [
+            against(corrected_run(wanted, q, **{name: by}), wanted.path, wanted.R_MF) for by in (WRONG, 2.0 - WRONG)
+        ]
         found.append(max(map(errors_of, runs), key=lambda each: each.max))
     return found[0], found[1]
 
@@ -377,6 +323,22 @@ def _half(led: SimulationResult, known: Knowledge | None) -> float:
     return float(np.nanmax(halves))
 
 
+def _met(after: Errors, softer: Errors, stronger: Errors, led: SimulationResult) -> tuple[Finding, ...]:
+    """Whether the corrected program keeps the tolerance, and whether it still does if the numbers are wrong."""
+    setup = led.setup
+    if after.share(setup) > 1.0:
+        text = f"the tolerance is not kept by the corrected program either. {judge(led, measured(led)).sentence}"
+        return (Finding("warning", text, code="not-met"),)
+    wrong = max(softer, stronger, key=lambda errors: errors.share(setup))
+    if wrong.share(setup) <= 1.0:
+        return ()
+    text = (
+        f"the tolerance is kept only if the numbers are right: if compliances or force are 20 % wrong, "
+        f"{format_percent(wrong.share(setup))} of it is used ({format_si(wrong.max, 'mm')})."
+    )
+    return (Finding("warning", text, code="met-if-right"),)
+
+
 def _findings(found: Correction, led: SimulationResult, written: Written) -> tuple[Finding, ...]:
     wanted, told = found.first, []
     if written.unrolled:
@@ -387,6 +349,7 @@ def _findings(found: Correction, led: SimulationResult, written: Written) -> tup
             f"{wanted.path.block_name} {lines}: the tool just touches there, and no correction agrees with the force; "
         )
         told.append(Finding("warning", text + "what is left is in the numbers.", code="held"))
+    told += jump_notes(led.path, led.ahead)
     known = {(each.code, each.line) for each in wanted.steadiness}
     told += [each for each in led.steadiness if (each.code, each.line) not in known]
     before, after = reversals(wanted), reversals(led)

@@ -12,13 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
-from robomill.cutting.tool import DISH
 from robomill.progress import checkpoint
-from robomill.simulation.cut import Led
+from robomill.simulation.led import led_beside, plunges, tip_error
+from robomill.simulation.meant import LINK
 from robomill.simulation.places import STEEP
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import along, feed_directions
-from robomill.simulation.samples import ways
+from robomill.simulation.run import along
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 
@@ -27,7 +26,6 @@ AGREED = 0.5e-6  # m: corrections that change by no more have settled
 NEARLY, LONG = 5e-6, 12  # m: after so many runs it is enough if no correction changes by more
 MOST, PATIENCE = 40, 5  # runs, and after how many a place that comes no closer is given up
 MITRE = 2.0  # times the larger deflection of two cuts that meet: no corner is moved further
-LINK = 20e-6  # m: two cuts end and begin in one point where that is no further from where either would
 SLOWEST = 0.1  # least share of a change that is taken where corrections overshoot
 
 
@@ -59,19 +57,6 @@ class Correction:
 
 def _settled(change: Sequence[float]) -> bool:
     return change[-1] <= (NEARLY if len(change) > LONG else AGREED)
-
-
-def tip_error(run: SimulationResult, wanted: Toolpath) -> FloatArray:
-    """(m, 3) m in {W}: the tip of a run against the ``wanted`` path, sample by sample."""
-    return np.asarray(run.path.p - wanted.p + run.delta @ run.setup.T_MW[:3, :3])
-
-
-def against(run: SimulationResult, wanted: Toolpath) -> SimulationResult:
-    """The run along a corrected path as one that was told to go along the ``wanted`` one: what a gauge reads on it is
-    the error of the part."""
-    setup = run.setup
-    off = np.where(wanted.cutting[:, None], tip_error(run, wanted), 0.0) @ setup.T_MW[:3, :3].T
-    return replace(run, path=wanted, delta=off, R_MF=feed_directions(setup, wanted))
 
 
 def directions(run: SimulationResult, components: tuple[str, ...]) -> FloatArray:
@@ -176,15 +161,10 @@ class _Seeking:
 
 
 def corrected_run(wanted: SimulationResult, p: FloatArray, **wrong: float) -> SimulationResult:
-    """The run of the tool that is sent to p (m, 3) m in {W} to go along the path of the run ``wanted``, in whose
-    direction it feeds; ``wrong`` as in ``along``. A plunge meets the part where the cut meets it that goes on from
-    there: both were meant to be at one place."""
-    path, then = wanted.path, Places.along(wanted).then
-    tips = np.where((then >= 0)[:, None], path.p + (p - path.p)[then], p)
-    way = ways(path)
-    back = np.einsum("mi,mi->m", np.diff(tips, axis=0, prepend=tips[:1]), way) < 0.0
-    back &= path.step_length > 0.0  # a link is no step of the cut
-    led = Led(path.p, np.where(back[:, None], ways(replace(path, p=tips)), way), tips)
+    """The run of the tool that is sent to p (m, 3) m in {W} to go along the path of the run ``wanted``; ``wrong`` as in
+    ``along``."""
+    path = wanted.path
+    led = led_beside(path, p, plunges(path, wanted.conditions)[0])
     return along(wanted.setup, replace(path, p=p), led=led, **wrong)
 
 
@@ -200,14 +180,9 @@ class Places:
 
     @classmethod
     def along(cls, run: SimulationResult) -> "Places":
-        path, conditions = run.path, run.conditions
+        path = run.path
         place = np.cumsum(np.append(False, (np.diff(path.p, axis=0) != 0.0).any(axis=1)))
-        down = path.cutting & (conditions.along < -DISH)
-        steep = conditions.across < STEEP
-        after = np.append(np.where(down, len(path), np.arange(len(path)))[1:], len(path))
-        then = np.minimum.accumulate(after[::-1])[::-1]  # the first sample behind that does not go down
-        level = np.append(path.cutting & ~down & ~steep, False)
-        return cls(path, place, np.where(down & level[then], then, -1), steep)
+        return cls(path, place, *plunges(path, run.conditions))
 
     def one_each(self, P: FloatArray, d: FloatArray, known: BoolArray) -> FloatArray:
         """c (m, 3): what undoes deflections d (m, 3) m in directions P; at one place one for all that are ``known``

@@ -12,7 +12,7 @@ from robomill.arrays import FloatArray, as_floats, digest, frozen, of_kind
 from robomill.compliance.deflection import shares_along
 from robomill.errors import SetupError
 from robomill.frames import Columns
-from robomill.improve.judged import Judged, Measure, judged
+from robomill.improve.judged import Judged, Measure, judged, refuse_corrected
 from robomill.improve.least_cost import Errors, Least, least_cost, least_share
 from robomill.improve.sensitivity import stiffened
 from robomill.lazy import cached_property
@@ -199,6 +199,7 @@ def design(
     1.0
     """
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
+    refuse_corrected(setup)
     setup = _asked_for(setup, tolerance, tolerance_mm)
     n = setup.robot.n
     ratios = _bounds(bounds, n)

@@ -88,6 +88,7 @@ class Expansion:
     nominal  (terms, 1 + forces, s, 3) m along feed, left and axial, per product of ``_products``
     given    (1 + geometry, springs, 1 + forces, s, 3) m, per change of a compliance
     missed   (s,) m: one standard deviation of what the model misses there
+    ahead    (s, 3) m along feed, left and axial: how far a corrected program sends the tool beside its path
     """
 
     at: At
@@ -97,6 +98,7 @@ class Expansion:
     nominal: FloatArray
     given: FloatArray
     missed: FloatArray
+    ahead: FloatArray
 
     @property
     def unsure(self) -> Unsure:
@@ -140,7 +142,7 @@ class Expansion:
         found = weights @ self.nominal.reshape(-1, s * 3)
         first = np.column_stack([np.ones(k), u])
         weights = np.einsum("kt,kc,kf->ktcf", first, c, f).reshape(k, -1)
-        found = (found + weights @ self.given.reshape(-1, s * 3)).reshape(k, s, 3)
+        found = (found + weights @ self.given.reshape(-1, s * 3)).reshape(k, s, 3) + self.ahead
         errs = [i for i, each in enumerate(self.unsure.inputs) if each.group == "model"]
         return found + change[:, None, errs] * self.missed[:, None] if errs else found
 
@@ -167,6 +169,7 @@ def expand(unsure: Unsure, result: SimulationResult) -> Expansion:
         nominal,
         given,
         _missed(unsure, result, looking),
+        _ahead(result, looking),
     )
 
 
@@ -221,6 +224,13 @@ def _taylor(at: At, std: FloatArray, geometry: list[int]) -> tuple[FloatArray, F
     mixed = [moved((i, 1.0), (j, 1.0))[0] - both[i][0][0] - both[j][0][0] + here for i, j in pairs]
     given = [per, *(0.5 * (plus[1] - minus[1]) for plus, minus in both)]
     return np.array([here, *first, *square, *mixed]), np.array(given)
+
+
+def _ahead(result: SimulationResult, looking: Screen) -> FloatArray:
+    """(s, 3) m along feed, left and axial; 0 of a program that was not corrected."""
+    if result.ahead is None:
+        return np.zeros((len(looking.at), 3))
+    return np.asarray(np.einsum("sij,si->sj", result.R_MF[looking.at], result.ahead[looking.at]))
 
 
 def _missed(unsure: Unsure, result: SimulationResult, looking: Screen) -> FloatArray:

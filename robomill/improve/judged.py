@@ -11,6 +11,8 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import SetupError
 from robomill.simulation.gauge import Readings
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.source import wanted_of
 from robomill.values import ReadOnly
 
 Measure = Literal["verdict", "wall", "floor", "tip"]
@@ -41,6 +43,15 @@ class Judged(ReadOnly):
         """(q, d, ...) m: how far the errors go by ``vectors`` (m, 3, ...) m along feed, feed-normal and axis, one a
         sample."""
         return np.asarray(np.einsum("qdk,qk...->qd...", self.way, vectors[self.sample]))
+
+
+def refuse_corrected(setup: SimulationSetup) -> None:
+    """Raises SetupError for a program that was corrected: remedies are those of the path that was meant."""
+    made_of = wanted_of(setup.source) or getattr(setup.source, "mark", None)
+    if made_of is None:
+        return
+    name = made_of.name
+    raise SetupError(f"This program is corrected already: ask this of the program that it was made of, {name}.")
 
 
 def judged(result: SimulationResult, measure: Measure = "verdict", tolerance: float | None = None) -> Judged:

@@ -12,6 +12,7 @@ from robomill.errors import SetupError
 from robomill.frames import Columns
 from robomill.identification.models import Model
 from robomill.improve.expansion import At, chosen_spin
+from robomill.improve.judged import refuse_corrected
 from robomill.improve.screening import screen
 from robomill.improve.unsure import Input, Unsure
 from robomill.lazy import cached_property
@@ -115,6 +116,7 @@ def sensitivity(setup: SimulationSetup) -> PathSensitivity:
     0.6348
     """
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
+    refuse_corrected(setup)
     if setup.measured_map is not None:
         raise SetupError(
             "The compliance of this set-up is a measured map, in which no joint is known: take the map out "

@@ -13,6 +13,7 @@ from robomill.compliance.deflection import deflection, displacement
 from robomill.errors import SetupError
 from robomill.frames import Columns
 from robomill.improve.area import today
+from robomill.improve.judged import refuse_corrected
 from robomill.improve.placed import Place, place_of
 from robomill.improve.screening import ASKED, MOST_SAMPLES, Asked, Screen, screen, spin_matters, uncoupled
 from robomill.improve.spin_course import best_course
@@ -137,6 +138,7 @@ def turn(
     True
     """
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
+    refuse_corrected(setup)
     if setup.robot.n < 6:
         raise SetupError(f"{WHO}: an arm of {setup.robot.n} joints holds the tool in one way; nothing is left to turn.")
     if not spin_matters(setup.robot):

@@ -20,7 +20,7 @@ from robomill.quantities import Quantity, quantities, quantity, settle
 from robomill.robot.model import Robot
 from robomill.simulation.origins import robot_lengths
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import along, stepped
+from robomill.simulation.run import ran
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import reaching
 from robomill.spelled import Replaceable, in_units
@@ -179,7 +179,7 @@ class Unsure(ReadOnly):
         """The cut in full, with the numbers changed by (p,). What no set-up says (errors of the model, springs that
         bend) stays."""
         setup, by = changed(self, change), {each.key: float(change[i]) for i, each in enumerate(self.inputs)}
-        return along(setup, stepped(setup, setup.toolpath), stronger=1.0 + by.get("force", 0.0))
+        return ran(setup, stronger=1.0 + by.get("force", 0.0))
 
 
 def changed(unsure: Unsure, change: FloatArray) -> SimulationSetup:

@@ -14,13 +14,14 @@ from robomill.errors import CompensationError, GCodeError
 from robomill.improve.program import Moves
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.apt import is_apt
+from robomill.toolpath.corrected import key_of, marked
 from robomill.toolpath.fitting import Piece
 from robomill.toolpath.gcode.program import TAP, Program
 from robomill.toolpath.gcode.reading import interpret
 from robomill.toolpath.gcode.rewriting import Rewriter
 from robomill.toolpath.gcode.trace import trace
 from robomill.toolpath.path import PER_MOVE, Toolpath
-from robomill.toolpath.source import LEANS, GCodeSource
+from robomill.toolpath.source import LEANS, GCodeSource, PathSource
 
 WriteGCode = Callable[[Toolpath], str]
 NEAR = 0.6e-6  # m: what was read again lies so near to what was written
@@ -82,8 +83,9 @@ class _OfProgram(Writing):
         pieces, ends = self.moves.corrected(c, bound)
         text_lines = self.source.block_texts()
         found = Rewriter(program, self.dialect, pieces, ends).write(text_lines, self.executed)
-        self._check(found.text, found.made)
-        text = found.text.replace("\n", "\r\n") if "\r\n" in self.source.text else found.text
+        text = _marked(found.text, self.source, self.dialect)
+        self._check(text, found.made)
+        text = text.replace("\n", "\r\n") if "\r\n" in self.source.text else text
         return Written(text, self.moves.places(found.made), found.unrolled, len(text_lines))
 
     def _check(self, text: str, made: dict[int, Any]) -> None:
@@ -105,6 +107,11 @@ class _OfProgram(Writing):
                 f"Line {line}: written back, it would not lead where it should; write the moves of this line with "
                 "G0, G1, G2 and G3."
             )
+
+
+def _marked(text: str, source: PathSource, dialect: str) -> str:
+    """A corrected program's text with what it says of itself at its head."""
+    return "\n".join(marked(text.split("\n"), source.name, key_of(source.block_texts()), dialect))
 
 
 def _made(program: Program, made: dict[int, Any], j: int) -> list[tuple[FloatArray, Any]]:
@@ -159,6 +166,7 @@ class _OfPath(Writing):
         every = [piece for some in made.values() for piece in some]
         for n, j in enumerate(owner.tolist()):
             written.setdefault(j, []).append((starts[n], replace(every[n], end=p[n])))
+        text = _marked(text, self.setup.source, "linuxcnc")
         return Written(text, moves.places(written), (), len(self.setup.source.block_texts()))
 
 

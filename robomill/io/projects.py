@@ -182,6 +182,8 @@ def _robot(table: Table, beside: Beside) -> Robot:
 
 
 def _source(table: Table, beside: Beside) -> PathSource:
+    """[path]; beside a corrected program stands what was ``wanted``: the name of a program that is read as this one is,
+    or a table as [path] itself."""
     kinds = [key for key in SOURCES if table.has(key)]
     if len(kinds) != 1:
         raise table.refuse("program", f"expected one of {', '.join(SOURCES)}; found {kinds or 'none'}.")
@@ -204,6 +206,12 @@ def _source(table: Table, beside: Beside) -> PathSource:
             )
         rotary = table.choice("rotary_axis", (*TABLES, LEANS), "")
         source = replace(source, n_s=read_quantity(table, quantities(GCodeSource)["n_s"]), table=rotary)
+        table.asked.add("wanted")
+        if isinstance(table.data.get("wanted"), dict):
+            source = replace(source, wanted=_source(table.table("wanted"), beside))
+        elif table.has("wanted"):
+            meant = program_from_bytes(*beside.read(table, "wanted", PROGRAM), source.dialect)
+            source = replace(source, wanted=replace(meant, n_s=source.n_s, table=rotary))
     table.finish()
     return source
 
@@ -290,9 +298,10 @@ def _robot_table(robot: Robot) -> dict[str, Any]:
 
 def _source_table(source: PathSource) -> dict[str, Any]:
     if source.kind == "program":
-        told = {"program_text": source.text, "program_name": source.name, "dialect": source.dialect}
+        told: dict[str, Any] = {"program_text": source.text, "program_name": source.name, "dialect": source.dialect}
         told |= {"rotary_axis": source.table} if source.table else {}
-        return told | ({"spindle_1_min": shown(source.n_s, "1/min")} if source.n_s else {})
+        told |= {"spindle_1_min": shown(source.n_s, "1/min")} if source.n_s else {}
+        return told | ({} if source.wanted is None else {"wanted": _source_table(source.wanted)})
     if source.kind == "sketch":
         return {"sketch": sketch_to_table(source.sketch)}
     if source.kind == "points":

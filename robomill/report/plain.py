@@ -117,6 +117,8 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
         shares = zip(record["joints"], record["joint_share_mm"], strict=True)
         lines += [f"joint {joint}   {vector(share, 'mm')}" for joint, share in shares]
         lines += [f"{name:9} {vector(share, 'mm')}" for name, share in record["spring_share_mm"].items()]
+    if record["worst_block"] and record["ahead_mm"] is not None:
+        lines.append(f"program   {vector(record['ahead_mm'], 'mm')}   sent there beside {record['wanted']}")
     if record["worst_block"] and record["sag_mm"] is not None:
         what = (
             "added to what the force does"

@@ -17,6 +17,7 @@ from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.simulation.stations import decides_at, largest_deviations, nearest_feed, section_at
 from robomill.simulation.tooth import LEFT_OUT, tooth
 from robomill.surface.groove import MEASURED, GrooveSection
+from robomill.toolpath.source import wanted_of
 from robomill.version import __version__
 
 COMPONENTS = ("feed", "feed_normal", "axial")
@@ -31,6 +32,7 @@ def simulation_record(result: SimulationResult, known: Knowledge | None = None) 
     def there(values: FloatArray, unit: str) -> Any:
         return shown(values[i] if i >= 0 else np.full(values.shape[1:], np.nan), unit)
 
+    wanted = wanted_of(result.setup.source)
     verdict, noticed = result.verdict, (*result.notes, *result.surface_notes)
     missed = sorted(set(result.path.block[~result.reached].tolist()))
     return {
@@ -49,6 +51,8 @@ def simulation_record(result: SimulationResult, known: Knowledge | None = None) 
         },
         "sag_mm": None if result.sag is None else there(result.sag.sum(axis=-2), "mm"),
         "sag_added": result.setup.add_sag,
+        "wanted": None if wanted is None else wanted.name,
+        "ahead_mm": None if result.ahead is None else there(result.ahead, "mm"),
         "force_N": there(result.F, "N"),
         "force_component_N": dict(zip(COMPONENTS, there(result.force_components, "N"))),
         "force_share_mm": {name: there(result.delta_component[:, c], "mm") for c, name in enumerate(COMPONENTS)},

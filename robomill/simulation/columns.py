@@ -22,6 +22,8 @@ class Judged(Run, Protocol):
     @property
     def sag(self) -> FloatArray | None: ...
     @property
+    def ahead(self) -> FloatArray | None: ...
+    @property
     def deviation(self) -> FloatArray: ...
     @property
     def gauge(self) -> Gauge: ...
@@ -52,6 +54,8 @@ def path_columns(result: Judged) -> Columns:
             columns |= _vectors(f"joint{number}_{{axis}}_mm", result.delta_joint[:, j], "mm")
         for k, spring in enumerate(result.setup.springs):
             columns |= _vectors(f"{spring.name.replace(' ', '_')}_{{axis}}_mm", result.delta_spring[:, k], "mm")
+    if result.ahead is not None:
+        columns |= _vectors("ahead_{axis}_mm", result.ahead, "mm")
     if result.sag is not None:
         columns |= _vectors("sag_{axis}_mm", result.sag.sum(axis=-2), "mm")
     for name, found in (("gone", result.gauge.gone), ("thin_wall", result.gauge.thin)):

@@ -26,6 +26,7 @@ from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.doubts import unit_doubts
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
+from robomill.simulation.meant import corrected_notes, jump_notes
 from robomill.simulation.posture import posture_notes, turned_notes
 from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
@@ -57,6 +58,8 @@ class SimulationResult(Tabled):
     conditions     feed, speed, engagement at each sample
     coupling       how force and deflection were brought to agree; None for a one-pass run
     unjudged       steps that have no number, each group with its reason: their delta is NaN
+    ahead          (m, 3) m, of a corrected program: how far it sends the tool beside the path that was meant, which is
+                   ``path`` then; delta is this and what the tool is pushed. None of any other
 
     Examples
     --------
@@ -84,6 +87,7 @@ class SimulationResult(Tabled):
     sag: FloatArray | None = None
     coupling: Coupling | None = None
     unjudged: tuple[Unjudged, ...] = ()
+    ahead: FloatArray | None = None
 
     @cached_property
     def force_components(self) -> FloatArray:
@@ -185,7 +189,12 @@ class SimulationResult(Tabled):
     @cached_property
     def notes(self) -> tuple[Finding, ...]:
         """What a reader of the numbers must know."""
-        found = [*cut_notes(self.setup, self.conditions, ~self.not_judged), *tool_notes(self.setup, self.path)]
+        found = [
+            *corrected_notes(self.setup),
+            *jump_notes(self.path, self.ahead),
+            *cut_notes(self.setup, self.conditions, ~self.not_judged),
+            *tool_notes(self.setup, self.path),
+        ]
         found += [*feed_notes(self.setup, self.path), *map_notes(self.setup, self.path)]
         pushed = self.judged & self.conditions.engaged
         found += suspicions(self.setup, self.force_components[pushed])

@@ -26,8 +26,10 @@ from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import Led, cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
 from robomill.simulation.leaning import leaning
+from robomill.simulation.led import against, led_beside, plunges
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
+from robomill.simulation.meant import meant
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import sampled, ways
 from robomill.simulation.setup import SimulationSetup
@@ -55,7 +57,8 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     -------
     SimulationResult
         Arrays over the samples of the path, SI, in {M}; surfaces, sections and the verdict are made when asked for.
-        Points that cannot be reached are NaN and counted in ``reached``.
+        Points that cannot be reached are NaN and counted in ``reached``. Of a program that was corrected, and is told
+        for which path (``wanted``), the deviation is that from this path.
 
     Raises
     ------
@@ -83,7 +86,20 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     0.252
     """
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
-    return along(setup, stepped(setup, setup.toolpath))
+    return ran(setup)
+
+
+def ran(setup: SimulationSetup, stronger: float = 1.0) -> SimulationResult:
+    """The run of ``setup``; of a corrected program, of which it is told what is wanted, against that path. ``stronger``
+    as in ``along``."""
+    path = stepped(setup, setup.toolpath)
+    if setup.wanted_path is None:
+        return along(setup, path, stronger=stronger)
+    checkpoint(0.0, "Where the program was meant to go")
+    wanted = meant(path, stepped(setup, setup.wanted_path), setup.step)
+    told = told_conditions(setup, wanted, np.ones(len(wanted), dtype=bool))
+    led = led_beside(wanted, path.p, plunges(wanted, told)[0])
+    return against(along(setup, path, led=led, stronger=stronger), wanted, feed_directions(setup, wanted))
 
 
 def stepped(setup: SimulationSetup, whole: Toolpath) -> Toolpath:

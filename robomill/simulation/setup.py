@@ -29,7 +29,7 @@ from robomill.spelled import Replaceable, in_units
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Sketch
-from robomill.toolpath.source import PathSource
+from robomill.toolpath.source import PathSource, meant_by, wanted_of
 from robomill.units import format_limit, format_many, to_si
 from robomill.values import Value
 
@@ -220,6 +220,8 @@ class SimulationSetup(Replaceable, Value):
 
     def _taken(self, changes: dict[str, Any]) -> dict[str, Any]:
         found = given.taken(changes, self.T_MW, self.robot)
+        if "source" in found:
+            found["source"] = meant_by(found["source"], self.source)
         said = stated(found.get("provenance", {}))
         return {**found, "provenance": {**changed_sources(self, found), **said}}
 
@@ -255,11 +257,17 @@ class SimulationSetup(Replaceable, Value):
         return self.source.read(self.tools)
 
     @cached_property
+    def wanted_path(self) -> Toolpath | None:
+        """Of a corrected program the path that was meant, in {W}, where it is told; else None."""
+        wanted = wanted_of(self.source)
+        return None if wanted is None else wanted.read(self.tools)
+
+    @cached_property
     def stock_block(self) -> Stock:
-        """The stock as given, or a block around what the path cuts."""
+        """The stock as given, or a block around what the path cuts (around what was meant, of a corrected program)."""
         if self.stock is not None:
             return self.stock
-        path = self.toolpath
+        path = self.wanted_path or self.toolpath
         used = [self.tools.cutter(int(n)) for n in np.unique(path.tool[path.cutting]) if int(n) in self.tools]
         widest = max(used or [self.cutter], key=lambda cutter: cutter.diameter)
         return Stock.around(path, widest)

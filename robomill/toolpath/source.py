@@ -21,6 +21,7 @@ from robomill.errors import GCodeError, ToolpathError
 from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
 from robomill.spelled import in_units
+from robomill.toolpath.corrected import Mark, key_of, mark_of
 from robomill.toolpath.path import (
     FEED,
     NO_SPINDLE,
@@ -49,6 +50,8 @@ class GCodeSource:
     ``table`` is the rotary axis that turns the part ("A", "-A" ...); "" where the tool leans, or nobody has said;
     "tool" where it is said that the tool leans.
     ``n_s`` (1/s) is how fast the spindle turns of a program that never says; 0 where that is not known.
+    ``wanted`` is where the tool is wanted of a program that was corrected for the push on it: the source of that path,
+    which deviations are then told from; None: this program's own.
 
     Examples
     --------
@@ -70,6 +73,7 @@ class GCodeSource:
         hint="The program turns its spindle nowhere; how fast does it turn at the machine?",
     )
     table: str = ""
+    wanted: PathSource | None = None
 
     if TYPE_CHECKING:
 
@@ -80,6 +84,7 @@ class GCodeSource:
             dialect: str = ...,
             n_s: float = ...,
             table: str = ...,
+            wanted: PathSource | None = ...,
             *,
             spindle_1_min: float = ...,
         ) -> None: ...
@@ -89,10 +94,23 @@ class GCodeSource:
 
     def __post_init__(self) -> None:
         settle(self, ToolpathError, "Program")
+        if isinstance(self.wanted, Toolpath):
+            object.__setattr__(self, "wanted", PointsSource(self.wanted))
+        if self.wanted is not None and not hasattr(self.wanted, "read"):
+            raise ToolpathError(
+                f"Program, wanted: found {self.wanted!r:.60}; expected the path that was meant, as rm.read_program "
+                "gives it.",
+                where="wanted",
+            )
         if self.table not in (*TABLES, LEANS):
             raise ToolpathError(
                 f"Program: rotary axis {self.table!r}; expected one of {', '.join((*TABLES[1:], LEANS))}."
             )
+
+    @property
+    def mark(self) -> Mark | None:
+        """What the program's head says it was corrected for; None where it says nothing."""
+        return mark_of(self.text)
 
     def block_texts(self) -> list[str]:
         """Its lines, as every reader counts them."""
@@ -274,3 +292,19 @@ def _point(p: FloatArray) -> str:
 
 
 PathSource = GCodeSource | LinesSource | SketchSource | PointsSource
+
+
+def wanted_of(source: PathSource) -> PathSource | None:
+    """The source of the path that was meant, of a corrected program that says it; None of any other."""
+    return source.wanted if isinstance(source, GCodeSource) else None
+
+
+def meant_by(corrected: PathSource, known: PathSource) -> PathSource:
+    """A program that says it was ``corrected`` for the path of ``known`` (or for what that was corrected for), with
+    that as what is wanted; any other as it is."""
+    if not isinstance(corrected, GCodeSource) or corrected.wanted is not None or corrected.mark is None:
+        return corrected
+    for each in (known, wanted_of(known)):
+        if each is not None and key_of(each.block_texts()) == corrected.mark.key:
+            return replace(corrected, wanted=each)
+    return corrected

@@ -45,6 +45,8 @@ def shares_figure(result: SimulationResult, component: str, unit: str, *, dark: 
     s, hover = from_si(result.path.s, unit), "%{y:+.4f} " + unit
     every = np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)
     named = [f"joint {n}" for n in result.setup.robot.joint_numbers] + [s.name for s in result.setup.springs]
+    if result.ahead is not None:
+        every, named = np.column_stack([every, result.ahead[:, column]]), [*named, "corrected program"]
     plot = Along.begin(s, unit, f"shares-{component}", dark=dark, height=320)
     shares, names, order = _without_the_small(from_si(at_feed(result, every), unit), named)
     for j, name in enumerate(names):

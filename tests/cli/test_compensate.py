@@ -54,3 +54,38 @@ def test_slips_are_told_and_nothing_is_written(
     assert main(["compensate", str(SLOT), "--out", str(out), *words]) == 2
     assert said in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_the_corrected_program_is_checked_as_it_says_and_keeps_what_is_wanted_in_a_set_up(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """With the set-up's own program nothing more is to be said; beside another path ``--wanted`` does, or a file."""
+    folder = tmp_path / "work"
+    shutil.copytree(SLOT, folder)
+    setup, out = folder / "setup_process.toml", folder / "c.nc"
+    assert main(["compensate", str(setup), "--out", str(out)]) == 0
+    assert f"to check  robomill simulate {setup} --program {out}" in capsys.readouterr().out
+    before = rm.compensate(rm.load_setup(setup)).before.max
+    other = folder / "other.toml"
+    given = '[path]\nprogram = "c.nc"\nwanted = "path.nc"'
+    other.write_text(setup.read_text().replace('[path]\nprogram = "path.nc"', given))
+    elsewhere = folder / "elsewhere.toml"
+    elsewhere.write_text(setup.read_text().replace('program = "path.nc"', 'program = "c.nc"'))
+    for words in (
+        [str(setup), "--program", str(out)],
+        [str(elsewhere), "--wanted", str(folder / "path.nc")],
+        [str(other), "--out", str(tmp_path / "run")],
+        [str(tmp_path / "run" / "setup.toml")],
+    ):
+        assert main(["simulate", *words, "--json"]) == 0
+        record = json.loads(capsys.readouterr().out)
+        assert record["wanted"] == "path.nc"
+        assert max(abs(record["wall"]["value_mm"]), abs(record["floor"]["value_mm"])) < 0.01 * before * 1e3
+    assert main(["simulate", str(elsewhere), "--json"]) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record["wanted"] is None
+    assert "wanted-path" in [each["code"] for each in record["findings"]]
+    lines = "lines_mm = [[-50, 0, -2, 50, 0, -2]]\nfeed_mm_min = [1800]\n"
+    elsewhere.write_text(setup.read_text().replace('program = "path.nc"', lines))
+    assert main(["simulate", str(elsewhere), "--wanted", str(out)]) == 2
+    assert "--wanted: it goes with a corrected program" in capsys.readouterr().err

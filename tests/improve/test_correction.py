@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.improve.correction import against, correct, directions, tip_error
+from robomill.improve.correction import correct, directions
 from robomill.io.samples import samples_dir
 from robomill.simulation.result import SimulationResult
 
@@ -75,17 +75,6 @@ def test_nothing_is_sent_deeper_on_its_way_down_than_the_cut_that_goes_on_from_t
     q = run.path.p + found.c
     assert np.abs(run.delta[:, 2]).max() > 0.5e-3
     assert q[run.path.cutting, 2].min() > run.path.p[:, 2].min() - 0.15e-3
-
-
-def test_against_the_wanted_path_a_run_is_off_by_what_its_tip_is() -> None:
-    run = run_of("G21 G90\nG0 X0 Y0 Z5\nG0 Z-2\nG1 X20 F600\nG0 Z5\nM2\n")
-    found = correct(SLOT, run, BOTH)
-    told = against(found.run, run.path)
-    to_M = SLOT.T_MW[:3, :3]
-    cut = run.path.cutting
-    np.testing.assert_allclose(told.delta[cut], (tip_error(found.run, run.path) @ to_M.T)[cut])
-    np.testing.assert_allclose(told.p_machined[cut], (found.run.path.p + found.run.delta @ to_M)[cut], atol=1e-12)
-    assert told.path is run.path
 
 
 def test_the_change_falls_with_every_iteration_of_a_level_slot() -> None:

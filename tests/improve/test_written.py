@@ -19,7 +19,10 @@ def test_nothing_corrected_is_the_program_as_it_was_with_its_line_ends() -> None
         text = ends.join([*SLOT.source.block_texts(), ""])
         back = writing(SLOT.replace(source=rm.GCodeSource(text, "x.nc")), toolpath_to_gcode)
         found = back.write(np.zeros_like(back.moves.wanted.p), 2e-6)
-        assert found.text == text
+        lines = found.text.splitlines(keepends=True)
+        assert "".join(line for line in lines if "robomill" not in line) == text
+        assert [line.endswith(ends) for line in lines] == [True] * len(lines)
+        assert lines[0].startswith("(corrected by robomill for x.nc, ")
         np.testing.assert_allclose(found.q, back.moves.wanted.p, atol=1e-12)
         assert found.lines_in == 10
 

@@ -187,6 +187,8 @@ def lines(result: SimulationResult, i: int) -> list[tuple[str, FloatArray, str, 
     rows += [
         (spring.name, result.delta_spring[i, k], spring.provenance.kind, True) for k, spring in enumerate(setup.springs)
     ]
+    if result.ahead is not None:
+        rows.append(("the corrected program", result.ahead[i], "computed", True))
     if result.sag is not None and links is not None:
         rows.append(("sag under the weight", result.sag[i].sum(axis=0), links.provenance.kind, setup.add_sag))
     return rows

@@ -1,0 +1,50 @@
+"""Runs along a path beside the one that was meant, measured against that."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.cutting.conditions import CutConditions
+from robomill.cutting.tool import DISH
+from robomill.simulation.cut import Led
+from robomill.simulation.places import STEEP
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.samples import ways
+from robomill.toolpath.path import Toolpath
+
+
+def plunges(path: Toolpath, conditions: CutConditions) -> tuple[IntArray, BoolArray]:
+    """(m,) of samples on the way down the first one of the level cut that goes on from there, else -1; (m,) plunges."""
+    down = path.cutting & (conditions.along < -DISH)
+    steep = conditions.across < STEEP
+    after = np.append(np.where(down, len(path), np.arange(len(path)))[1:], len(path))
+    then = np.minimum.accumulate(after[::-1])[::-1]  # the first sample behind that does not go down
+    level = np.append(path.cutting & ~down & ~steep, False)
+    return np.where(down & level[then], then, -1), steep
+
+
+def led_beside(path: Toolpath, p: FloatArray, then: IntArray) -> Led:
+    """The tool that is sent to p (m, 3) m in {W} to go along ``path``, in whose direction it feeds. A plunge, whose cut
+    goes on at ``then`` (m,), meets the part where that does: both were meant to be at one place."""
+    tips = np.where((then >= 0)[:, None], path.p + (p - path.p)[then], p)
+    way = ways(path)
+    back = np.einsum("mi,mi->m", np.diff(tips, axis=0, prepend=tips[:1]), way) < 0.0
+    back &= path.step_length > 0.0  # a link is no step of the cut
+    return Led(path.p, np.where(back[:, None], ways(replace(path, p=tips)), way), tips)
+
+
+def tip_error(run: SimulationResult, wanted: Toolpath) -> FloatArray:
+    """(m, 3) m in {W}: the tip of a run against the ``wanted`` path, sample by sample."""
+    return np.asarray(run.path.p - wanted.p + run.delta @ run.setup.T_MW[:3, :3])
+
+
+def against(run: SimulationResult, wanted: Toolpath, R_MF: FloatArray) -> SimulationResult:
+    """The run along a corrected path as one that was told to go along the ``wanted`` one, whose axes of the cut are
+    R_MF (m, 3, 3): what a gauge reads on it is the error of the part."""
+    to_W = run.setup.T_MW[:3, :3]
+    off = np.where(wanted.cutting[:, None], tip_error(run, wanted), 0.0) @ to_W.T
+    ahead = np.where(wanted.cutting[:, None], run.path.p - wanted.p, 0.0) @ to_W.T
+    return replace(run, path=wanted, delta=off, R_MF=R_MF, ahead=ahead)

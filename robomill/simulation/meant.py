@@ -1,0 +1,157 @@
+"""Where the samples of a corrected program were meant to be: their places on the path that it was corrected for.
+
+A corrected program goes beside that path, cut by cut and in its order, with short links at sharp corners. Each of its
+samples belongs to the place that is nearest among those with its own direction, and no sample belongs before the one
+ahead of it (dynamic time warping in a window that goes along).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from robomill.arrays import FloatArray, IntArray
+from robomill.errors import ToolpathError
+from robomill.progress import checkpoint
+from robomill.provenance import Finding, named
+from robomill.simulation.samples import ways
+from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import GCodeSource
+from robomill.units import format_count, format_si
+
+WANTED = "wanted-path"  # the findings that say from which path a corrected program's deviation is told
+LINK = 20e-6  # m: corrections at one place that differ by more are joined by a link
+SAME = 1e-6  # m: steps that go no further stay at one place
+FARTHEST = 2e-3  # m: no corrected program goes further beside its path, and none leaves out more of it
+TURNED = 2e-3  # m: a place where the path goes the other way counts as so much further off, twice
+DIRECTED = 0.5e-3  # m: shorter steps may be links, which go any way
+WINDOW = 96  # samples of the path among which one looks
+SAID = 20_000  # samples between two words of progress
+
+
+def corrected_notes(setup: SimulationSetup) -> tuple[Finding, ...]:
+    """From which path the deviation of a corrected program is told."""
+    source = setup.source
+    if not isinstance(source, GCodeSource):
+        return ()
+    if source.wanted is not None:
+        text = f"the deviation is told from the path of {source.wanted.name}, for which this program was corrected."
+        return (Finding("info", text, code=WANTED),)
+    if source.mark is None:
+        return ()
+    text = (
+        f"this program was corrected for {source.mark.name}, and its deviation is told from its own lines, not from "
+        f"the path that was meant: open {source.mark.name} before it, or give that with --wanted."
+    )
+    return (Finding("warning", text, code=WANTED),)
+
+
+def jump_notes(path: Toolpath, ahead: FloatArray | None) -> tuple[Finding, ...]:
+    """Where a corrected program, which sends the tool ``ahead`` (m, 3) m of the ``path`` that was meant, jumps: between
+    two samples at one place."""
+    if ahead is None:
+        return ()
+    jump = np.linalg.norm(np.diff(ahead, axis=0, prepend=ahead[:1]), axis=1)
+    there = path.cutting & np.append(False, path.cutting[:-1]) & (path.step_length < SAME) & (jump > LINK)
+    if not there.any():
+        return ()
+    where, far = named(path.block[there].tolist()), format_si(float(jump[there].max()), "mm")
+    text = (
+        f"at {format_count(int(there.sum()), 'corner')} ({path.block_name} {where}) the correction jumps, by up to "
+        f"{far}, as the force does; a link as long leads across, and what the tool does on it is not predicted."
+    )
+    return (Finding("info", text, code="jumps"),)
+
+
+def meant(path: Toolpath, wanted: Toolpath, step: float) -> Toolpath:
+    """``path``, the samples of a corrected program, where they were meant to be on the samples of the ``wanted`` path,
+    which are no further apart than ``step`` (m). Raises ToolpathError where they belong to two paths."""
+    p = np.array(path.p)
+    cuts, told = _cuts(path), _cuts(wanted)
+    if len(cuts) != len(told):
+        raise ToolpathError(
+            f"Wanted path: it has {format_count(len(told), 'cut')} between rapids, and the program "
+            f"{format_count(len(cuts), 'cut')}: the program was not corrected for it; give the one that was meant."
+        )
+    directed = path.step_length >= min(DIRECTED, 0.5 * step)
+    here, there = np.where(directed[:, None], ways(path), 0.0), ways(wanted)
+    for some, all_ in zip(cuts, told, strict=True):
+        p[some], worst, at = _places(path.p[some], here[some], wanted.p[all_], there[all_])
+        if worst > FARTHEST:
+            raise ToolpathError(
+                f"Wanted path: at {path.block_name} {path.block[some[at]]} the program is {format_si(worst, 'mm')} off "
+                f"it, and a corrected one at most {format_si(FARTHEST, 'mm', 0)}: give the path that it was corrected "
+                "for."
+            )
+    return replace(path, p=p)
+
+
+def _cuts(path: Toolpath) -> list[IntArray]:
+    """The samples of each cut: where a rapid has brought the tool, and all up to the next rapid that goes anywhere."""
+    rapid = ~path.cutting & (path.step_length > 0.0)
+    cut = np.cumsum(rapid)
+    of = [np.flatnonzero(cut == number) for number in np.unique(cut[path.cutting])]
+    return [some for some in of if path.step_length[some[1:]].any()]
+
+
+def _places(q: FloatArray, t: FloatArray, p: FloatArray, u: FloatArray) -> tuple[FloatArray, float, int]:
+    """(n, 3) m: where on one cut of the wanted path, p (m, 3) m, the samples q (n, 3) m of one cut belong; how far (m)
+    they are off it, or leave some of it out, and which sample is or does so most. t and u are their directions."""
+    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1)))
+    s_q = np.maximum.accumulate(_nearest(q, p, s, _aligned(q, t, p, u)))
+    found = np.column_stack([np.interp(s_q, s, p[:, i]) for i in range(3)])
+    left_out = np.diff(s_q, prepend=0.0, append=s[-1])
+    left_out[1:-1] -= np.linalg.norm(np.diff(q, axis=0), axis=1)
+    worst = np.maximum(np.linalg.norm(q - found, axis=1), left_out[:-1])
+    worst[-1] = max(worst[-1], left_out[-1])
+    at = int(np.argmax(worst))
+    return found, float(worst[at]), at
+
+
+def _aligned(q: FloatArray, t: FloatArray, p: FloatArray, u: FloatArray) -> IntArray:
+    """(n,) samples of p (m, 3) m, in order, to which samples q (n, 3) m belong; t (n, 3) and u (m, 3) are their
+    directions, 0 where one has none. The first belongs to the first, the last to the last."""
+    n, m = len(q), len(p)
+    width = min(m, WINDOW)
+    every = np.arange(width)
+    total = np.full(width, np.inf)
+    total[0] = 0.0
+    first = 0
+    came, begun = np.zeros((n, width), dtype=np.int32), np.zeros(n, dtype=np.int64)
+    for i in range(1, n):
+        if i % SAID == 0:
+            checkpoint(i / n, "Where the program was meant to go")
+        least = np.minimum.accumulate(total)
+        source = np.maximum.accumulate(np.where(total <= least, every, 0))
+        moved = min(max(first + int(np.argmin(total)) - width // 2, first), m - width) - first
+        first += moved
+        shift = np.minimum(every + moved, width - 1)
+        came[i], begun[i] = source[shift] + first - moved, first
+        off = q[i] - p[first : first + width]
+        along = np.einsum("wi,i->w", u[first : first + width], t[i])
+        cost = np.einsum("wi,wi->w", off, off) + TURNED**2 * (float(t[i] @ t[i]) - along)
+        total = least[shift] + cost
+    at = np.empty(n, dtype=np.int64)
+    at[-1] = first + (width - 1 if first + width == m else int(np.argmin(total)))
+    for i in range(n - 1, 0, -1):
+        at[i - 1] = came[i, at[i] - begun[i]]
+    return at
+
+
+def _nearest(q: FloatArray, p: FloatArray, s: FloatArray, at: IntArray) -> FloatArray:
+    """(n,) m along p (m, 3) m, whose samples stand at s (m,) m: the nearest place to each of q (n, 3) m on the two
+    steps about the samples ``at`` (n,)."""
+    found, least = s[at], np.linalg.norm(q - p[at], axis=1)
+    for a in (np.maximum(at - 1, 0), at):
+        b = np.minimum(a + 1, len(p) - 1)
+        way = p[b] - p[a]
+        square = np.einsum("ni,ni->n", way, way)
+        along = np.einsum("ni,ni->n", q - p[a], way)
+        share = np.clip(np.divide(along, square, out=np.zeros(len(q)), where=square > 0.0), 0.0, 1.0)
+        off = np.linalg.norm(q - p[a] - share[:, None] * way, axis=1)
+        better = off < least
+        found = np.where(better, s[a] + share * (s[b] - s[a]), found)
+        least = np.minimum(least, off)
+    return np.asarray(found)

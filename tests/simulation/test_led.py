@@ -1,0 +1,26 @@
+"""Runs along a path beside the one that was meant, told from that."""
+
+import numpy as np
+
+import robomill as rm
+from robomill.io.samples import samples_dir
+from robomill.simulation.led import against
+
+SLOT = rm.load_setup(samples_dir() / "paper_flute")
+
+
+def test_against_the_wanted_path_a_run_is_off_by_what_its_tip_is() -> None:
+    """Told from a slot 0.1 mm beside and 0.05 mm beneath the one that it goes along."""
+    text = "G21 G90\nG0 X0 Y0 Z5\nG0 Z-2\nG1 X20 F600\nG0 Z5\nM2\n"
+    run = rm.simulate(SLOT.replace(source=rm.GCodeSource(text, "x.nc")))
+    beside = np.array([0.0, -0.1e-3, -0.05e-3])
+    wanted = rm.Toolpath(
+        **{name: getattr(run.path, name) for name in ("k", "v_f", "cutting", "block", "n_s", "tool")},
+        p=run.path.p + beside,
+    )
+    told, to_M = against(run, wanted, run.R_MF), SLOT.T_MW[:3, :3]
+    cut = run.path.cutting
+    np.testing.assert_allclose(told.delta[cut], (run.delta - to_M @ beside)[cut], atol=1e-15)
+    np.testing.assert_allclose(told.ahead[cut], np.tile(-to_M @ beside, (cut.sum(), 1)), atol=1e-15)
+    np.testing.assert_allclose(told.p_machined[cut], (run.path.p + run.delta @ to_M)[cut], atol=1e-12)
+    assert told.path is wanted

@@ -1,0 +1,89 @@
+"""Where the samples of a corrected program were meant to be, against paths offset by hand."""
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.errors import ToolpathError
+from robomill.simulation.meant import meant
+from robomill.toolpath.sampling import resample
+
+STEP = 1e-3
+
+
+def cut(*points_mm: tuple[float, float]) -> rm.Toolpath:
+    """A cut at Z -2 through points in mm, with a rapid to its begin."""
+    p = [(*points_mm[0], 5.0), *((x, y, -2.0) for x, y in points_mm)]
+    feeds = [0.0, 0.0, *[600.0] * (len(points_mm) - 1)]
+    return rm.Toolpath.from_points(p_mm=p, feed_mm_min=feeds)
+
+
+def places(corrected: rm.Toolpath, wanted: rm.Toolpath) -> np.ndarray:
+    """(m, 2) mm: where the samples at feed were meant to be."""
+    path = resample(corrected, STEP)
+    found = meant(path, resample(wanted, STEP), STEP)
+    return np.column_stack([path.p, found.p])[path.cutting][:, [0, 1, 3, 4]] * 1e3
+
+
+def test_beside_a_line_every_sample_belongs_to_its_foot() -> None:
+    found = places(cut((0, 0.2), (60, 0.3)), cut((0, 0), (60, 0)))
+    np.testing.assert_allclose(found[:, 2], found[:, 0], atol=1e-9)
+    np.testing.assert_allclose(found[:, 3], 0.0, atol=1e-12)
+
+
+def test_round_a_corner_each_leg_belongs_to_its_own_and_the_link_to_the_corner() -> None:
+    """The first leg's correction points along the second one, on which its end lies all the same."""
+    corrected = cut((0, 0.3), (40, 0.3), (39.7, 0), (39.7, 40))
+    found = places(corrected, cut((0, 0), (40, 0), (40, 40)))
+    first = found[:, 1] == 0.3
+    np.testing.assert_allclose(found[first][:-1, 3], 0.0, atol=1e-9)
+    second = (found[:, 0] == 39.7) & (found[:, 1] > 1.0)
+    np.testing.assert_allclose(found[second][:, 2], 40.0, atol=1e-9)
+    np.testing.assert_allclose(found[second][:, 3], found[second][:, 1], atol=1e-9)
+
+
+def test_there_and_back_along_one_line_are_not_taken_for_each_other() -> None:
+    found = places(cut((0, 0.2), (50, 0.2), (50, -0.2), (0, -0.2)), cut((0, 0), (50, 0), (0, 0)))
+    np.testing.assert_allclose(found[:, 2], np.clip(found[:, 0], 0.0, 50.0), atol=1e-9)
+    assert (np.abs(np.diff(found[:, 2])) <= 1.0 + 1e-9).all()
+
+
+def test_a_ring_cut_twice_belongs_turn_by_turn() -> None:
+    angle = np.linspace(0.0, 4.0 * np.pi, 721)
+    ring = [(20.0 * np.cos(a), 20.0 * np.sin(a)) for a in angle]
+    wide = [(1.01 * x, 1.01 * y) for x, y in ring]
+    path = resample(cut(*wide), STEP)
+    found = meant(path, resample(cut(*ring), STEP), STEP)
+    turned = np.unwrap(np.arctan2(found.p[path.cutting][:, 1], found.p[path.cutting][:, 0]))
+    assert (np.diff(turned) > -1e-9).all()
+    assert turned[-1] - turned[0] == pytest.approx(4.0 * np.pi, rel=0.01)
+    np.testing.assert_allclose(np.hypot(*found.p[path.cutting][:, :2].T), 20e-3, atol=2e-6)
+
+
+def test_a_long_path_is_followed_in_a_time_that_grows_with_it_alone() -> None:
+    zigzag = [(x * 100.0, y * 5.0) for y in range(40) for x in ((0, 1) if y % 2 == 0 else (1, 0))]
+    found = places(cut(*[(x + 0.1, y - 0.2) for x, y in zigzag]), cut(*zigzag))
+    off = found[:, :2] - found[:, 2:]
+    assert np.linalg.norm(off, axis=1).max() < 0.3
+    assert len(found) > 4000
+
+
+@pytest.mark.parametrize(
+    ("corrected", "words"),
+    [
+        (cut((0, 5), (60, 5)), "5.000 mm off"),
+        (cut((0, 0), (30, 0)), "off it, and a corrected one at most 2 mm"),
+    ],
+)
+def test_another_path_is_refused_by_the_place_where_it_leaves(corrected: rm.Toolpath, words: str) -> None:
+    with pytest.raises(ToolpathError, match=words):
+        places(corrected, cut((0, 0), (60, 0)))
+
+
+def test_a_path_with_other_cuts_is_refused_by_their_number() -> None:
+    two = rm.Toolpath.from_points(
+        p_mm=[[0, 0, 5], [0, 0, -2], [20, 0, -2], [20, 0, 5], [40, 0, 5], [40, 0, -2], [60, 0, -2]],
+        feed_mm_min=[0, 0, 600, 0, 0, 0, 600],
+    )
+    with pytest.raises(ToolpathError, match="2 cuts between rapids, and the program 1 cut"):
+        places(cut((0, 0), (60, 0)), two)
