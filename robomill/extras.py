@@ -10,6 +10,7 @@ from robomill.errors import MissingExtraError
 BROUGHT_BY = {
     "streamlit": ("streamlit", "app"),
     "plotly": ("plotly", "app"),
+    "segno": ("segno", "app"),
     "pandas": ("pandas", "data"),
     "xarray": ("xarray", "data"),
     "pyarrow": ("pyarrow", "data"),

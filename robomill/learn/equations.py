@@ -32,7 +32,8 @@ def product(C: FloatArray, F: FloatArray) -> str:
     rows = from_si(C, "um/N")
     matrix = r" \\ ".join(" & ".join(_number(v, 3) for v in row) for row in rows)
     moved = r" \\ ".join(_number(v, 1) for v in from_si(displacement(C, F), "um"))
-    force = r" \\ ".join(f"{v:.0f}" for v in F)
+    whole = np.allclose(F, np.round(F), atol=1e-9)
+    force = r" \\ ".join(_number(v, 0 if whole else 1) for v in F)
     return (
         rf"\begin{{bmatrix}} {matrix} \end{{bmatrix}} \begin{{bmatrix}} {force} \end{{bmatrix}}"
         rf" = \begin{{bmatrix}} {moved} \end{{bmatrix}}"

@@ -1,4 +1,4 @@
-"""Learn in a browser: question and picture side by side from 900 px on, and nothing of the arm outside of its frame."""
+"""Learn in a browser: lessons by their address; question and picture side by side; all of the arm in its frame."""
 
 from __future__ import annotations
 
@@ -35,3 +35,27 @@ def test_question_and_picture_stand_side_by_side(page: Any, url: str, width: int
     back = page.get_by_role("button", name="Hide it again")
     back.wait_for()
     assert back.evaluate("node => getComputedStyle(node).borderTopWidth") == "2px"
+
+
+@pytest.mark.parametrize("width", [1440, 390])
+def test_an_address_leads_to_a_step_of_a_lesson_in_large_type_and_without_the_menu(
+    page: Any, url: str, width: int
+) -> None:
+    page.set_default_timeout(60_000)
+    page.set_viewport_size({"width": width, "height": 900})
+    page.goto(f"{url}/Learn?lesson=2&step=2&projector=1")
+    idle(page)
+    page.get_by_text("Joint 3 gives 70 % of the displacement.").wait_for()
+    size = page.evaluate("getComputedStyle(document.documentElement).fontSize")
+    assert float(size.removesuffix("px")) == pytest.approx(1.4 * 16)
+    assert not page.locator('[data-testid="stSidebar"]').is_visible()
+    wide = page.evaluate(
+        "(() => { const m = document.querySelector('[data-testid=stMain]'); return m.scrollWidth; })()"
+    )
+    assert wide <= width, "nothing stands beyond the edge"
+    page.get_by_role("button", name="Why?").click()
+    idle(page)
+    page.wait_for_function("new URL(location).searchParams.get('step') === '3'")
+    page.reload()
+    idle(page)
+    page.get_by_text("What joint 3 gives is its compliance times its lever arm squared").wait_for()
