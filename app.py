@@ -40,6 +40,8 @@ def start() -> None:
         index = decides_at(result)
         if index >= 0:
             arm_at(result, index, "start-arm", HEIGHT, zoom=0.9)
+        else:
+            ui.note("The arm is drawn where the verdict is decided: nothing of this cut is judged yet.")
     with middle, st.container(border=True, height="stretch"):
         story.groove_picture(result, project.view, HEIGHT, dark)
     with right:

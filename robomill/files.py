@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from robomill.errors import RobomillError
+from robomill.units import format_number
 
 LONGEST_PLACE = 80  # characters of a path that a refusal shows
 
@@ -81,7 +82,7 @@ def name_of(path: str | Path) -> str:
 def check_size(size: int, kind: FileKind, error: type[RobomillError], place: str) -> None:
     """Refuse what is larger than its kind may be."""
     if size > kind.most:
-        found = f"{size / 1e6:,.1f}" if size > kind.most + 1 else f"more than {kind.most_MB}"
+        found = format_number(size / 1e6, 1) if size > kind.most + 1 else f"more than {kind.most_MB}"
         raise error(f"{place}: found {found} MB, expected {kind.expected} of at most {kind.most_MB} MB{kind.smaller}.")
 
 

@@ -5,6 +5,7 @@ or one of its kin below: decimals, minus signs, thousands and the taking off of 
 """
 
 import math
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import SupportsFloat, TypeVar
@@ -16,6 +17,7 @@ Number = TypeVar("Number", float, NDArray[np.float64])
 
 NOT_REACHED = "not reached"
 MINUS = "−"
+GAP = "\u202f"  # between thousands: a comma there is a decimal mark to many
 
 
 @dataclass(frozen=True)
@@ -215,8 +217,9 @@ def format_limit(limit: float, unit: str) -> str:
 
 
 def format_count(count: int, noun: str = "") -> str:
-    """``1 cut``, ``12,400 cuts``; the number alone without a noun."""
-    return f"{count:,} {noun}{'' if count == 1 else 's'}" if noun else f"{count:,}"
+    """``1 cut``, ``12 400 cuts``; the number alone without a noun."""
+    number = _typeset(str(count))
+    return f"{number} {noun}{'' if count == 1 else 's'}" if noun else number
 
 
 def format_short_count(count: int) -> str:
@@ -235,8 +238,8 @@ def format_bytes(count: int) -> str:
 
 
 def format_times(times: SupportsFloat, digits: int = 2) -> str:
-    """How many times larger something is drawn, by its leading digits: ``× 1,200``."""
-    return f"× {rounded(times, digits):,.12g}"
+    """How many times larger something is drawn, by its leading digits: ``× 1200``."""
+    return f"× {_typeset(f'{rounded(times, digits):.12g}')}"
 
 
 def decimals(unit: str, digits: int | None) -> int:
@@ -308,4 +311,7 @@ def _with_label(text: str, unit: str) -> str:
 
 
 def _typeset(text: str) -> str:
-    return text.replace("-", MINUS)
+    """A number's characters with a true minus, and its thousands parted from five digits on."""
+    whole = re.match(r"[+-]?(\d{5,})(?!\d*e)", text)
+    parted = text.replace(whole[1], f"{int(whole[1]):,}".replace(",", GAP), 1) if whole else text
+    return parted.replace("-", MINUS)

@@ -13,7 +13,7 @@ import numpy as np
 from robomill.arrays import digest, sealed
 from robomill.frames import Columns, data_frame
 from robomill.lazy import cached_property
-from robomill.units import format_significant
+from robomill.units import format_count, format_significant
 
 if TYPE_CHECKING:
     from robomill.frames import DataFrame
@@ -144,7 +144,7 @@ def head_of(columns: Columns) -> str:
     rows = [_row("th", list(some))]
     rows += [_row("td", [_cell(value) for value in row]) for row in zip(*some.values(), strict=True)]
     if count > MOST_ROWS:
-        rows.append(f'<tr><td colspan="{len(columns)}">… {count - MOST_ROWS:,} more</td></tr>')
+        rows.append(f'<tr><td colspan="{len(columns)}">… {format_count(count - MOST_ROWS)} more</td></tr>')
     return "".join(rows)
 
 

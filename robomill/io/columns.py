@@ -24,7 +24,7 @@ from robomill.files import TABLE
 from robomill.io.texts import read_text
 from robomill.quantities import GREATEST
 from robomill.typed_numbers import either_way
-from robomill.units import to_si
+from robomill.units import format_count, to_si
 
 if TYPE_CHECKING:
     from robomill.frames import DataFrame, Series
@@ -224,7 +224,9 @@ def _body(text: str, layout: Layout, name: str) -> tuple[_Body, str]:
     mark = said[1] if said else next((mark for mark in "\t;" if mark in header), ",")
     names = [cell.strip()[: LONGEST_NAME + 1] for cell in _cells(header, mark)]
     if len(names) > MOST_COLUMNS:
-        raise Place(name, head, layout.error).refuse(f"found {len(names):,} columns, expected {MOST_COLUMNS} at most.")
+        raise Place(name, head, layout.error).refuse(
+            f"found {format_count(len(names))} columns, expected {MOST_COLUMNS} at most."
+        )
     row = np.array([k for k, _ in below])
     return _Body([line for _, line in below], row, names, mark, Place(name, head, layout.error)), remarks
 

@@ -88,7 +88,7 @@ def _but(read: Read) -> str:
 
 
 def _listed(read: Read) -> str:
-    return ", ".join(f"{count:,} × {what}" for what, count in sorted(read.left_out.items()))
+    return ", ".join(f"{format_count(count)} × {what}" for what, count in sorted(read.left_out.items()))
 
 
 def _sizes(drawing: Drawing) -> str:

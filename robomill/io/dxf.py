@@ -20,7 +20,7 @@ from robomill.toolpath.chaining import SHORTEST
 from robomill.toolpath.contour import Contour
 from robomill.toolpath.gcode.arcs import CHORD_ERROR, chord_counts
 from robomill.toolpath.sketch import MAX_POINTS, Shape, centre_of, outline
-from robomill.units import to_si
+from robomill.units import format_count, to_si
 
 MOST_ENTITIES = 50_000  # looked at, with those of blocks each time that one is inserted
 MOST_TAGS, MOST_RECORDS = 1_000_000, 200_000  # of the file: pairs of lines, and those of them that begin something
@@ -67,7 +67,7 @@ class Reading:
         """Whether so many ``points`` may come. Raises ToolpathError where that is too much, or it is too late."""
         checkpoint()
         if points > self.room:
-            raise self.refuse(f"its lines have more than {MAX_POINTS:,} points")
+            raise self.refuse(f"its lines have more than {format_count(MAX_POINTS)} points")
         if time.thread_time() > self._until:
             raise self.refuse(f"it takes longer than {LONGEST_S:.0f} s to read")
 
@@ -136,7 +136,7 @@ def _look_over(data: bytes, name: str) -> None:
     begun = sum(code.strip() == b"0" for code in islice(io.BytesIO(data), 0, None, 2)) if tags > MOST_RECORDS else 0
     for found, most, what in ((tags, MOST_TAGS, "values"), (begun, MOST_RECORDS, "entities and other records")):
         if found > most:
-            raise Reading(name).refuse(f"it holds {found:,} {what}, at most {most:,} are read")
+            raise Reading(name).refuse(f"it holds {format_count(found)} {what}, at most {format_count(most)} are read")
 
 
 def _document(data: bytes, name: str) -> Any:
@@ -176,7 +176,7 @@ class _DxfReading(Reading):
         for entity in entities:
             self.looked_at += 1
             if self.looked_at > MOST_ENTITIES:
-                raise self.refuse(f"it holds more than {MOST_ENTITIES:,} entities, blocks opened")
+                raise self.refuse(f"it holds more than {format_count(MOST_ENTITIES)} entities, blocks opened")
             self.look()
             own = (
                 str(entity.dxf.layer) if entity.dxf.is_supported("layer") else "0"
@@ -191,7 +191,7 @@ class _DxfReading(Reading):
     def _each(self, insert: Any) -> Iterator[Any]:
         """An insert, or those that an array of it stands for."""
         if insert.mcount > MOST_ENTITIES:
-            raise self.refuse(f"a block is inserted {insert.mcount:,} times in an array")
+            raise self.refuse(f"a block is inserted {format_count(insert.mcount)} times in an array")
         return iter(insert.multi_insert()) if insert.mcount > 1 else iter([insert])
 
     def _opened(self, insert: Any, layer: str, depth: int) -> Iterator[tuple[Any, str]]:
@@ -323,7 +323,10 @@ def _polyline(entity: Any, to: _DxfReading) -> Made:
 
 def _spline(entity: Any, to: _DxfReading) -> Made:
     if entity.control_point_count() == 0 and entity.fit_point_count() > MOST_FIT:
-        raise to.refuse(f"it has a spline through {entity.fit_point_count():,} points, at most {MOST_FIT:,} are read")
+        raise to.refuse(
+            f"it has a spline through {format_count(entity.fit_point_count())} points, at most "
+            f"{format_count(MOST_FIT)} are read"
+        )
     return _curve(entity, to)
 
 

@@ -25,7 +25,7 @@ from robomill.provenance import Finding
 from robomill.spelled import one_of, to_give
 from robomill.toolpath.path import FEED, Toolpath
 from robomill.toolpath.source import PointsSource
-from robomill.units import format_many, format_short, from_si, to_si, unit_label
+from robomill.units import format_count, format_many, format_short, from_si, to_si, unit_label
 
 SUFFIXES = (".csv", ".parquet")
 ASKED = {"mm": "mm/min", "in": "in/min", "cm": "mm/min", "m": "mm/min"}
@@ -117,13 +117,16 @@ def _of_parquet(data: bytes, name: str, layout: Layout) -> tuple[Columns, str]:
     try:
         file = parquet.ParquetFile(io.BytesIO(data))
         if file.metadata.num_rows > MOST_POINTS:
-            found = f"{file.metadata.num_rows:,}"
-            raise ToolpathError(f"{name}: found {found} rows, expected {MOST_POINTS:,} at most; split the file.")
+            found = format_count(file.metadata.num_rows)
+            raise ToolpathError(
+                f"{name}: found {found} rows, expected {format_count(MOST_POINTS)} at most; split the file."
+            )
         numbers = [each.name for each in file.schema_arrow if _is_number(pyarrow, each.type)]
         if len(numbers) * file.metadata.num_rows > MOST_VALUES:
             raise ToolpathError(
-                f"{name}: found {len(numbers):,} columns of {file.metadata.num_rows:,} numbers, expected "
-                f"{MOST_VALUES:,} numbers at most; leave out the columns that no path has."
+                f"{name}: found {format_count(len(numbers))} columns of "
+                f"{format_count(file.metadata.num_rows)} numbers, "
+                f"expected {format_count(MOST_VALUES)} numbers at most; leave out the columns that no path has."
             )
         frame = file.read(columns=numbers).to_pandas(ignore_metadata=True)
     except ToolpathError:

@@ -18,6 +18,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import SurfaceError
+from robomill.units import format_count
 
 Kind = Literal["stl", "obj", "ply", "3mf"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -68,7 +69,7 @@ def _look_over(data: bytes, kind: Kind, label: str) -> None:
         found += [int(count) // 2 for count in _ELEMENTS.findall(data[: data.find(b"end_header")])]
     if max(found) > MOST_TRIANGLES:
         raise SurfaceError(
-            f"{label}: the {kind.upper()} has more than {MOST_TRIANGLES:,} triangles; export it coarser."
+            f"{label}: the {kind.upper()} has more than {format_count(MOST_TRIANGLES)} triangles; export it coarser."
         )
 
 
@@ -95,7 +96,9 @@ def _of_3mf(data: bytes, label: str) -> dict[str, Any]:
             corners, own = _mesh(*meshes[mesh])
             triangles += len(own)
             if triangles > MOST_TRIANGLES:
-                raise SurfaceError(f"{label}: the 3MF has more than {MOST_TRIANGLES:,} triangles; export it coarser.")
+                raise SurfaceError(
+                    f"{label}: the 3MF has more than {format_count(MOST_TRIANGLES)} triangles; export it coarser."
+                )
             vertices.append((corners @ placed[:3, :3] + placed[3, :3]) * scale)
             faces.append((own if np.linalg.det(placed[:3, :3]) > 0 else own[:, ::-1]) + count)
             count += len(corners)
@@ -128,8 +131,8 @@ class _Model:
                 self.corners, self.faces = self.meshes[element] = array("d"), array("q")
         if max(len(self.corners), len(self.faces)) > 3 * MOST_TRIANGLES or self.others > MOST_OTHERS:
             raise SurfaceError(
-                f"{self.label}: the 3MF has more than {MOST_TRIANGLES:,} triangles or corners, or more than "
-                f"{MOST_OTHERS:,} other elements; export it coarser."
+                f"{self.label}: the 3MF has more than {format_count(MOST_TRIANGLES)} triangles or corners, "
+                f"or more than {format_count(MOST_OTHERS)} other elements; export it coarser."
             )
 
     def end(self, tag: str) -> None:
@@ -171,7 +174,9 @@ def _models(data: bytes, label: str) -> tuple[dict[str, ElementTree.Element], di
             found[entry.filename] = read[0]
             meshes.update(read[1])
             if sum(len(faces) for _, faces in meshes.values()) > 3 * MOST_TRIANGLES:
-                raise SurfaceError(f"{label}: the 3MF has more than {MOST_TRIANGLES:,} triangles; export it coarser.")
+                raise SurfaceError(
+                    f"{label}: the 3MF has more than {format_count(MOST_TRIANGLES)} triangles; export it coarser."
+                )
     return found, meshes
 
 

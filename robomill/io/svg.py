@@ -18,6 +18,7 @@ from robomill.errors import ToolpathError
 from robomill.extras import needed
 from robomill.io.dxf import PER_INCH, STUMBLES, Read, Reading, metres
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
+from robomill.units import format_count
 
 DEEPEST = 200  # elements in elements, twice as many where some are used by others
 MOST_TAGS = 100_000  # beginnings, ends and comments of elements
@@ -78,7 +79,7 @@ class Svg:
         return Reading(self.name).refuse(why)
 
     def _too_many(self) -> ToolpathError:
-        return self._refuse(f"it holds more than {MOST_ELEMENTS:,} elements, each as often as it is used")
+        return self._refuse(f"it holds more than {format_count(MOST_ELEMENTS)} elements, each as often as it is used")
 
     # ---- a look at everything before it is drawn -------------------------------------------------------------------
     def _look(self) -> None:
@@ -92,14 +93,16 @@ class Svg:
                 del element.attrib[key]
             for key in element.attrib.keys() - LONG:
                 if len(element.attrib[key]) > MOST_TRANSFORM:
-                    raise self._refuse(f"the {key:.20} of an element has more than {MOST_TRANSFORM:,} characters")
+                    raise self._refuse(
+                        f"the {key:.20} of an element has more than {format_count(MOST_TRANSFORM)} characters"
+                    )
             if "href" in element.attrib:  # of two it is the one that holds
                 element.attrib.pop(XLINK, None)
             self._reduce(element)
         drawn, turned = self._count_of(self.root, known, {}, set())
         style = sum(len(e.text or "") for e in self.root.iter() if _kind(e) == "style")
         if style * drawn > MOST_STYLE:
-            raise self._refuse(f"its styles are {style:,} characters long")
+            raise self._refuse(f"its styles are {format_count(style)} characters long")
         if turned > MOST_STYLE:
             raise self._refuse("its transforms, one in another, are too long")
 

@@ -26,7 +26,7 @@ from robomill.io.tables import Table, parse_toml
 from robomill.io.texts import read_text
 from robomill.provenance import Finding
 from robomill.quantities import quantities
-from robomill.units import format_si, from_si, to_si
+from robomill.units import format_count, format_si, from_si, to_si
 
 UNITS = ("mm", "in")
 LAYOUT = Layout("Tool table", CuttingError, {}, "tool,kind,diameter_mm,flutes,length_mm")
@@ -138,7 +138,9 @@ def _from_tbl(text: str, place: str, unit: str) -> list[TableTool]:
             continue
         where = f"{place}, line {line}"
         if len(code) > LONGEST_LINE:
-            raise CuttingError(f"{where}: it has {len(code):,} characters; expected words such as 'T1 P1 D3.0 Z12.5'.")
+            raise CuttingError(
+                f"{where}: it has {format_count(len(code))} characters; expected words such as 'T1 P1 D3.0 Z12.5'."
+            )
         if not re.fullmatch(rf"(?:{_WORD.pattern})+", code.strip()):
             raise CuttingError(f"{where}: found {code.strip()[:40]!r}; expected words such as 'T1 P1 D3.0 Z12.5'.")
         words = {letter.upper(): float(value) for letter, value in _WORD.findall(code.strip())}

@@ -14,7 +14,7 @@ from robomill.io.declared import Around, Codec, from_table, to_table
 from robomill.io.tables import Table, shown
 from robomill.simulation.given import PART_TURN, PART_ZERO, part_frame
 from robomill.surface.stock import Stock
-from robomill.units import to_si
+from robomill.units import format_count, to_si
 
 OF_TRIANGLE = 72  # bytes: three corners of three numbers
 MOST_TRIANGLES = STL.most // 50  # a triangle of a binary STL takes 50 bytes
@@ -67,7 +67,7 @@ def _unpacked(table: Table, name: str, around: Around) -> FloatArray | None:
     """(t, 3, 3): as many triangles as are declared and a stock's file holds are inflated, whatever is packed."""
     packed, count = table.text(name), table.whole(f"{name}_count", MOST_TRIANGLES)
     if not 0 < count <= MOST_TRIANGLES:
-        raise table.refuse(f"{name}_count", f"found {count}, expected 1 to {MOST_TRIANGLES:,} triangles.")
+        raise table.refuse(f"{name}_count", f"found {count}, expected 1 to {format_count(MOST_TRIANGLES)} triangles.")
     try:
         inflating = zlib.decompressobj()
         numbers = inflating.decompress(base64.b64decode(packed, validate=True), count * OF_TRIANGLE + 1)
@@ -77,7 +77,9 @@ def _unpacked(table: Table, name: str, around: Around) -> FloatArray | None:
             return np.frombuffer(numbers, dtype="<f8").reshape(-1, 3, 3)
     except (binascii.Error, zlib.error, ValueError):
         raise table.refuse(name, "the packed mesh is damaged; read the STL file again.") from None
-    raise table.refuse(name, f"the packed mesh holds more than {count:,} triangles; read the STL file again.")
+    raise table.refuse(
+        name, f"the packed mesh holds more than {format_count(count)} triangles; read the STL file again."
+    )
 
 
 def _packed(name: str, triangles: FloatArray) -> dict[str, Any]:

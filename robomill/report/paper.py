@@ -129,7 +129,7 @@ STATEMENTS = (
         "C_xx, C_zz fall with Y and grow with |X|; C_yy grows with Y and falls with |X|",
         "assumed",
         "The paper says so of the whole plane. With these lengths C_yy grows with Y for |X| up to {reach:.0f} mm "
-        "alone; none of the 14 112 lengths tried has it grow everywhere and meets the other claims.",
+        "alone; none of the 14\u202f112 lengths tried has it grow everywhere and meets the other claims.",
     ),
     Statement(
         "figure_6",

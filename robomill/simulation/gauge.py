@@ -74,6 +74,11 @@ class Readings(ReadOnly):
         inside = np.clip(self.error, edges[0], edges[-1])
         return np.histogram(inside, bins=edges, weights=self.length * self.height)[0]
 
+    @property
+    def squares(self) -> float:
+        """m^4: the squares of the errors over the area that they stand for."""
+        return float(np.sum(self.error**2 * self.length * self.height))
+
     def _share(self, tolerance: float, weight: FloatArray) -> float:
         out, total = np.abs(self.error) > tolerance, float(weight.sum())
         if not out.any():

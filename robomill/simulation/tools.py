@@ -18,7 +18,7 @@ from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
-from robomill.units import format_si, from_si, unit_label
+from robomill.units import format_si
 
 FASTEST = 1.0  # m/s, of a feed
 
@@ -123,7 +123,7 @@ def feed_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
         return ()
     i, lines = int(np.argmax(np.where(odd, path.v_f, 0.0))), len(np.unique(path.block[odd]))
     a_turn = f", {format_si(turn[i], 'mm', 1)} a revolution" if turns[i] else ""
-    feed = f"{from_si(path.v_f[i], 'mm/min'):,.0f} {unit_label('mm/min')}"
+    feed = format_si(path.v_f[i], "mm/min", 0)
     text = f"a feed of {feed}{a_turn}: no cutter takes that; check F and its unit."
     return (Finding("warning", text, int(path.block[i]), count=lines, code="feed-absurd"),)
 

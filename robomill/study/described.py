@@ -141,7 +141,7 @@ def _read(top: Table, beside: Beside) -> Study:
     seed = design.whole("seed", 0)
     design.finish()
     if kind != "grid" and not 1 <= count <= MOST:
-        raise design.refuse("points", f"expected a whole number from 1 to {MOST:,}, found {count}.")
+        raise design.refuse("points", f"expected a whole number from 1 to {format_count(MOST)}, found {count}.")
     if seed < 0:
         raise design.refuse("seed", f"expected a whole number from 0 on, found {seed}.")
     table = top.table("parameters")

@@ -12,6 +12,7 @@ from scipy import stats
 
 from robomill.arrays import FloatArray
 from robomill.errors import StudyError
+from robomill.units import format_count
 
 Kind = Literal["grid", "latin_hypercube", "sobol"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -83,7 +84,10 @@ def points(parameters: tuple[Parameter, ...], kind: Kind, count: int, seed: int)
     if kind == "grid":
         levels = [each.levels() for each in parameters]
         if math.prod(map(len, levels)) > MOST:
-            raise StudyError(f"Study: the grid has {math.prod(map(len, levels)):,} points, expected at most {MOST:,}.")
+            raise StudyError(
+                f"Study: the grid has {format_count(math.prod(map(len, levels)))} points, expected at most "
+                f"{format_count(MOST)}."
+            )
         return [list(point) for point in product(*levels)]
     rng = np.random.default_rng(seed)
     if kind == "sobol":

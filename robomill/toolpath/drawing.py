@@ -86,8 +86,9 @@ class LayerCut(Replaceable):
         passes = 1 if self.step_down is None else max(1, math.ceil(self.depth / self.step_down - 1e-9))
         if passes > MAX_ELEMENTS:
             raise ToolpathError(
-                f"Layer {self.layer}: a step of {format_si(self.step_down or 0.0, 'mm')} makes {passes:,} passes; at "
-                f"most {MAX_ELEMENTS:,} are cut, so step down farther."
+                f"Layer {self.layer}: a step of {format_si(self.step_down or 0.0, 'mm')} makes "
+                f"{format_count(passes)} passes; "
+                f"at most {format_count(MAX_ELEMENTS)} are cut, so step down farther."
             )
         return self.depth * np.arange(1, passes + 1) / passes
 

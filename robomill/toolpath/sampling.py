@@ -9,7 +9,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import ToolpathError
 from robomill.progress import checkpoint
 from robomill.toolpath.path import PER_MOVE, Toolpath
-from robomill.units import format_short, to_si
+from robomill.units import format_count, format_number, format_short, to_si
 from robomill.vectors import angle_between
 
 CORNER = to_si(10.0, "deg")
@@ -66,9 +66,12 @@ def check_samples(path: Toolpath, step: float, total: float, most: int) -> None:
         return
     spare = most - 2 * len(path)
     fits = float(path.step_length[path.cutting].sum()) / max(spare, 1)
-    found = f"Step along the path: {format_short(step, 'mm')} would need {total:,.0f} points; at most {most:,} fit"
+    found = (
+        f"Step along the path: {format_short(step, 'mm')} would need {format_number(total, 0)} "
+        f"points; at most {format_count(most)} fit"
+    )
     if spare <= 0:
-        raise ToolpathError(f"{found}, and the path has {len(path):,} moves of its own: run it in parts.")
+        raise ToolpathError(f"{found}, and the path has {format_count(len(path))} moves of its own: run it in parts.")
     raise ToolpathError(f"{found}, so use {format_short(1.05 * fits, 'mm')} or more.")
 
 

@@ -22,7 +22,7 @@ from robomill.ui.cached import commons, name_of, shared
 from robomill.ui.commons import NOTHING
 from robomill.ui.cut import middle_of_cut
 from robomill.ui.project import MapView
-from robomill.units import format_si, from_si, to_si
+from robomill.units import format_count, format_si, from_si, to_si
 from robomill.viz.maps import Scale
 from robomill.viz.planes import Codes, coded
 from robomill.workspace.fields import ComplianceMap, compliance_map
@@ -131,7 +131,7 @@ def plane(robot: Robot, view: MapView, box: ReachBox, normal: str, at: float, sh
     if grid.cells > DRAWN_CELLS:
         fits = step * float(np.sqrt(grid.cells / DRAWN_CELLS))
         raise WorkspaceError(
-            f"A plane of {grid.cells:,} cells is more than a picture takes ({DRAWN_CELLS:,}): "
+            f"A plane of {format_count(grid.cells)} cells is more than a picture takes ({format_count(DRAWN_CELLS)}): "
             f"use a step of {format_si(np.ceil(fits * 1e3) / 1e3, 'mm', 0)} or more; the command line writes "
             f"finer maps."
         )

@@ -106,7 +106,8 @@ class Moved:
             return ""
         most = "It" if sum(share[j] for j in main) > 0.98 else "Most of it"
         per_cent = whole([float(share[j]) for j in main])
-        named = " and ".join(f"joint {self.joints[j]} ({each} %)" for j, each in zip(main, per_cent, strict=True))
+        *first, last = [f"joint {self.joints[j]} ({each} %)" for j, each in zip(main, per_cent, strict=True)]
+        named = " and ".join([", ".join(first), last] if first else [last])
         return f"{most} comes from {named}."
 
 

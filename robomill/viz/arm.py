@@ -77,10 +77,23 @@ def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str 
         across = [i for i in (0, 1) if abs(scene.eye[i]) < 0.9 * np.linalg.norm(scene.eye)]
         said += [(0.19 * reach * np.eye(3)[i], "XYZ"[i], axis_colours(dark)["xyz"[i]]) for i in across]
         return _filling(fig, scene, said, dark)
-    fig.add_traces([solids.painted(opaque), _joint_hover(scene, p.text), solids.words(said)])
+    fig.add_traces([solids.painted(opaque), _joint_hover(scene, p.text)])
+    fig.add_traces([solids.words(said, textposition=_beside(said, tip, scene))])
     fig.add_traces(_part_traces(scene, reach, dark))
     fig.lay_out(scene=_scene_layout(_bounds(fig, reach), scene.unit, dark, revision, zoom), showlegend=False)
     return fig
+
+
+def _beside(said: list[solids.Said], tip: FloatArray, scene: ArmScene) -> list[str]:
+    """Where each word stands: those of the tip's arrows away from the tip, and one above the other on the same side."""
+    right, up = framing.screen(np.asarray(scene.eye, dtype=float))
+    own = [k for k, (_, word, _) in enumerate(said) if word and word in (scene.force_label, scene.displacement_label)]
+    away = {k: np.array([right, up]) @ (said[k][0] - tip) for k in own}
+    sides = {k: "left" if at[0] < 0.0 else "right" for k, at in away.items()}
+    highest = max(own, key=lambda k: float(away[k][1]), default=0)
+    alone = len(set(sides.values())) == len(own)
+    level = {k: "middle" if alone else "top" if k == highest else "bottom" for k in own}
+    return [f"{level[k]} {sides[k]}" if k in sides else "middle center" for k in range(len(said))]
 
 
 def _filling(fig: Chart, scene: ArmScene, said: list[solids.Said], dark: bool) -> Chart:

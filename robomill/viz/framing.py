@@ -21,7 +21,7 @@ def framed(points: FloatArray, eye: ArrayLike, aspect: float) -> dict[str, Any]:
     low, high = points.min(axis=0), points.max(axis=0)
     pad = PAD * float((high - low).max())
     low, high = low - pad, high + pad
-    right, up = _screen(np.asarray(eye, dtype=float))
+    right, up = screen(np.asarray(eye, dtype=float))
     seen = np.stack([points @ right, points @ up], axis=1)
     span = np.maximum(np.ptp(seen, axis=0), 1e-6)
     scale = FILL * float(np.min(2.0 * np.array([aspect, 1.0]) / span))
@@ -57,7 +57,7 @@ def signs(said: list[Said], background: str) -> list[dict[str, Any]]:
     ]
 
 
-def _screen(eye: FloatArray) -> tuple[FloatArray, FloatArray]:
+def screen(eye: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Unit vectors to the right and up on the screen, seen from ``eye`` with z upwards."""
     back = eye / np.linalg.norm(eye)
     right = np.cross([0.0, 0.0, 1.0], back)

@@ -15,7 +15,7 @@ from robomill.errors import WorkspaceError
 from robomill.paper import BOX, BOX_SIZE
 from robomill.quantities import quantity
 from robomill.spelled import in_units
-from robomill.units import format_many, format_si, to_si
+from robomill.units import format_count, format_many, format_si, to_si
 from robomill.values import Value
 
 PAPER_BOX = (frozen(BOX[0]), frozen(BOX[1]))
@@ -106,9 +106,9 @@ class Grid(Value):
         axes = sum(size > 1 for size in self.shape)
         step = self.step * (self.cells / fits) ** (1.0 / axes)
         raise WorkspaceError(
-            f"Grid of {' x '.join(map(str, self.shape))} = {self.cells:,} cells needs "
+            f"Grid of {' x '.join(map(str, self.shape))} = {format_count(self.cells)} cells needs "
             f"{self.cells * bytes_per_cell / 2**30:.1f} GiB; "
-            f"{fits:,} cells fit, so use a step of {format_si(np.ceil(step * 1e4) / 1e4, 'mm', 1)} or more."
+            f"{format_count(fits)} cells fit, so use a step of {format_si(np.ceil(step * 1e4) / 1e4, 'mm', 1)} or more."
         )
 
 
@@ -202,6 +202,7 @@ def axis_points(low: float, high: float, step: float, name: str = "") -> FloatAr
     count = int(np.floor((high - low) / step + 1e-9)) + 1
     if count > LARGEST_AXIS:
         raise WorkspaceError(
-            f"Grid: axis {name} would have {count:,} points; at most {LARGEST_AXIS:,}, so use a larger step."
+            f"Grid: axis {name} would have {format_count(count)} points; at most "
+            f"{format_count(LARGEST_AXIS)}, so use a larger step."
         )
     return low + step * np.arange(count, dtype=np.float64)

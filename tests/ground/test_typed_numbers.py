@@ -205,7 +205,7 @@ def test_python_s_own_spelling_is_read_in_every_unit(value: float, unit: str) ->
 @given(value=MODEST, unit=UNIT, other=UNIT)
 def test_a_number_in_any_unit_of_the_kind_is_converted_and_in_none_other(value: float, unit: str, other: str) -> None:
     text = format_value(value, other, 9)
-    shown = float(format_value(value, other, 9, with_unit=False).replace("−", "-"))
+    shown = float(format_value(value, other, 9, with_unit=False).replace("−", "-").replace("\u202f", ""))
     try:
         found = read_number(text, unit).value
     except NumberError:

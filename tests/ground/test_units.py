@@ -15,7 +15,9 @@ from hypothesis import strategies as st
 from robomill.typed_numbers import read_number
 from robomill.unit_words import measure
 from robomill.units import (
+    GAP,
     INCHES,
+    MINUS,
     UNITS,
     format_beside,
     format_count,
@@ -185,22 +187,40 @@ def test_bare_numbers() -> None:
     assert format_percent(0.416) == "42 %"
     assert format_percent(-0.416, 1, sign=True) == "−41.6 %"
     assert format_percent(0.1, sign=True) == "+10 %"
-    assert format_times(1234.0) == "× 1,200"
+    assert format_times(1234.0) == "× 1200"
     assert format_times(2.5, 6) == "× 2.5"
     assert format_times(1.0, 6) == "× 1"
     assert rounded(0.1 + 0.2) == 0.3
     assert rounded(0.123456789012345) == 0.123456789012
     assert format_significant(1.23456789) == "1.23457"
-    assert format_times(1234567.0, 12) == "× 1,234,567"
+    assert format_times(1234567.0, 12) == f"× 1{GAP}234{GAP}567"
     assert rounded(1234.0, 2) == 1200.0
 
 
+@given(number=st.integers(-(10**11), 10**11), digits=st.integers(0, 6))
+def test_counts_lengths_and_times_part_their_thousands_alike(number: int, digits: int) -> None:
+    whole = f"{number:,}".replace(",", GAP if abs(number) >= 10_000 else "").replace("-", MINUS)
+    assert format_count(number) == whole
+    assert format_number(number, digits) == (f"{whole}.{'0' * digits}" if digits else whole)
+    assert format_significant(number, 15) == whole
+    assert format_times(abs(number), 12) == f"× {whole.lstrip(MINUS)}"
+    assert read_number(whole).value == number
+
+
+def test_fractions_and_powers_of_ten_are_not_parted() -> None:
+    assert format_number(0.123456789, 9) == "0.123456789"
+    assert format_number(9999.96, 1) == f"10{GAP}000.0"
+    assert format_si(75.036, "mm", 1) == f"75{GAP}036.0 mm"
+    assert split_unit(format_si(75.036, "mm", 1)) == (f"75{GAP}036.0", "mm")
+    assert format_significant(1.23456e20) == "1.23456e+20"
+
+
 def test_counts() -> None:
-    assert [format_count(n, "cut") for n in (0, 1, 2, 12400)] == ["0 cuts", "1 cut", "2 cuts", "12,400 cuts"]
-    assert format_count(12400) == "12,400"
+    assert [format_count(n, "cut") for n in (0, 1, 2, 12400)] == ["0 cuts", "1 cut", "2 cuts", f"12{GAP}400 cuts"]
+    assert format_count(12400) == f"12{GAP}400"
     assert [format_short_count(n) for n in (12, 9_999, 10_000, 812_345, 999_499, 999_500, 1_234_567)] == [
         "12",
-        "9,999",
+        "9999",
         "10k",
         "812k",
         "999k",

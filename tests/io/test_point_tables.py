@@ -107,7 +107,7 @@ def test_a_packed_parquet_file_that_inflates_is_refused_before_it_is_read() -> N
     zeros = pyarrow.array(np.zeros(1_000_000))
     packed = io.BytesIO()
     parquet.write_table(pyarrow.table(dict.fromkeys(("x_mm", "y_mm", "z_mm", *"abcdefghijklmnopqr"), zeros)), packed)
-    with pytest.raises(ToolpathError, match="21 columns of 1,000,000 numbers"):
+    with pytest.raises(ToolpathError, match="21 columns of 1.000.000 numbers"):
         points_from_bytes(packed.getvalue(), "a.parquet")
 
 

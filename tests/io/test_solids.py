@@ -127,13 +127,13 @@ PLY += "property list uchar int vertex_indices\nend_header\n0 0 0\n"
 @pytest.mark.parametrize(
     ("kind", "data", "said"),
     [
-        ("3mf", packed("<a/>" * 150_000, ""), "100,000 other elements"),
-        ("3mf", packed("<a>" * 150_000, ""), "100,000 other elements"),
-        ("3mf", packed('<vertex x="1" y="1" z="1"/>' * 1_100, ""), "more than 1,000 triangles or corners"),
+        ("3mf", packed("<a/>" * 150_000, ""), "100.000 other elements"),
+        ("3mf", packed("<a>" * 150_000, ""), "100.000 other elements"),
+        ("3mf", packed('<vertex x="1" y="1" z="1"/>' * 1_100, ""), "more than 1000 triangles or corners"),
         ("3mf", packed(f'<a b="{"x" * 12_000_000}"/>', ""), "a word of megabytes"),
-        ("obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf " + b"1 2 3 " * 400, "more than 1,000 triangles"),
-        ("obj", b"v 0 0 0\n" * 2_100, "more than 1,000 triangles"),
-        ("ply", PLY.format(999_999_999_999).encode(), "more than 1,000 triangles"),
+        ("obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf " + b"1 2 3 " * 400, "more than 1000 triangles"),
+        ("obj", b"v 0 0 0\n" * 2_100, "more than 1000 triangles"),
+        ("ply", PLY.format(999_999_999_999).encode(), "more than 1000 triangles"),
     ],
 )
 def test_what_inflates_is_refused_before_it_takes_much_memory(monkeypatch, kind, data, said) -> None:

@@ -15,6 +15,7 @@ from robomill.io.tables import Table
 from robomill.io.workpiece import part_from_table, part_to_table, stock_from_table, stock_to_table
 from robomill.simulation.given import part_frame
 from robomill.surface.stock import Stock
+from robomill.units import format_count
 
 
 def part(**data):
@@ -95,7 +96,7 @@ def test_a_packed_mesh_that_inflates_beyond_what_it_says_is_refused_in_little_ro
     packed = base64.b64encode(b"".join([deflating.compress(zeros) for _ in range(260)]) + deflating.flush()).decode()
     tracemalloc.start()
     try:
-        with pytest.raises(ProjectError, match=f"the packed mesh holds more than {told:,} triangles"):
+        with pytest.raises(ProjectError, match=f"the packed mesh holds more than {format_count(told)} triangles"):
             stock(lower_mm=[0, 0, 0], upper_mm=[9, 9, 9], triangles=packed, triangles_count=told)
         assert tracemalloc.get_traced_memory()[1] < 5 * len(packed) + 3 * 72 * told
     finally:
@@ -105,5 +106,5 @@ def test_a_packed_mesh_that_inflates_beyond_what_it_says_is_refused_in_little_ro
 @pytest.mark.parametrize("count", [0, -1, 1_600_001])
 def test_a_mesh_of_no_triangle_or_of_too_many_is_not_unpacked(count):
     packed = base64.b64encode(zlib.compress(struct.pack("<9d", *range(9)))).decode()
-    with pytest.raises(ProjectError, match=rf"triangles_count: found {count}, expected 1 to 1,600,000 triangles"):
+    with pytest.raises(ProjectError, match=rf"triangles_count: found {count}, expected 1 to 1.600.000 triangles"):
         stock(lower_mm=[0, 0, 0], upper_mm=[9, 9, 9], triangles=packed, triangles_count=count)

@@ -92,7 +92,7 @@ def test_the_box_stands_beside_the_papers(app: AppTest) -> None:
     go(app, WORKSPACE)
     assert "1200 × 600 × 500 mm" in words(app)
     said = words(app)
-    assert "the volume of the reference box, which fits in, but not where it stands" in said, "it ends at Y = -1537"
+    assert "the volume of the reference box, which stands partly outside" in said, "it ends at Y = -1537"
     assert '<div class="rm-value rm-long">2148 × 1054 × 1036<small>mm' in said, "three sides in one line"
     assert "100 × 0 × 0 mm" in said
     assert "from (−50, −1300, 0), all reached" in said

@@ -161,5 +161,5 @@ def test_a_feed_that_no_cutter_takes_is_a_warning_with_its_line(app: AppTest) ->
     go(app, "5_Toolpath")
     type_program(app, "G21 G90 S12000 M3\nG0 X-70 Y0 Z5\nG0 Z-2\nG1 X20 F4500000\nG0 Z5\nM2\n")
     said = words(app)
-    assert "line 4: a feed of 4,500,000 mm/min, 375.0 mm a revolution" in said
+    assert "line 4: a feed of 4\u202f500\u202f000 mm/min, 375.0 mm a revolution" in said
     assert "every word understood" not in said

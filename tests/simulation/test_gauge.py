@@ -484,3 +484,5 @@ def test_the_histogram_of_a_straight_slot_is_its_two_walls_and_its_floor():
     assert walls[-1] == pytest.approx(2 * 60e-3 * 2e-3, rel=0.15)
     assert floors[1] == pytest.approx(60e-3 * 8e-3, rel=0.15)
     assert found.walls.histogram(edges / 4)[-1] == walls[-1], "what is beyond is in the outer bin"
+    for each, area in ((found.walls, walls.sum()), (found.floors, floors.sum())):
+        assert each.squares == pytest.approx(each.error[0] ** 2 * area), "the same error all along"

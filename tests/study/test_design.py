@@ -55,5 +55,5 @@ def test_lists_are_drawn_evenly_and_seeds_tell_points_apart() -> None:
 
 
 def test_a_grid_without_end_is_refused() -> None:
-    with pytest.raises(StudyError, match="the grid has 1,000,000,000 points"):
+    with pytest.raises(StudyError, match="the grid has 1.000.000.000 points"):
         points(tuple(Parameter(str(i), low=0.0, high=1.0, steps=1000) for i in range(3)), "grid", 0, 0)

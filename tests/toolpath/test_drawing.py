@@ -79,7 +79,7 @@ def test_the_simulated_groove_beside_a_line_is_where_the_offset_says() -> None:
         ([cut("nothing")], {}, "part.dxf: there is no layer 'nothing' with lines; it has slots, marks."),
         ([cut(side="inside")], {}, "Diameter of the cutter"),
         ([cut(side="inside")], {"diameter": 8}, "If 8 mm is meant, give diameter=0.008 or diameter_mm=8."),
-        ([cut(step_down_mm=1e-4)], {}, "makes 30,000 passes"),
+        ([cut(step_down_mm=1e-4)], {}, "makes 30.000 passes"),
     ],
 )
 def test_refusals_say_what_to_do(cuts, more, said) -> None:

@@ -53,6 +53,9 @@ def test_the_place_is_that_of_the_verdict(flute: rm.SimulationResult) -> None:
     np.testing.assert_allclose(rm.tool_pose(ROBOT, cut.theta)[:3, 3], cut.in_hand().point, atol=1e-5)
     assert cut.moved.sentence("mm") == "100 N on the tool moves the tip by +0.230 mm in Y, −0.102 mm in Z."
     assert cut.moved.blame() == "It comes from joint 3 (70 %) and joint 5 (30 %)."
+    along_y = np.outer([0.5, 0.15, 0.3, 0.05, 0.0], [0.0, 1.0, 0.0])
+    three = dataclasses.replace(cut.moved, delta=along_y.sum(axis=0), delta_joint=along_y)
+    assert three.blame() == "Most of it comes from joint 1 (50 %), joint 3 (30 %) and joint 2 (15 %)."
     assert decided(None) is None
 
 

@@ -66,7 +66,7 @@ def test_the_caption_counts_segments() -> None:
     )
     assert [format_short_count(n) for n in (12, 9_999, 20_000, 812_345, 999_500, 1_234_567)] == [
         "12",
-        "9,999",
+        "9999",
         "20k",
         "812k",
         "1.0M",

@@ -22,6 +22,7 @@ from robomill.ui import inputs, pieces, session
 from robomill.ui.bench import MOST_KEPT, OWN, SAMPLES, THE_PROJECTS, Bench
 from robomill.ui.identification.bench import decide, decided, field, put_sample, put_tests
 from robomill.ui.identification.words import summary
+from robomill.units import format_count
 
 SECTIONS = {"tests": "Load tests", "map": "Measured map", "laboratory": "Virtual laboratory"}
 VIEWS = {
@@ -51,7 +52,7 @@ def source(bench: Bench, robot: Robot) -> None:
     if len(bench.text) > EDITABLE:
         kept = "" if len(bench.text) <= MOST_KEPT else " and not kept with the project"
         lines = len(bench.text.splitlines())
-        pieces.note(f"{bench.name}: {lines:,} lines; files of this size are edited outside{kept}.")
+        pieces.note(f"{bench.name}: {format_count(lines)} lines; files of this size are edited outside{kept}.")
         return
     with st.expander("Rows: paste or edit", icon=":material/edit_note:", expanded=bench.sample == OWN):
         inputs.text(

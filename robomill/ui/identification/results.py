@@ -12,7 +12,7 @@ from robomill.ui.bench import Bench
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import decide, decided
 from robomill.ui.markup import Html, as_html
-from robomill.units import format_number, format_si, from_si, unit_label
+from robomill.units import format_count, format_number, format_si, from_si, unit_label
 from robomill.viz.identification import (
     correlation_figure,
     intervals_figure,
@@ -56,8 +56,10 @@ def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dar
         st.markdown("**Compliances found**")
         _table(result, robot, joint_unit)
         before, after = result.condition
-        pieces.note(f"One reading is good to {_noise(result)} by the residuals; {result.dof:,} equations to spare.")
-        with st.expander("For those who fit"):
+        pieces.note(
+            f"One reading is good to {_noise(result)} by the residuals; {format_count(result.dof)} equations to spare."
+        )
+        with st.expander("Details of the fit"):
             pieces.note(
                 f"Condition number {format_number(before, 0)} as measured, {format_number(after, 1)} after scaling "
                 "the columns."
@@ -126,7 +128,7 @@ def residuals(bench: Bench, result: IdentificationResult, dark: bool) -> None:
         else:
             drawn = from_si(result.residual, picked)
         odd = np.isin(result.row, [o.row for o in result.outliers])
-        note = f"Drawn: at most 3,000 of {len(result.row):,} tests. " if len(result.row) > 3000 else ""
+        note = f"Drawn: at most 3000 of {format_count(len(result.row))} tests. " if len(result.row) > 3000 else ""
         pieces.figure(
             residuals_figure(result.row, drawn, odd, unit_label(picked), result.components, dark=dark),
             f"ident-residuals-{picked}",

@@ -11,7 +11,7 @@ from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import is_stiffness, of_joint, shown
 from robomill.ui.pieces import Tile
-from robomill.units import format_percent, format_si, format_value, from_si, in_lengths, unit_label
+from robomill.units import format_count, format_percent, format_si, format_value, from_si, in_lengths, unit_label
 from robomill.viz.identification import Intervals
 
 IDENTIFIED_SET = "identified"
@@ -147,7 +147,9 @@ def summary(tests: LoadTests | JointTests) -> str:
         return f"{m} tests of {len(np.unique(tests.joint))} joints, one at a time."
     poses = int(tests.pose_index().max()) + 1
     numbers = int(np.isfinite(tests.displacement).sum())
-    return f"{m:,} tests at {poses:,} poses, {numbers:,} equations ({tests.protocol})."
+    return (
+        f"{format_count(m)} tests at {format_count(poses)} poses, {format_count(numbers)} equations ({tests.protocol})."
+    )
 
 
 def weakest(result: IdentificationResult) -> tuple[str, float]:
@@ -203,6 +205,6 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str], l
             kind="computed",
         ),
         least,
-        Tile("Residual (RMS)", rms, f"{result.equations:,} equations, {fit}"),
+        Tile("Residual (RMS)", rms, f"{format_count(result.equations)} equations, {fit}"),
         Tile("Largest deviation in the cut", *cut),
     ]

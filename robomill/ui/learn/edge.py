@@ -112,7 +112,7 @@ def _measure(pose: PoseReport, way: Ray, i: int) -> None:
         (
             f"distance from the base, {unit_label(unit)}",
             f"det(J), {unit_label(det_unit)}",
-            f"largest compliance, {unit_label(give)}",
+            f"compliance,<br>{unit_label(give)}",
         ),
         (from_si(way.det, det_unit), from_si(softest, give)),
         dark=shell.dark(),

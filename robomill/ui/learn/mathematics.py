@@ -82,7 +82,10 @@ def reproduced() -> None:
         )
         for r in found
     ]
-    with st.container(key="learn-reproduced"):
+    with (
+        st.expander("Table by table, figure by figure", key="learn.open.reproduced"),
+        st.container(key="learn-reproduced"),
+    ):
         pieces.table(shown, "wwwww", ("Of the paper", "What it gives", "What robomill finds", "How far", "Reason"))
     pieces.download("CSV", lambda: _csv(found), "robomill-reproduction.csv", "csv:reproduction")
 

@@ -88,11 +88,14 @@ def _against(box: ReachBox, robot: Robot) -> str:
         return "in the plane of the arm"
     ratio = against_paper(box)
     turned = box.holds(PAPER_BOX_SIZE[[1, 0, 2]])
-    words = "fits in" if ratio["holds_paper_box"] else "fits in turned by 90°" if turned else "does not fit in"
     there = bool((box.lower <= PAPER_BOX[0] + SLACK).all() and (PAPER_BOX[1] - SLACK <= box.upper).all())
-    where = "" if not ratio["holds_paper_box"] else ", as it stands" if there else ", but not where it stands"
-    times = format_number(ratio["volume_ratio"], 1)
-    return f"{times} × the volume of the reference box, which {words}{where}"
+    if there:
+        words = "which lies inside"
+    elif ratio["holds_paper_box"]:
+        words = "which stands partly outside"
+    else:
+        words = "which fits in turned by 90°" if turned else "which does not fit in"
+    return f"{format_number(ratio['volume_ratio'], 1)} × the volume of the reference box, {words}"
 
 
 def sentence(robot: Robot, known: ComplianceMap | None) -> str:

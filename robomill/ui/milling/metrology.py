@@ -1,5 +1,6 @@
 """What the measuring room would say: section, profile along the groove, best fit, areas, a measured profile beside."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import streamlit as st
 from robomill.arrays import IntArray
 from robomill.errors import RobomillError
 from robomill.io.profiles import MeasuredProfile, read_profile
+from robomill.simulation.gauge import Gauge
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import offset_band
@@ -265,7 +267,7 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
         + "; ".join(remark for _, _, remark in _out_of_tolerance(result))
         + ".",
     )
-    pieces.facts([*_out_of_tolerance(result), *_volumes(error)])
+    pieces.facts([*_out_of_tolerance(result), *_volumes(error), *_rms(gauge, total)])
     for finding in result.surface_notes:
         pieces.said("warning", finding.sentence, "layers")
 
@@ -293,5 +295,12 @@ def _volumes(error: Deviation) -> list[tuple[str, str, str]]:
     return [
         ("Material left", format_si(error.excess_volume, view.of("mm3")), "on walls and floors together"),
         ("Cut too deep", format_si(error.gouge_volume, view.of("mm3")), "into walls and floors together"),
-        ("RMS error", format_si(error.rms, view.length), "over the cut area"),
     ]
+
+
+def _rms(gauge: Gauge, area: float) -> list[tuple[str, str, str]]:
+    """Of the walls and floors drawn above, each by its own area (m^2 in all); none where none are left."""
+    if not len(gauge.walls.error) + len(gauge.floors.error):
+        return []
+    rms = math.sqrt((gauge.walls.squares + gauge.floors.squares) / area)
+    return [("RMS error", format_si(rms, session.project().view.length), "of walls and floors, each by its own area")]

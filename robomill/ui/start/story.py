@@ -2,6 +2,7 @@
 
 import html
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,7 @@ DOORS = (
     ("I teach", "Why does a robot bend sideways?", "pages/8_Learn.py", "Start the lesson"),
 )
 CHECKED = "start.checked"
+OF = {"wall": "wall", "floor": "floor", "feed": "tip along the feed", "end": "end of the cut"}  # of what decides
 KINDS = {"paper": "published", "user": "of your own"}  # as one counts them; the others are their own word
 
 
@@ -38,9 +40,15 @@ def purpose() -> None:
 
 
 def cause(result: SimulationResult, unit: str) -> str:
-    """One line: the force, where the tip goes, and the joints that give most."""
+    """One line: the force, where the tip goes, and the joints that give most; and at which place of the cut, where the
+    tip is farthest off its path at another one."""
     cut = decided(result)
-    return "" if cut is None else f"{cut.moved.sentence(unit)} {cut.moved.blame()}".rstrip()
+    if cut is None:
+        return ""
+    rests = result.verdict.deciding
+    elsewhere = rests is not None and cut.moved.components(unit) != replace(cut, i=result.worst).moved.components(unit)
+    where = f"Where the {OF[rests[0]]} is farthest off, " if elsewhere and rests is not None else ""
+    return f"{where}{cut.moved.sentence(unit)} {cut.moved.blame()}".rstrip()
 
 
 def groove_picture(result: SimulationResult, view: View, height: int, dark: bool) -> None:

@@ -36,8 +36,8 @@ def findings_list(findings: Sequence[Finding]) -> None:
     frame = pd.DataFrame(
         {
             "level": [LEVELS[f.level] for f in shown],
-            "line": [f"{f.line:,}" if f.line else "all" for f in shown],
-            "what": [f.message + (f" ({f.count:,} times)" if f.count > 1 else "") for f in shown],
+            "line": [str(f.line) if f.line else "all" for f in shown],
+            "what": [f.message + (f" ({format_count(f.count)} times)" if f.count > 1 else "") for f in shown],
         }
     )
 
@@ -62,7 +62,10 @@ def findings_list(findings: Sequence[Finding]) -> None:
         },
     )
     hidden = len(found) - len(shown)
-    pieces.note("Click a row to see its line and its place." + (f" {hidden:,} more are not listed." if hidden else ""))
+    pieces.note(
+        "Click a row to see its line and its place."
+        + (f" {format_count(hidden)} more are not listed." if hidden else "")
+    )
 
 
 def path_facts(setup: SimulationSetup, unit: str) -> None:
@@ -114,7 +117,7 @@ def line_words(setup: SimulationSetup, reach: PathReach | None, result: Simulati
     if setup.source.kind == "program":
         lines = setup.source.block_texts()
         text = lines[line - 1].strip()[:80] if line <= len(lines) else ""
-    words = [f"{setup.source.block_name.capitalize()} {line:,}" + (f": {text}" if text else "")]
+    words = [f"{setup.source.block_name.capitalize()} {line}" + (f": {text}" if text else "")]
     i = np.flatnonzero(path.block == line)
     i = i[path.step_length[i] > 0]
     if len(i) == 0:

@@ -20,6 +20,7 @@ from robomill.ui.toolpath import reading
 from robomill.ui.toolpath.details import DIALECTS
 from robomill.ui.toolpath.program_view import program_view, select_line, selected_line
 from robomill.ui.toolpath.sources import put, put_dropped
+from robomill.units import format_count
 
 EDITABLE_CHARACTERS = 200_000
 TEXT, MODE, REFUSED, DROPPED = (f"toolpath.{name}" for name in ("text", "mode", "refused", "dropped"))
@@ -104,12 +105,14 @@ def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
             box = NumberBox("Go to line", hint="0 points at none.", low=0, high=count, whole=True)
             with st.container(width=130):
                 inputs.value("toolpath.go-to", box, min(selected_line(), count), select_line)
-            st.caption(f"of {count:,} lines")
+            st.caption(f"of {format_count(count)} lines")
     if mode == "code":
         height = min(max(22 * count + 24, 130), 420)
         program_view(source.text, path.findings if path is not None else (), dark, height)
     elif len(source.text) > EDITABLE_CHARACTERS:
-        pieces.note(f"{count:,} lines are too many for this box: change them in their own file and drop it here.")
+        pieces.note(
+            f"{format_count(count)} lines are too many for this box: change them in their own file and drop it here."
+        )
     else:
         inputs.text("Program text", TEXT, source.text, _take_text, lines=2, height=420, label_visibility="collapsed")
 

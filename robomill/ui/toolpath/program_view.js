@@ -1,6 +1,7 @@
 // A program with line numbers and what was found on each line. A click (or the arrow keys) points at a line.
 const SIGNS = { error: "✕", warning: "▲", suspicious: "?", ignored: "–", info: "i" };
 const COMMENT = /(\([^)]*\)|;.*$)/;
+const grouped = (n) => (n < 10000 ? `${n}` : `${n}`.replace(/\B(?=(\d{3})+$)/g, "\u202f"));
 
 function build(root, data, choose) {
   const { lines, first, total, marks, selected } = data;
@@ -8,7 +9,7 @@ function build(root, data, choose) {
   rows.className = "rows";
   const width = `${String(first + lines.length).length + 0.5}ch`;
   const cutoff = (text) => { const d = document.createElement("div"); d.className = "cutoff"; d.textContent = text; rows.appendChild(d); };
-  if (first > 1) cutoff(`Lines 1 to ${(first - 1).toLocaleString("en")} are not shown here.`);
+  if (first > 1) cutoff(`Lines 1 to ${grouped(first - 1)} are not shown here.`);
   lines.forEach((text, i) => {
     const number = first + i, row = document.createElement("div"), found = marks[number];
     row.className = number === selected ? "row on" : "row";
@@ -35,7 +36,7 @@ function build(root, data, choose) {
     rows.appendChild(row);
   });
   const last = first + lines.length - 1;
-  if (last < total) cutoff(`${(total - last).toLocaleString("en")} more lines are not shown here.`);
+  if (last < total) cutoff(`${grouped(total - last)} more lines are not shown here.`);
   root.replaceChildren(rows);
 }
 

@@ -16,10 +16,12 @@ from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.sources import changed_sources
+from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import declared, inputs, pieces, session, typed
 from robomill.ui.box import NumberBox, box_of
+from robomill.units import format_many, format_si
 
 KEY, MATERIAL = "toolpath.question", "material"
 SIZE = ("diameter", "flutes")
@@ -38,6 +40,8 @@ def panel(path: Toolpath | None, premise: str) -> None:
         pieces.note(
             pieces.badge("assumed"), f"Until you say it, the numbers are those of {setup.carried_from}: they {hold}."
         )
+        if setup.stock is not None and setup.provenance.get("stock", setup.force.provenance).kind == "computed":
+            pieces.note(f"{_block(setup.stock)} Another one is given on the Milling page.")
         boxes = _boxes(setup, path)
         first, rest = pieces.split([1.0, 0.42 * len(boxes)], "question")
         with first:
@@ -50,6 +54,13 @@ def panel(path: Toolpath | None, premise: str) -> None:
             if premise:
                 keep = f"Keep it: {premise.removeprefix('if ')}"
                 inputs.button(keep, f"{KEY}.keep", "", _accept, setup, type="tertiary")
+
+
+def _block(stock: Stock) -> str:
+    """The block that nobody stated, with the height up to which it stands: a path in the air cuts none of it."""
+    unit = session.project().view.length
+    size = format_many(stock.upper - stock.lower, unit, 1, " × ")
+    return f"Stock: a block around the cuts, {size}, its top at Z = {format_si(stock.upper[2], unit, 1)}."
 
 
 def _box(name: str, box: NumberBox, value: float | None) -> None:

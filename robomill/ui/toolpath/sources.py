@@ -147,7 +147,9 @@ def lines_of_path(path: Toolpath) -> LinesSource:
     """Every feed move as a row. Raises ToolpathError where a table would be too long."""
     i = np.flatnonzero(path.cutting & (path.step_length > 0))
     if len(i) > MAX_ROWS:
-        raise ToolpathError(f"The path has {len(i):,} cuts; a table holds at most {MAX_ROWS}. It stays as it is.")
+        raise ToolpathError(
+            f"The path has {format_count(len(i))} cuts; a table holds at most {MAX_ROWS}. It stays as it is."
+        )
     n_s = float(path.n_s[i].max()) if len(i) else 0.0
     return LinesSource(path.p[i - 1], path.p[i], path.v_f[i], n_s)
 

@@ -97,7 +97,7 @@ def worst_first(findings: Sequence[Finding]) -> list[Finding]:
 
 def finding_words(finding: Finding, most: int = 64) -> str:
     """A finding in one line of about ``most`` characters, cut between words."""
-    said = (f"line {finding.line:,}: " if finding.line else "") + finding.message
+    said = (f"line {finding.line}: " if finding.line else "") + finding.message
     return said if len(said) <= most else said[:most].rpartition(" ")[0].rstrip(",;:") + " …"
 
 

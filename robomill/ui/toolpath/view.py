@@ -80,7 +80,7 @@ def tiles(
         missed, _, lost = missed_blocks(reach)
         blocks = lost.tolist()
         share = 1.0 - missed / max(path_summary(reach.path).cuts, 1)
-        named = ", ".join(f"{b:,}" for b in blocks[:3]) + (" …" if len(blocks) > 3 else "")
+        named = ", ".join(str(b) for b in blocks[:3]) + (" …" if len(blocks) > 3 else "")
         words = f"out of reach at {source.block_name} {named}" if blocks else "of the cut, within the joint limits"
         # Rounded down: what is not all of it must not read 100 %.
         found.append(
@@ -90,14 +90,16 @@ def tiles(
         pieces.Tile(
             "Length of the cut",
             format_si(float(path.s[-1]), unit, 1),
-            f"{duration(float(path.t[-1]))} · {move_words(path)}, {rapids:,} rapid",
+            f"{duration(float(path.t[-1]))} · {move_words(path)}, {format_count(rapids)} rapid",
         )
     )
     if source.kind != "program":
         words = "cut in this order" if summary.blocks > 1 else "one cut"
         found.append(
             pieces.Tile(
-                {"sketch": "Shapes", "lines": "Rows", "points": "Moves"}[source.kind], f"{summary.blocks:,}", words
+                {"sketch": "Shapes", "lines": "Rows", "points": "Moves"}[source.kind],
+                format_count(summary.blocks),
+                words,
             )
         )
         pieces.tiles(found)
@@ -108,9 +110,9 @@ def tiles(
     words = finding_words(worst_first(noticed)[0]) if count else "every word understood"
     crashes = () if result is None else (*result.rapids, *result.early_rapids)
     if crashes:
-        count, words = count + len(crashes), f"a rapid runs through material (line {crashes[0]:,})"
+        count, words = count + len(crashes), f"a rapid runs through material (line {crashes[0]})"
     tone = "tight" if alarming or crashes else ""
-    found.append(pieces.Tile("Program warnings", f"{count:,}", words, tone=tone))
+    found.append(pieces.Tile("Program warnings", format_count(count), words, tone=tone))
     pieces.tiles(found)
 
 

@@ -266,7 +266,7 @@ class Look {
 
   words(place) {
     const { cut, data, state, station } = this, { words, factor, digits } = data, f = this.frame(), { arrays, about } = cut;
-    const lines = about.lines, n = arrays.line[f], length = (v, d) => (v * factor).toFixed(d);
+    const lines = about.lines, n = arrays.line[f], length = (v, d) => (v * factor).toFixed(d).replace(/^\d{5,}/, (whole) => whole.replace(/\B(?=(\d{3})+$)/g, "\u202f"));
     const reached = arrays.state[f] & REACHED, known = Number.isFinite(arrays.size[f]);
     const at = `${length(state.station * about.total, digits[0])} ${words.of} ${length(about.total, digits[0])} ${data.unit}`;
     const off = !reached ? words.unreached : !known ? words.unjudged : `${words.tip} ${length(arrays.size[f], digits[1])} ${data.unit}`;
