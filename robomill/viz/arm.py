@@ -13,6 +13,7 @@ from robomill.viz.chart import Chart, Trace, drawn
 from robomill.viz.theme import axis3d, axis_colours, figure, palette
 
 EYE = (1.30, -0.95, 0.62)
+WORD = (0.24, 0.09)  # of the arm's yardstick: what a word takes, wide and high
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,15 +86,24 @@ def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str 
 
 
 def _beside(said: list[solids.Said], tip: FloatArray, scene: ArmScene) -> list[str]:
-    """Where each word stands: those of the tip's arrows away from the tip, and one above the other on the same side."""
+    """Where each word stands: that of the force away from the tip, that of the displacement over its point; where the
+    two would meet, on both sides and one above the other."""
+    place = dict.fromkeys(range(len(said)), "middle center")
     right, up = framing.screen(np.asarray(scene.eye, dtype=float))
-    own = [k for k, (_, word, _) in enumerate(said) if word and word in (scene.force_label, scene.displacement_label)]
-    away = {k: np.array([right, up]) @ (said[k][0] - tip) for k in own}
-    sides = {k: "left" if at[0] < 0.0 else "right" for k, at in away.items()}
-    highest = max(own, key=lambda k: float(away[k][1]), default=0)
-    alone = len(set(sides.values())) == len(own)
-    level = {k: "middle" if alone else "top" if k == highest else "bottom" for k in own}
-    return [f"{level[k]} {sides[k]}" if k in sides else "middle center" for k in range(len(said))]
+    at = {word: (k, np.array([right, up]) @ (point - tip)) for k, (point, word, _) in enumerate(said) if word}
+    if scene.force_label not in at:
+        return list(place.values())
+    k, force = at[scene.force_label]
+    side, other = ("left", "right") if force[0] < 0.0 else ("right", "left")
+    place[k] = f"middle {side}"
+    if scene.displacement_label in at:
+        n, moved = at[scene.displacement_label]
+        wide, high = np.array(WORD) * solids.yardstick(scene.frames)
+        between = moved[0] - force[0] + 0.5 * (wide if side == "left" else -wide)
+        if abs(between) < wide and abs(moved[1] - force[1]) < high:
+            upper, lower = ("top", "bottom") if moved[1] > force[1] else ("bottom", "top")
+            place |= {k: f"{lower} {side}", n: f"{upper} {other}"}
+    return list(place.values())
 
 
 def _filling(fig: Chart, scene: ArmScene, said: list[solids.Said], dark: bool) -> Chart:

@@ -88,6 +88,17 @@ def test_two_planes_are_those_of_fig_4_on_one_scale(app: AppTest) -> None:
     assert {panel["scale"] for panel in shown["panels"]} == {0}
 
 
+def test_headline_and_tile_say_the_same_of_singularities(app: AppTest) -> None:
+    """Of an arm whose det(J) has both signs the headline said "passes a singularity", the tile "no singularity"."""
+    for robot in ("slavkovic_5r", "fanuc_r2000ic"):
+        go(app, WORKSPACE)
+        put(app, load_robot(robot))
+        app.run()
+        said = words(app)
+        told = [fit for fit in ("passes a", "comes close to a", "meets no") if f"{fit} singularity there." in said]
+        assert f"least |det(J)|; the arm {told[0]} singularity<" in said
+
+
 def test_the_box_stands_beside_the_papers(app: AppTest) -> None:
     go(app, WORKSPACE)
     assert "1200 × 600 × 500 mm" in words(app)

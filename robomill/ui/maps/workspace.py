@@ -57,7 +57,6 @@ def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceMap, unit
         still = not (largest.size > 1e-6).any()  # an arm of one joint stands still at a tilt
         size = "one point" if still else f"{box_size(largest.size, unit)} {unit_label(unit)}"
         note = _against(largest, robot)
-    singular = bool(near_singular(robot, det).any())
     return [
         pieces.Tile(
             "Region in reach",
@@ -68,9 +67,7 @@ def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceMap, unit
         pieces.Tile(
             "Distance to singularity",
             least,
-            "least |det(J)|; " + ("a singularity is near" if singular else "no singularity in this region")
-            if len(det)
-            else "",
+            f"least |det(J)|; the arm {_past_singularities(robot, known)}" if len(det) else "",
         ),
         pieces.Tile("Room to joint limits", nearest, "at the worst cell; 100 % is mid-range"),
         pieces.Tile("Largest box in reach", size, note, kind="computed"),
@@ -105,12 +102,16 @@ def sentence(robot: Robot, known: ComplianceMap | None) -> str:
     share = float(known.reached.mean())
     if share == 0:
         return f"The arm reaches nothing of this region: {_why(known)}"
-    det = known.det_J[known.reached]
-    crosses = bool((det > 0).any() and (det < 0).any())
     where = "all of this region" if share > 0.999 else f"{format_percent(share)} of this region"
-    near = bool(near_singular(robot, det).any())
-    fit = "passes a singularity" if crosses else "comes close to a singularity" if near else "meets no singularity"
-    return f"The arm reaches {where} and {fit} there."
+    return f"The arm reaches {where} and {_past_singularities(robot, known)} there."
+
+
+def _past_singularities(robot: Robot, known: ComplianceMap) -> str:
+    """Whether the arm passes a singularity (det(J) has both signs), comes close to one or meets none."""
+    det = known.det_J[known.reached]
+    if (det > 0).any() and (det < 0).any():
+        return "passes a singularity"
+    return "comes close to a singularity" if near_singular(robot, np.abs(det)).any() else "meets no singularity"
 
 
 def _why(known: ComplianceMap) -> str:

@@ -1,5 +1,6 @@
 """The strip of carved samples: a small picture of each as it would be milled, its predicted error; a click opens it."""
 
+import base64
 import tomllib
 from dataclasses import dataclass
 from functools import cache
@@ -7,6 +8,7 @@ from pathlib import Path
 
 import streamlit as st
 
+from robomill.lazy import cached_property
 from robomill.simulation.verdict_words import Level
 from robomill.ui import inputs, pieces, session
 from robomill.ui.markup import Html, unparted
@@ -31,6 +33,11 @@ class Carved:
         """The part with its displacement enlarged."""
         return HERE / "carved" / f"{self.sample}.webp"
 
+    @cached_property
+    def address(self) -> str:
+        """The picture itself: that of a file would be decoded and encoded anew whenever the page runs."""
+        return f"data:image/webp;base64,{base64.b64encode(self.picture.read_bytes()).decode()}"
+
 
 @cache
 def carved() -> tuple[float, tuple[Carved, ...]]:
@@ -52,7 +59,7 @@ def strip(unit: str) -> None:
             off = f"{format_beside(row.value, row.tolerance, unit, 2)} of {format_limit(row.tolerance, unit)}"
             with st.container(key=f"carved-{row.sample}"):
                 alt = f"{title}: {off} allowed, {WORDS[row.level].lower()}; displacement shown {format_times(times)}."
-                st.image(str(row.picture), alt=alt, width="stretch")
+                st.image(row.address, alt=alt, width="stretch")
                 inputs.button(title, f"start.open.{row.sample}", "", session.open_preset, row.sample, type="tertiary")
                 out = Html(' <span class="rm-card-out">out of tolerance</span>') if row.level == "out" else ""
                 pieces.note(unparted(off), out)

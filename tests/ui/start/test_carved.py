@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+
 import pytest
 from PIL import Image
 
@@ -25,6 +27,8 @@ def test_the_number_is_that_of_a_run_of_the_sample(row: Carved) -> None:
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.sample)
 def test_the_picture_is_small_and_clear_beside_the_part(row: Carved) -> None:
+    head, _, held = row.address.partition(",")
+    assert (head, base64.b64decode(held)) == ("data:image/webp;base64", row.picture.read_bytes())
     assert row.picture.stat().st_size < 60_000
     picture = Image.open(row.picture)
     assert picture.mode == "RGBA"
