@@ -60,7 +60,7 @@ def words(proto: Any) -> str:
                     lines.append(one)
 
     of(proto)
-    return re.sub(r'"blob": ?"[^"]*"', "", "\n".join(lines))
+    return re.sub(r'"blob": ?"[^"]*"|data:image/\w+;base64,\S*', "", "\n".join(lines))
 
 
 def metric(app: AppTest) -> list[tuple[str, str]]:
