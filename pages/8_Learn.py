@@ -14,7 +14,8 @@ place = "" if stood is None or not stood[0].pose.reached else stood[1]
 found = None if stood is None else stood[0]
 if not now.number and not now.projector:
     where = f" The arm stands {place}." if place else ""
-    ui.note(f"Why does a robot not go where it is pushed? The robot of these lessons: {robot.title or robot.name}.{where}")
+    name = robot.title or robot.name
+    ui.note(f"Why does a robot not go where it is pushed? The robot of these lessons: {name}.{where}")
 steps.row(now)
 if now.number < 0:
     exercises.show(robot.name)

@@ -9,6 +9,7 @@ from robomill.errors import ToolpathError
 from robomill.toolpath.gcode import read_gcode
 from robomill.toolpath.path import Toolpath, toolpath_from_lines
 from robomill.toolpath.sampling import resample
+from robomill.units import format_count
 
 
 def two_lines():
@@ -123,5 +124,7 @@ def test_as_many_points_are_allowed_as_are_made(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("robomill.budgets.samples", lambda: made)
     assert len(resample(path, 1.7e-3)) == made
     monkeypatch.setattr("robomill.budgets.samples", lambda: made - 1)
-    with pytest.raises(ToolpathError, match=f"would need {made:,} points; at most {made - 1:,} fit"):
+    with pytest.raises(
+        ToolpathError, match=f"would need {format_count(made)} points; at most {format_count(made - 1)} fit"
+    ):
         resample(path, 1.7e-3)
