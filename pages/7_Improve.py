@@ -1,10 +1,12 @@
 """Improve: what would fix the project's cut, and what each remedy leaves and takes."""
 
+from functools import partial
+
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import inputs
-from robomill.ui.improve import opened, remedies, stiffen
+from robomill.ui import inputs, session
+from robomill.ui.improve import opened, remedies, stiffen, sure
 
 project = ui.begin("Improve")
 setup, unit = project.setup, project.view.length
@@ -15,15 +17,20 @@ if result is None or result.worst < 0 or result.setup.digest() != setup.digest()
     ui.headline(title, "There is no cut to improve yet.")
     ui.note("The cut has no result: mend what is named above, or bring the path within reach on the Toolpath page.")
     st.stop()
-found, waits = remedies.known(result, unit)
+by, now = remedies.judged_by(result, unit)
+found, waits = remedies.known(result, unit, by)
 ui.headline(
-    title, remedies.sentence(found, result, unit), f"{stiffen.meanwhile(result)} {stiffen.changed(result)}".strip()
+    title, remedies.sentence(found, result, now, unit), f"{stiffen.meanwhile(result)} {stiffen.changed(result)}".strip()
 )
 with st.container(border=True):
-    remedies.table(found, result, unit)
+    remedies.table(found, now)
+    inputs.choice("Judged by", remedies.BY, remedies.JUDGED, by, partial(session.keep, remedies.BY))
     if waits is not None:
         waits.show()
 there = {each.remedy.name: each.remedy.title for each in found if each.left is not None}
 if there:
     chosen = inputs.pick("Remedy", "improve.remedy", there)
     opened.opened(next(each for each in found if each.remedy.name == chosen), result, unit)
+if waits is None:
+    with st.container(border=True):
+        sure.panel(result, remedies.error_words(result, unit), unit)

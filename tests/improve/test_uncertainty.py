@@ -208,3 +208,24 @@ def test_cuts_without_a_number_and_maps_are_refused() -> None:
         rm.Spread(compliance=2.0)
     with pytest.raises(SetupError, match="part_mm"):
         rm.Spread(part=0.5)
+
+
+def test_a_corrected_programs_draws_are_runs_of_its_text_on_other_arms() -> None:
+    """Each by an ordinary run that knows nothing of the correction: the tip beside the slot's line."""
+    setup = rm.load_setup("paper_flute")
+    found = rm.compensate(setup)
+    text = "".join(line for line in found.text.splitlines(keepends=True) if "robomill" not in line)
+    spread = rm.Spread(compliance=0.1, force=0.1, lengths=0.0, part=0.0, part_turn=0.0, tool_length=0.0)
+    drawn = rm.uncertainty(setup.replace(source=found.source), spread, samples=400)
+    table = drawn.columns()
+    for i in np.argsort(-drawn.share)[:6]:
+        C_theta = [float(table[f"C_theta_{n}"][i]) * 1e-7 for n in setup.robot.joint_numbers]
+        other = setup.replace(
+            robot=setup.robot.replace(C_theta=C_theta),
+            source=rm.GCodeSource(text),
+            force=rm.PathForce(feed_normal=float(np.asarray(table["feed_normal"])[i])),
+        )
+        run = rm.simulate(other)
+        tip = (run.path.p + run.delta @ setup.T_MW[:3, :3])[run.path.cutting] - [0.0, 0.0, -2e-3]
+        assert drawn.wall[i] == pytest.approx(np.abs(tip[:, 1]).max(), abs=0.3e-6)
+    assert drawn.quantile(0.95) < 0.3 * rm.uncertainty(setup, spread, samples=400).quantile(0.95)

@@ -9,6 +9,7 @@ import numpy as np
 from conftest import go, store, words
 from streamlit.testing.v1 import AppTest
 
+import robomill as rm
 from robomill.improve.design import design
 from robomill.improve.stiffening import Stiffening, some_stiffer
 from robomill.io.projects import load_setup
@@ -179,3 +180,28 @@ def test_the_tool_is_turned_about_its_axis_on_an_arm_of_six(app: AppTest) -> Non
     app.button(key="improve.do.Turn it so, all the way").click().run()
     assert not app.exception
     assert simulate(store(app).project.setup).verdict.share < before - 0.01
+
+
+def test_remedies_are_judged_by_what_95_percent_of_the_draws_keep_and_what_is_typed_counts(app: AppTest) -> None:
+    """The numbers are those of the library, for the cut as it is and with the corrected program."""
+    go(app, "7_Improve")
+    assert not app.exception
+    setup = store(app).project.setup
+    assert "95 % of the draws keep" in words(app)
+    next(g for g in app.get("button_group") if g.key == "improve.by").set_value("sure").run()
+    assert not app.exception
+    assert_judged(app, setup, rm.Spread())
+    assert {"improve-draws", "improve-tornado"} <= {figure.key for figure in app.get("plotly_chart")}
+    app.text_input(key="improve.spread.compliance:%").set_value("30").run()
+    assert not app.exception
+    assert_judged(app, setup, rm.Spread(compliance=0.3))
+    app.text_input(key="improve.spread.force:%").set_value("-5").run()
+    assert "Force: found -5" in words(app)
+    assert store(app).values["improve.spread"] == rm.Spread(compliance=0.3)
+
+
+def assert_judged(app: AppTest, setup: rm.SimulationSetup, spread: rm.Spread) -> None:
+    """Whether the page says what the library draws."""
+    corrected = setup.replace(source=rm.compensate(setup).source)
+    now, then = (1e3 * rm.uncertainty(each, spread).quantile(0.95) for each in (setup, corrected))
+    assert f"in 95 % of the draws the error is at most {then:.3f} mm instead of {now:.3f} mm" in words(app)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from robomill.errors import RobomillError
+from robomill.identification.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.advice import Advice, advise
 from robomill.improve.compensation import Compensation
@@ -23,6 +24,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.verdict_words import TIGHT_FROM, Level
 from robomill.ui import cached, inputs, pieces, session
+from robomill.ui.improve import sure
 from robomill.ui.job import Underway
 from robomill.ui.verdict import WORDS
 from robomill.units import (
@@ -37,13 +39,16 @@ from robomill.units import (
 
 RUNS_OF_DESIGN, RUNS_OF_ADVICE, RUNS_OF_PLACES, RUNS_OF_PROGRAM, RUNS_OF_SPIN = 4, 20, 25, 12, 60
 LEAST = 0.005  # of the tolerance: what saves less is no remedy
+BY = "improve.by"
+NOMINAL, SURE = "nominal", "sure"
+JUDGED = {NOMINAL: "what is predicted", SURE: "what 95 % of the draws keep"}
 TURNED = to_si(0.5, "deg")  # what turns the part by less is not said to turn it
 
 
 @dataclass(frozen=True, eq=False)
 class Left:
     """What a remedy leaves: share of the tolerance, its error in words, the verdict; what it costs and how sure it is;
-    ``setup`` is the cut with it, None where it is no better than what there is."""
+    ``setup`` is the cut with it, None where it is no better than what there is; ``then`` is that cut in any case."""
 
     share: float
     error: str
@@ -51,6 +56,7 @@ class Left:
     cost: str
     sure: str
     setup: SimulationSetup | None
+    then: SimulationSetup
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,10 +116,10 @@ def _of_program(found: Compensation, now: SimulationResult, unit: str) -> Left:
     level: Level = "ok" if share < TIGHT_FROM else "tight" if share <= 1.0 else "out"
     error = f"{format_si(found.after.max, unit, with_unit=False)} to {format_si(wrong, unit)}"
     lines = f"a new program, {format_count(found.lines_in, 'line')} become {format_count(found.lines_out)}"
-    sure = f"{format_si(wrong, unit)} if stiffness or force is 20 % off"
+    how_sure = f"{format_si(wrong, unit)} if stiffness or force is 20 % off"
     if np.isfinite(found.half):
-        sure += f"; ± {format_si(found.half, unit)} by the tests"
-    return Left(share, error, level, lines, sure, None)
+        how_sure += f"; ± {format_si(found.half, unit)} by the tests"
+    return Left(share, error, level, lines, how_sure, None, now.setup.replace(source=found.source))
 
 
 @cached.shared(cached.by_setup, "Other ways to cut", lambda setup: run_seconds(setup) * RUNS_OF_ADVICE)
@@ -153,11 +159,11 @@ def _of_design(found: Stiffened, now: SimulationResult, unit: str) -> Left:
         for number, ratio in zip(made.setup.robot.joint_numbers, made.stiffness_ratio, strict=True)
         if ratio > 1.001
     ]
-    sure = "the least stiffening, proved" if np.isfinite(made.residual) else "kept; the least is not proved"
+    how_sure = "the least stiffening, proved" if np.isfinite(made.residual) else "kept; the least is not proved"
     if not made.feasible:
-        sure = f"{format_short(STIFFEST, '1')} times as stiff is the most that is tried"
+        how_sure = f"{format_short(STIFFEST, '1')} times as stiff is the most that is tried"
     cost = f"{', '.join(named) or 'nothing'} as stiff"
-    return Left(then.share, error_words(found.run, unit), then.level, cost, sure, found.run.setup)
+    return Left(then.share, error_words(found.run, unit), then.level, cost, how_sure, found.run.setup, found.run.setup)
 
 
 def _of_advice(found: Advice, now: SimulationResult, unit: str) -> Left:
@@ -167,8 +173,16 @@ def _of_advice(found: Advice, now: SimulationResult, unit: str) -> Left:
     extra = truest.seconds - found.ways[0].seconds
     cost = f"{truest.title[0].lower()}{truest.title[1:]}: {'+' if extra >= 0 else '−'}{_time(abs(extra))}"
     better = truest.share < found.ways[0].share - LEAST
-    sure = "by a run on what the deflected tool leaves"
-    return Left(truest.share, error_words(run, unit), run.verdict.level, cost, sure, run.setup if better else None)
+    how_sure = "by a run on what the deflected tool leaves"
+    return Left(
+        truest.share,
+        error_words(run, unit),
+        run.verdict.level,
+        cost,
+        how_sure,
+        run.setup if better else None,
+        run.setup,
+    )
 
 
 def _time(seconds: float) -> str:
@@ -184,8 +198,8 @@ def _of_place(found: Placement, now: SimulationResult, unit: str) -> Left:
     turn = best.yaw - found.now.yaw
     cost += f", turned by {format_si(turn, 'deg', 0)}" if abs(turn) > TURNED else ""
     cost = cost if better else "no place is better than where it lies"
-    sure = f"best of {format_count(found.allowed, 'place')}, simulated in full"
-    return Left(best.share, error, best.level, cost, sure, found.moved if better else None)
+    how_sure = f"best of {format_count(found.allowed, 'place')}, simulated in full"
+    return Left(best.share, error, best.level, cost, how_sure, found.moved if better else None, found.moved)
 
 
 def _of_spin(found: Turning, now: SimulationResult, unit: str) -> Left:
@@ -194,8 +208,10 @@ def _of_spin(found: Turning, now: SimulationResult, unit: str) -> Left:
     was = "" if now.ik.spin is None else f", now {format_si(float(now.ik.spin[0]), 'deg', 0)}"
     cost = f"the tool turned to {format_si(found.spin, 'deg', 0)} about its axis{was}"
     cost = cost if better else "no turn is better than what it has"
-    sure = "simulated in full"
-    return Left(then.share, error_at(then, unit), then.level, cost, sure, found.turned if better else None)
+    how_sure = "simulated in full"
+    return Left(
+        then.share, error_at(then, unit), then.level, cost, how_sure, found.turned if better else None, found.turned
+    )
 
 
 def error_at(place: Place, unit: str) -> str:
@@ -214,9 +230,10 @@ REMEDIES: tuple[Remedy, ...] = (
 )
 
 
-def known(result: SimulationResult, unit: str) -> tuple[list[Found], Underway | None]:
+def known(result: SimulationResult, unit: str, by: str = NOMINAL) -> tuple[list[Found], Underway | None]:
     """Every remedy as far as it is known, the truest first, then what is computed (one after the other), then what does
-    not apply; and what is being computed."""
+    not apply; and what is being computed. They are judged ``by`` what is predicted, or by what 95 % of the draws
+    keep."""
     every, waits = [], None
     for remedy in REMEDIES:
         if waits is not None:
@@ -224,7 +241,8 @@ def known(result: SimulationResult, unit: str) -> tuple[list[Found], Underway | 
             continue
         try:
             made = remedy.find(result.setup)
-            every.append(Found(remedy, made, remedy.left(made, result, unit)))
+            left = remedy.left(made, result, unit)
+            every.append(Found(remedy, made, at_95(left, unit) if by == SURE else left))
         except Underway as now:
             waits = now
             every.append(Found(remedy, why="is being computed"))
@@ -233,13 +251,45 @@ def known(result: SimulationResult, unit: str) -> tuple[list[Found], Underway | 
     return sorted(every, key=lambda each: np.inf if each.left is None else each.left.share), waits
 
 
-def sentence(found: Sequence[Found], result: SimulationResult, unit: str) -> str:
-    """What would fix it, in one line."""
-    now, left = result.verdict, found[0].left
+def as_it_is(result: SimulationResult, unit: str, by: str = NOMINAL) -> Left:
+    """The cut without a remedy, judged as they are. Raises ``Underway``, and the refusal of draws."""
+    now, setup = result.verdict, result.setup
+    left = Left(now.share, error_words(result, unit), now.level, "", "", None, setup)
+    return at_95(left, unit) if by == SURE else left
+
+
+def judged_by(result: SimulationResult, unit: str) -> tuple[str, Left]:
+    """What the page judges by, and the cut as it is; by what is predicted where draws of it are refused, or not there
+    yet."""
+    by = session.kept(BY, NOMINAL)
+    try:
+        return by, as_it_is(result, unit, by)
+    except (Underway, RobomillError):
+        return by, as_it_is(result, unit)
+
+
+def at_95(left: Left, unit: str) -> Left:
+    """What a remedy leaves in 95 % of the draws."""
+    found = sure.of(left.then)
+    share, error = found.quantile(LEVEL, "share"), found.quantile(LEVEL)
+    level: Level = "ok" if share < TIGHT_FROM else "tight" if share <= 1.0 else "out"
+    words = format_si(error, unit, missing="not reached")
+    return replace(left, share=share, error=words, level=level, sure=sure.kept_words(found))
+
+
+def sentence(found: Sequence[Found], result: SimulationResult, now: Left, unit: str) -> str:
+    """What would fix it, in one line; ``now`` is the cut as it is."""
+    left = found[0].left
     if left is None:
         return "What would fix it?"
     if not left.share < now.share - LEAST:
         return "Nothing that was tried makes this cut noticeably truer."
+    if now.sure:
+        return (
+            f"{found[0].remedy.title}: in 95 % of the draws the error is at most {left.error} instead of {now.error}, "
+            f"{WORDS[left.level].lower()} ({format_percent(left.share)} of the tolerance, now "
+            f"{format_percent(now.share)})."
+        )
     name, size = _decides(result)
     return (
         f"{found[0].remedy.title}: {name} error of {format_si(size, unit)} becomes "
@@ -248,10 +298,9 @@ def sentence(found: Sequence[Found], result: SimulationResult, unit: str) -> str
     )
 
 
-def table(found: Sequence[Found], result: SimulationResult, unit: str) -> None:
-    """Remedies with what they leave, what they cost and how sure that is."""
-    now = result.verdict
-    rows = [["As it is", error_words(result, unit), format_share(now.share), WORDS[now.level], "", ""]]
+def table(found: Sequence[Found], now: Left) -> None:
+    """Remedies with what they leave, what they cost and how sure that is, beneath the cut as it is ``now``."""
+    rows = [["As it is", now.error, format_share(now.share), WORDS[now.level], "", now.sure]]
     for each in found:
         left = each.left
         if left is None:
