@@ -25,6 +25,8 @@ PARTS = [
     "compliance",
     "identification/test_estimate.py",
     "cli/test_core_install.py",
+    "docs/test_notebooks.py",
+    "learn/test_marking.py",
 ]
 NEWEST = (3, 12)  # of Python, for which there are wheels of all the oldest versions
 
