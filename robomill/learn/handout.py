@@ -53,7 +53,7 @@ def notes(lessons: Sequence[Lesson], where: str) -> str:
     for each in lessons:
         told = [
             f"<li class='{'right' if i == each.right else ''}'>{_safe(choice.text)}<br><span class='small'>"
-            f"{_safe(choice.told)}</span></li>"
+            f"{_safe(choice.told if i == each.right or choice.told != each.answer else '')}</span></li>"
             for i, choice in enumerate(each.choices)
         ]
         unit = each.typed.unit if each.typed else "1"

@@ -128,3 +128,23 @@ def test_lessons_hold_for_other_arms(app: AppTest, robot: str) -> None:
         app.query_params["lesson"], app.query_params["step"] = str(number), "4"
         app.run()
         assert not app.exception, number
+
+
+def test_the_code_holds_the_address_of_the_lesson(app: AppTest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A picture of ours, drawn here: what it holds is what segno makes of that address."""
+    import segno
+
+    from robomill.ui.learn import steps
+
+    shown: list[str] = []
+    monkeypatch.setattr(steps.st, "html", shown.append)
+    monkeypatch.setattr(steps.pieces, "note", shown.append)
+
+    class Context:
+        url = "http://127.0.0.1:8501/Learn?lesson=2&step=3"
+
+    monkeypatch.setattr(steps.st, "context", Context)
+    steps._code(steps.Place(3, 2))
+    address = "http://127.0.0.1:8501/Learn?lesson=3"
+    assert segno.make(address, error="m").png_data_uri(scale=6, border=4) in shown[0]
+    assert shown[1:] == [address, "Only this computer opens that address: serve the app to others with robomill serve."]

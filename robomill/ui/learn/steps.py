@@ -15,13 +15,14 @@ from urllib.parse import urlencode
 import numpy as np
 import streamlit as st
 
-from robomill.errors import RobomillError
+from robomill.arrays import digest
+from robomill.compliance.at_pose import PoseReport
 from robomill.extras import needed
 from robomill.learn.handout import handout, notes
 from robomill.learn.lesson import COUNT, TITLES, Bars, Lesson
 from robomill.learn.lessons import lesson
 from robomill.learn.marking import check
-from robomill.ui import inputs, pieces, session
+from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.arm import arm
 from robomill.ui.learn.lesson import ASPECT, BIG, HEIGHT
 from robomill.ui.markup import unparted
@@ -118,12 +119,15 @@ def row(now: Place) -> None:
         inputs.choice("Lessons", "learn.row", names, now.number, lambda k: go(int(k)))
 
 
+@cached.shared(lambda number, pose: (number, digest((pose.robot, pose.theta))), "Computing the lesson")
+def _lesson(number: int, pose: PoseReport) -> Lesson:
+    return lesson(number, pose)
+
+
 def show(found: InHand, now: Place) -> None:
     """One lesson, as far as the step goes."""
-    try:
-        given = lesson(now.number, found.pose)
-    except RobomillError as refusal:
-        pieces.error(refusal)
+    given = pieces.attempt(_lesson, now.number, found.pose)
+    if given is None:
         return
     look = "rm-ask rm-long" if len(given.question) > LONG else "rm-ask"
     st.html(
@@ -237,7 +241,7 @@ def to_hand_out(found: InHand, where_it_stands: str, now: Place) -> None:
     told = f"{robot.title or robot.name}, which stands {where_it_stands}."
 
     def made(make: Callable[[list[Lesson], str], str]) -> str:
-        return make([lesson(k, found.pose) for k in range(1, COUNT + 1)], told)
+        return make([_lesson(k, found.pose) for k in range(1, COUNT + 1)], told)
 
     with st.container(horizontal=True, gap="small", key="learn-teacher"):
         for words, make, name in PAPERS if not now.projector else ():
@@ -260,6 +264,8 @@ def _code(now: Place) -> None:
     whole = f"{address}?{urlencode(told)}" if told else address
     with needed("A QR code"):
         import segno
-    look = {"scale": 5, "border": 4, "dark": "#000", "light": "#fff"}
-    st.html(segno.make(whole, error="m").svg_inline(title=f"QR code of {whole}", **look))
+    drawn = segno.make(whole, error="m").png_data_uri(scale=6, border=4)
+    st.html(f'<img alt="QR code of {html.escape(whole)}" src="{drawn}" style="max-width: 100%">')
     pieces.note(whole)
+    if any(f"//{own}" in address for own in ("127.0.0.1", "localhost", "[::1]")):
+        pieces.note("Only this computer opens that address: serve the app to others with robomill serve.")
