@@ -205,3 +205,23 @@ def assert_judged(app: AppTest, setup: rm.SimulationSetup, spread: rm.Spread) ->
     corrected = setup.replace(source=rm.compensate(setup).source)
     now, then = (1e3 * rm.uncertainty(each, spread).quantile(0.95) for each in (setup, corrected))
     assert f"in 95 % of the draws the error is at most {then:.3f} mm instead of {now:.3f} mm" in words(app)
+
+
+def test_a_program_is_corrected_for_the_best_place_of_the_part_as_the_library_does(app: AppTest) -> None:
+    """Both together: placed by the library, compensated there, and what is left if stiffness is 20 % off."""
+    kept = store(app)
+    kept.project = kept.project.replace(setup=load_setup("paper_flute/setup_process"))
+    setup = kept.project.setup
+    go(app, "7_Improve")
+    assert not app.exception
+    found = rm.compensate(rm.place(setup).moved)
+    wrong = max(found.softer.max, found.stronger.max)
+    assert wrong < rm.compensate(setup).softer.max
+    assert "Move the part, then correct" in words(app)
+    opened(app, "both")
+    assert not app.exception
+    assert f"{1e3 * found.before.max:.3f} mm" in words(app)
+    assert f"{1e3 * wrong:.3f} mm" in words(app)
+    app.button(key="improve.do.Move the part there").click().run()
+    assert not app.exception
+    np.testing.assert_allclose(store(app).project.setup.T_MW, rm.place(setup).moved.T_MW)

@@ -17,7 +17,7 @@ from robomill.provenance import Finding
 from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces
 from robomill.ui.improve import stiffen
-from robomill.ui.improve.remedies import Found, Left, Stiffened, error_at, error_words, take, use
+from robomill.ui.improve.remedies import Both, Found, Left, Stiffened, error_at, error_words, take, use
 from robomill.ui.shell import dark
 from robomill.ui.verdict import WORDS
 from robomill.units import (
@@ -42,14 +42,14 @@ def opened(found: Found, result: SimulationResult, unit: str) -> None:
         OPENED[found.remedy.name](found.made, found.left, result, unit)
 
 
-def _corrected(found: Compensation, left: Left, result: SimulationResult, unit: str) -> None:
+def _corrected(found: Compensation, left: Left, result: SimulationResult, unit: str, first: str = "As it is") -> None:
     here, beside = pieces.split(COLUMNS, "remedy")
     with here, st.container(border=True):
         pieces.strong("What the corrected program leaves")
         rows = [
             (name, format_si(each.max, unit), format_percent(each.max / result.setup.tolerance))
             for name, each in (
-                ("As it is", found.before),
+                (first, found.before),
                 ("Corrected", found.after),
                 ("Corrected, the arm 20 % softer or stiffer", found.softer),
                 ("Corrected, the force 20 % off", found.stronger),
@@ -263,10 +263,17 @@ def _cut(found: Advice, left: Left, result: SimulationResult, unit: str) -> None
             )
 
 
+def _both(found: Both, left: Left, result: SimulationResult, unit: str) -> None:
+    _corrected(found.program, left, result, unit, "At the best place, as it is")
+    pieces.note("First move the part there; this program is corrected for that place alone.")
+    use(left, "Move the part there")
+
+
 OPENED: dict[str, Callable[[Any, Left, SimulationResult, str], None]] = {
     "program": _corrected,
     "stiffen": _stiffened,
     "place": _placed,
+    "both": _both,
     "turn": _turned,
     "cut": _cut,
 }

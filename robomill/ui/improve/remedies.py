@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.errors import RobomillError
+from robomill.errors import RobomillError, SetupError
 from robomill.identification.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.advice import Advice, advise
@@ -62,12 +62,13 @@ class Left:
 @dataclass(frozen=True, eq=False)
 class Remedy:
     """A kind of remedy: ``find`` computes it for a set-up (and raises its refusal, or ``Underway``), ``left`` says what
-    it leaves against the run as it is, in a unit of length."""
+    it leaves against the run as it is, in a unit of length. One that ``joins`` others stands beneath them."""
 
     name: str
     title: str
     find: Callable[[SimulationSetup], Any]
     left: Callable[[Any, SimulationResult, str], Left]
+    joins: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +79,14 @@ class Found:
     made: Any = None
     left: Left | None = None
     why: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Both:
+    """The best place of the part, and the program corrected for that place."""
+
+    place: Placement
+    program: Compensation
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,13 +202,34 @@ def _of_place(found: Placement, now: SimulationResult, unit: str) -> Left:
     best = found.best
     far = best.zero - now.setup.T_MW[:3, 3]
     error = error_at(best, unit)
-    better = best.share < now.verdict.share - LEAST
+    better = _better(found)
     cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0)}"
     turn = best.yaw - found.now.yaw
     cost += f", turned by {format_si(turn, 'deg', 0)}" if abs(turn) > TURNED else ""
     cost = cost if better else "no place is better than where it lies"
     how_sure = f"best of {format_count(found.allowed, 'place')}, simulated in full"
     return Left(best.share, error, best.level, cost, how_sure, found.moved if better else None, found.moved)
+
+
+def moved_and_corrected(setup: SimulationSetup) -> Both:
+    """The best place, and the program that is corrected for it. Raises SetupError where no place is better."""
+    found = placed(setup)
+    if not _better(found):
+        raise SetupError("No place is better than where the part lies: correct the program there.")
+    return Both(found, corrected(found.moved, session.known(setup)))
+
+
+def _of_both(found: Both, now: SimulationResult, unit: str) -> Left:
+    left = _of_program(found.program, now, unit)
+    far = found.place.best.zero - now.setup.T_MW[:3, 3]
+    cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0)}; {left.cost}"
+    then = found.place.moved.replace(source=found.program.source)
+    return replace(left, cost=cost, setup=found.place.moved, then=then)
+
+
+def _better(found: Placement) -> bool:
+    """Whether the best place is noticeably better than where the part lies."""
+    return found.best.share < found.now.share - LEAST
 
 
 def _of_spin(found: Turning, now: SimulationResult, unit: str) -> Left:
@@ -225,15 +255,16 @@ REMEDIES: tuple[Remedy, ...] = (
     Remedy("program", "Correct the program", lambda setup: corrected(setup, session.known(setup)), _of_program),
     Remedy("stiffen", "Stiffen joints", designed, _of_design),
     Remedy("place", "Move the part", placed, _of_place),
+    Remedy("both", "Move the part, then correct", moved_and_corrected, _of_both, joins=True),
     Remedy("turn", "Turn the spindle", turned, _of_spin),
     Remedy("cut", "Cut otherwise", advised, _of_advice),
 )
 
 
 def known(result: SimulationResult, unit: str, by: str = NOMINAL) -> tuple[list[Found], Underway | None]:
-    """Every remedy as far as it is known, the truest first, then what is computed (one after the other), then what does
-    not apply; and what is being computed. They are judged ``by`` what is predicted, or by what 95 % of the draws
-    keep."""
+    """Every remedy as far as it is known, the truest first, those that join others beneath, then what is computed (one
+    after the other) and what does not apply; and what is being computed. They are judged ``by`` what is predicted, or
+    by what 95 % of the draws keep."""
     every, waits = [], None
     for remedy in REMEDIES:
         if waits is not None:
@@ -248,7 +279,13 @@ def known(result: SimulationResult, unit: str, by: str = NOMINAL) -> tuple[list[
             every.append(Found(remedy, why="is being computed"))
         except RobomillError as refusal:
             every.append(Found(remedy, why=str(refusal)))
-    return sorted(every, key=lambda each: np.inf if each.left is None else each.left.share), waits
+    return sorted(every, key=_rank), waits
+
+
+def _rank(found: Found) -> tuple[bool, bool, float]:
+    """The truest first; then what joins some of them; then what is not there."""
+    left = found.left
+    return left is None, left is not None and found.remedy.joins, 0.0 if left is None else left.share
 
 
 def as_it_is(result: SimulationResult, unit: str, by: str = NOMINAL) -> Left:
