@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from robomill.errors import LearnError
-from robomill.files import FileKind, read_file
+from robomill.files import FileKind, name_of, read_file
 from robomill.io.tables import Table, parse_toml, toml_value
 from robomill.io.texts import read_text
 from robomill.learn.draws import student_number
@@ -49,10 +49,15 @@ def answers_text(student: str | int, given: Mapping[str, str], name: str = "", r
     return "\n".join([*lines, "", "[answers]", *told, ""])
 
 
+def plain_name(path: Path) -> str:
+    """The file's name on one line, whatever bytes it is made of."""
+    return "".join(c if c.isprintable() else "\ufffd" for c in name_of(path))
+
+
 def read_answers(path: Path) -> Answers:
     """The answers of a file. Raises LearnError where it is none, or does not say whose they are."""
-    where = path.name
-    text, _ = read_text(read_file(path, ANSWERS, LearnError, regular=True), LearnError, ANSWERS, where)
+    where = plain_name(path)
+    text, _ = read_text(read_file(path, ANSWERS, LearnError, regular=True, said=where), LearnError, ANSWERS, where)
     table = Table(parse_toml(text, where, LearnError), where, LearnError)
     found = table.data.get("format")
     if found != FORMAT:

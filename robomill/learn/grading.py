@@ -12,9 +12,9 @@ from pathlib import Path
 
 from robomill.arguments import asked
 from robomill.errors import LearnError, RobomillError
-from robomill.files import check_place, name_of, shown_place
+from robomill.files import check_place, shown_place
 from robomill.io.robots import robot_names
-from robomill.learn.answers import Answers, read_answers
+from robomill.learn.answers import Answers, plain_name, read_answers
 from robomill.learn.exercise import Exercise
 from robomill.learn.marking import MOST, Judgement, check
 from robomill.learn.personal import TASKS, exercises
@@ -147,7 +147,7 @@ def _files(folder: Path) -> Iterator[tuple[Path, str]]:
     if not any(path.suffix.lower() == ".toml" for path in files):
         raise LearnError(f"{place}: there is no file of answers (.toml) in it or below.", where=str(folder))
     for path in sorted(files):
-        parts = [name_of(part) for part in path.relative_to(folder).parts]
+        parts = [plain_name(Path(part)) for part in path.relative_to(folder).parts]
         yield path, "/".join(parts)
 
 
@@ -187,7 +187,7 @@ def _remarks(path: Path, answers: Answers) -> Iterator[str]:
         yield f"No exercise is called {', '.join(answers.strange[:3])}."
     if not answers.given:
         yield "There is no answer in it."
-    _, _, number = path.stem.partition("answers-")
+    _, _, number = Path(plain_name(path)).stem.partition("answers-")
     if number and number.lower().lstrip("0") != answers.student:
         yield f"The file is called after {number:.40}, and the number in it is {answers.student}."
 

@@ -108,6 +108,15 @@ def test_what_cannot_be_marked_keeps_its_row_and_its_reason_and_the_others_are_m
     assert "Student number" in found["nobody.toml"].remarks[0]
 
 
+def test_names_of_files_that_are_no_text_are_written_all_the_same(tmp_path: Path) -> None:
+    for name in (b"\xff.toml", b"a\nb.toml", b"<b>.toml"):
+        Path(os.fsdecode(os.path.join(os.fsencode(tmp_path), name))).write_text('format = "robomill answers"\n')
+    found = learn.grade(tmp_path)
+    assert {row.file for row in found.rows} == {"\ufffd.toml", "a\ufffdb.toml", "<b>.toml"}
+    assert found.csv().encode("utf-8").count(b"Not marked") == 3
+    assert all("\n" not in row.remarks[0] for row in found.rows)
+
+
 def test_answers_of_other_kinds_and_unknown_names_are_told(tmp_path: Path) -> None:
     (tmp_path / "a.toml").write_text(
         'format = "robomill answers"\nstudent = "8"\n[answers]\ntip = [1, 2]\nshare = true\npress = nan\nslot = inf\n'
