@@ -148,7 +148,7 @@ def open_question(result: SimulationResult) -> None:
     """The way to where it is said what the project's program cuts, or with how many flutes, while nobody has."""
     if result.verdict.premise and not result.setup.carried_from:
         st.page_link("pages/6_Milling.py", label="Say it on the Milling page", icon=":material/help:")
-    elif result.verdict.premise:
+    elif result.setup.carried_from:
         st.page_link("pages/5_Toolpath.py", label="Say what it cuts", icon=":material/help:")
 
 

@@ -117,3 +117,19 @@ def test_the_question_is_saved_with_the_project(app: AppTest) -> None:
     again = setup_from_toml(setup_to_toml(setup))
     assert again.carried_from == setup.carried_from != ""
     assert again.digest() == setup.digest()
+
+
+def test_a_program_of_holes_alone_is_told_alike_on_every_page(app: AppTest) -> None:
+    """A force along the path says nothing of a plunge: nothing is judged, all is reached, and it is still asked for."""
+    bring(app, "G21 G90\nG0 X0 Y0 Z5\nG81 X10 Y10 Z-5 R2 F100\nX30\nG80\nG0 Z20\nM2\n")
+    assert "Stock: a block around the cuts, " in words(app)
+    assert "its top at Z = 2.0 mm" in words(app)
+    for page in ("app", "6_Milling", "7_Improve"):
+        go(app, page)
+        assert not app.exception
+        said = words(app)
+        assert "can be reached" not in said
+        assert "mend what is named above" not in said
+        assert "says nothing of a plunge" in said
+        assert [link.proto.label for link in app.get("page_link")].count("Say what it cuts") == 1, page
+        assert "Share of walls and floors" not in said

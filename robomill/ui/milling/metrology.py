@@ -246,6 +246,9 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
     if error is None:
         return
     gauge, unit = result.gauge, session.project().view.length
+    if not len(gauge.walls.error) + len(gauge.floors.error):
+        pieces.note("No wall and no floor of this cut is judged, so there is no error to spread.")
+        return
     largest = float(np.abs(np.concatenate([gauge.walls.error, gauge.floors.error])).max(initial=0.0))
     limit = min(max(1.15 * floors, 1.15 * walls, 1.05 * largest), 3.0 * max(floors, walls))
     edges = np.linspace(-limit, limit, BINS + 1)
@@ -299,8 +302,6 @@ def _volumes(error: Deviation) -> list[tuple[str, str, str]]:
 
 
 def _rms(gauge: Gauge, area: float) -> list[tuple[str, str, str]]:
-    """Of the walls and floors drawn above, each by its own area (m^2 in all); none where none are left."""
-    if not len(gauge.walls.error) + len(gauge.floors.error):
-        return []
+    """Of the walls and floors drawn above, each by its own area (m^2 in all)."""
     rms = math.sqrt((gauge.walls.squares + gauge.floors.squares) / area)
     return [("RMS error", format_si(rms, session.project().view.length), "of walls and floors, each by its own area")]

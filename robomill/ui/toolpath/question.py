@@ -40,8 +40,8 @@ def panel(path: Toolpath | None, premise: str) -> None:
         pieces.note(
             pieces.badge("assumed"), f"Until you say it, the numbers are those of {setup.carried_from}: they {hold}."
         )
-        if setup.stock is not None and setup.provenance.get("stock", setup.force.provenance).kind == "computed":
-            pieces.note(f"{_block(setup.stock)} Another one is given on the Milling page.")
+        if setup.stock is None and path is not None and path.cutting.any():
+            pieces.note(f"{_block(setup.stock_block)} Another one is given on the Milling page.")
         boxes = _boxes(setup, path)
         first, rest = pieces.split([1.0, 0.42 * len(boxes)], "question")
         with first:
