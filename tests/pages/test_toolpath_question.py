@@ -122,8 +122,8 @@ def test_the_question_is_saved_with_the_project(app: AppTest) -> None:
 def test_a_program_of_holes_alone_is_told_alike_on_every_page(app: AppTest) -> None:
     """A force along the path says nothing of a plunge: nothing is judged, all is reached, and it is still asked for."""
     bring(app, "G21 G90\nG0 X0 Y0 Z5\nG81 X10 Y10 Z-5 R2 F100\nX30\nG80\nG0 Z20\nM2\n")
-    assert "Stock: a block around the cuts, " in words(app)
-    assert "its top at Z = 2.0 mm" in words(app)
+    stock = "Stock: that of Reference groove (Slavkovic 2013), 110.0 × 40.0 × 10.0 mm, its top at Z = 0.0 mm."
+    assert stock in words(app).replace("\u00a0", " ")
     for page in ("app", "6_Milling", "7_Improve"):
         go(app, page)
         assert not app.exception
@@ -133,3 +133,11 @@ def test_a_program_of_holes_alone_is_told_alike_on_every_page(app: AppTest) -> N
         assert "says nothing of a plunge" in said
         assert [link.proto.label for link in app.get("page_link")].count("Say what it cuts") == 1, page
         assert "Share of walls and floors" not in said
+
+
+def test_the_block_around_a_path_in_the_air_says_how_high_it_stands(app: AppTest) -> None:
+    """Cut 30 mm over part zero the path goes through a block that was made for it, which nobody saw."""
+    bring(app, "G21 G90\nS9000 M3\nG0 X0 Y0 Z50\nG1 Z30 F500\nG1 X180 F1500\nG0 Z50\nM2\n")
+    assert "Stock: a block around the cuts, 192.0 × 12.0 × 26.0 mm, its top at Z = 51.0 mm." in words(app).replace(
+        "\u00a0", " "
+    )

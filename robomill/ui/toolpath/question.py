@@ -16,7 +16,6 @@ from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.sources import changed_sources
-from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import declared, inputs, pieces, session, typed
@@ -40,8 +39,8 @@ def panel(path: Toolpath | None, premise: str) -> None:
         pieces.note(
             pieces.badge("assumed"), f"Until you say it, the numbers are those of {setup.carried_from}: they {hold}."
         )
-        if setup.stock is None and path is not None and path.cutting.any():
-            pieces.note(f"{_block(setup.stock_block)} Another one is given on the Milling page.")
+        if path is not None and path.cutting.any():
+            pieces.note(f"{_stock(setup)} Another one is given on the Milling page.")
         boxes = _boxes(setup, path)
         first, rest = pieces.split([1.0, 0.42 * len(boxes)], "question")
         with first:
@@ -56,11 +55,14 @@ def panel(path: Toolpath | None, premise: str) -> None:
                 inputs.button(keep, f"{KEY}.keep", "", _accept, setup, type="tertiary")
 
 
-def _block(stock: Stock) -> str:
-    """The block that nobody stated, with the height up to which it stands: a path in the air cuts none of it."""
-    unit = session.project().view.length
-    size = format_many(stock.upper - stock.lower, unit, 1, " × ")
-    return f"Stock: a block around the cuts, {size}, its top at Z = {format_si(stock.upper[2], unit, 1)}."
+def _stock(setup: SimulationSetup) -> str:
+    """The block that is cut, with the height up to which it stands, and whose it is."""
+    unit, block = session.project().view.length, setup.stock_block
+    said = setup.provenance.get("stock")
+    whose = "yours" if said is not None and said.kind == "user" else f"that of {setup.carried_from}"
+    size = format_many(block.upper - block.lower, unit, 1, " × ")
+    top = format_si(block.upper[2], unit, 1)
+    return f"Stock: {'a block around the cuts' if setup.stock is None else whose}, {size}, its top at Z = {top}."
 
 
 def _box(name: str, box: NumberBox, value: float | None) -> None:
