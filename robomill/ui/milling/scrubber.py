@@ -35,8 +35,8 @@ def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
     which ends the alloy's rows lie."""
     unit = session.project().view.length
     if i < 0:
-        words = "reached" if not result.reached[result.path.cutting].any() else "judged: the headline says why"
-        pieces.note(f"Nothing of this cut can be {words}.")
+        how = "reached" if not result.reached[result.path.cutting].any() else "judged: the headline says why"
+        pieces.note(f"Nothing of this cut can be {how}.")
         return
     point = format_many(result.path.p[i], unit, 2, with_unit=False)
     words = [
