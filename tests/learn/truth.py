@@ -13,6 +13,8 @@ STEP = 1e-6
 
 
 def numbers(text: str) -> list[float]:
+    """The numbers in a text, however its thousands are parted."""
+    text = re.sub(r"(?<=\d),(?=\d{3})", "", text)
     return [float(each.replace("−", "-")) for each in re.findall(r"[−-]?\d+(?:\.\d+)?", text)]
 
 
