@@ -14,7 +14,7 @@ STEP = 1e-6
 
 def numbers(text: str) -> list[float]:
     """The numbers in a text, however its thousands are parted."""
-    text = re.sub(r"(?<=\d),(?=\d{3})", "", text)
+    text = re.sub(r"(?<=\d)[,\s](?=\d{3}(?!\d))", "", text)
     return [float(each.replace("−", "-")) for each in re.findall(r"[−-]?\d+(?:\.\d+)?", text)]
 
 
