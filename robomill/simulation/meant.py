@@ -27,6 +27,7 @@ SAME = 1e-6  # m: steps that go no further stay at one place
 FARTHEST = 2e-3  # m: no corrected program goes further beside its path, and none leaves out more of it
 TURNED = 2e-3  # m: a place where the path goes the other way counts as so much further off, twice
 DIRECTED = 0.5e-3  # m: shorter steps may be links, which go any way
+ITS_WAY = 0.5  # cosine of the angle within which a sample goes the way of a step
 WINDOW = 96  # samples of the path among which one looks
 SAID = 20_000  # samples between two words of progress
 
@@ -76,9 +77,10 @@ def meant(path: Toolpath, wanted: Toolpath, step: float) -> Toolpath:
             f"{format_count(len(cuts), 'cut')}: the program was not corrected for it; give the one that was meant."
         )
     directed = path.step_length >= min(DIRECTED, 0.5 * step)
-    here, there = np.where(directed[:, None], ways(path), 0.0), ways(wanted)
+    here, there = ways(path), ways(wanted)
     for some, all_ in zip(cuts, told, strict=True):
-        p[some], worst, at = _places(path.p[some], here[some], wanted.p[all_], there[all_])
+        near = _aligned(path.p[some], here[some] * directed[some, None], wanted.p[all_], there[all_])
+        p[some], worst, at = _places(path.p[some], here[some], wanted.p[all_], near)
         if worst > FARTHEST:
             raise ToolpathError(
                 f"Wanted path: at {path.block_name} {path.block[some[at]]} the program is {format_si(worst, 'mm')} off "
@@ -96,11 +98,12 @@ def _cuts(path: Toolpath) -> list[IntArray]:
     return [some for some in of if path.step_length[some[1:]].any()]
 
 
-def _places(q: FloatArray, t: FloatArray, p: FloatArray, u: FloatArray) -> tuple[FloatArray, float, int]:
-    """(n, 3) m: where on one cut of the wanted path, p (m, 3) m, the samples q (n, 3) m of one cut belong; how far (m)
-    they are off it, or leave some of it out, and which sample is or does so most. t and u are their directions."""
+def _places(q: FloatArray, t: FloatArray, p: FloatArray, near: IntArray) -> tuple[FloatArray, float, int]:
+    """(n, 3) m: where on one cut of the wanted path, p (m, 3) m, the samples q (n, 3) m of one cut belong, each about
+    the sample ``near`` (n,); how far (m) they are off it, or leave some of it out, and which sample is or does so most.
+    t (n, 3) are their directions."""
     s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1)))
-    s_q = np.maximum.accumulate(_nearest(q, p, s, _aligned(q, t, p, u)))
+    s_q = np.maximum.accumulate(_nearest(q, t, p, near))
     found = np.column_stack([np.interp(s_q, s, p[:, i]) for i in range(3)])
     left_out = np.diff(s_q, prepend=0.0, append=s[-1])
     left_out[1:-1] -= np.linalg.norm(np.diff(q, axis=0), axis=1)
@@ -140,9 +143,10 @@ def _aligned(q: FloatArray, t: FloatArray, p: FloatArray, u: FloatArray) -> IntA
     return at
 
 
-def _nearest(q: FloatArray, p: FloatArray, s: FloatArray, at: IntArray) -> FloatArray:
-    """(n,) m along p (m, 3) m, whose samples stand at s (m,) m: the nearest place to each of q (n, 3) m on the two
-    steps about the samples ``at`` (n,)."""
+def _nearest(q: FloatArray, t: FloatArray, p: FloatArray, at: IntArray) -> FloatArray:
+    """(n,) m along p (m, 3) m: the nearest place to each of q (n, 3) m at the samples ``at`` (n,), or on those of the
+    two steps about them that go its way, t (n, 3): a link belongs to the corner that it leads around."""
+    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1)))
     found, least = s[at], np.linalg.norm(q - p[at], axis=1)
     for a in (np.maximum(at - 1, 0), at):
         b = np.minimum(a + 1, len(p) - 1)
@@ -151,7 +155,8 @@ def _nearest(q: FloatArray, p: FloatArray, s: FloatArray, at: IntArray) -> Float
         along = np.einsum("ni,ni->n", q - p[a], way)
         share = np.clip(np.divide(along, square, out=np.zeros(len(q)), where=square > 0.0), 0.0, 1.0)
         off = np.linalg.norm(q - p[a] - share[:, None] * way, axis=1)
-        better = off < least
+        goes = np.einsum("ni,ni->n", t, way) > ITS_WAY * np.sqrt(square)
+        better = goes & (off < least)
         found = np.where(better, s[a] + share * (s[b] - s[a]), found)
-        least = np.minimum(least, off)
+        least = np.where(better, off, least)
     return np.asarray(found)
