@@ -33,7 +33,13 @@ AT_HAND = 2_000_000  # letters of a text: 2 ms to look through
 CELL_S = 1e-6  # s that a cell of a table takes to be written
 # What a file holds that is taken away, by the end of its name.
 MIME = {
-    **{"csv": "text/csv", "nc": "text/plain", "toml": "application/toml", "urdf": "application/xml"},
+    **{
+        "csv": "text/csv",
+        "nc": "text/plain",
+        "toml": "application/toml",
+        "urdf": "application/xml",
+        "html": "text/html",
+    },
     **{"png": "image/png", "gif": "image/gif", "mp4": "video/mp4"},
     **{"stl": "model/stl", "ply": "application/octet-stream", "glb": "model/gltf-binary", "vtp": "application/xml"},
 }

@@ -261,9 +261,14 @@ def open_text(text: str) -> str:
         new = project_from_toml(text, project().view, project().maps, project().bench)
     except RobomillError as exc:
         return str(exc)
+    open_project(new)
+    return ""
+
+
+def open_project(new: Project) -> None:
+    """Put another project in force; undo leads back."""
     replace(new)
     _forget(store())
-    return ""
 
 
 def _forget(held: Store) -> None:

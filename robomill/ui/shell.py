@@ -7,7 +7,7 @@ import streamlit as st
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import SETUP
 from robomill.io.texts import read_text
-from robomill.ui import bar, declared, inputs, menu, pieces, preparing, rendered, session
+from robomill.ui import arriving, bar, declared, handing, inputs, menu, pieces, preparing, rendered, session
 from robomill.ui.closing import settle
 from robomill.ui.commons import weight
 from robomill.ui.keeping import autosave, snapshots
@@ -87,12 +87,14 @@ def begin(title: str) -> Project:
     try:
         autosave.take_up()
         session.enter(title)
+        arriving.take_up()
         settle()
     except RobomillError as exc:
         error(exc)
         st.stop()
     bar.show()
     autosave.notices()
+    arriving.notice()
     with st.sidebar:
         _sidebar()
         _watch(on_changed_change=lambda: None, height=1)  # takes no room
@@ -157,6 +159,7 @@ def _files(held: session.Store) -> None:
             icon=":material/save:",
             width="stretch",
         )
+    handing.row(project)
     if st.button("Keep and compare", key="snapshots", icon=":material/bookmarks:", width="stretch", type="tertiary"):
         snapshots.show()
     waiting = held.refused.get("project.file")  # here as well: the open popover lies over the sentence beneath the box
