@@ -49,10 +49,8 @@ def test_an_address_leads_to_a_step_of_a_lesson_in_large_type_and_without_the_me
     size = page.evaluate("getComputedStyle(document.documentElement).fontSize")
     assert float(size.removesuffix("px")) == pytest.approx(1.4 * 16)
     assert not page.locator('[data-testid="stSidebar"]').is_visible()
-    wide = page.evaluate(
-        "(() => { const m = document.querySelector('[data-testid=stMain]'); return m.scrollWidth; })()"
-    )
-    assert wide <= width, "nothing stands beyond the edge"
+    # Nothing stands beyond the edge, once the components have their width.
+    page.wait_for_function("w => document.querySelector('[data-testid=stMain]').scrollWidth <= w", arg=width)
     page.get_by_role("button", name="Why?").click()
     idle(page)
     page.wait_for_function("new URL(location).searchParams.get('step') === '3'")

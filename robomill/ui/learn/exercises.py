@@ -73,7 +73,7 @@ def _one(k: int, given: Exercise, kept: str, answer: str) -> None:
     found = check(given, answer)
     if found.kind != "missing":
         if found.right:
-            st.success(found.sentence, icon=":material/check_circle:")
+            st.success(as_markdown(found.sentence), icon=":material/check_circle:")
         else:
             pieces.said("warning", found.sentence)
     shown = session.kept(HINTS, {}).get(kept + given.id, 0)
