@@ -25,6 +25,8 @@ Numbers = Arrays | Sequence[float]
 Rows = Arrays | Sequence[Arrays | Sequence[float]]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
+NO_NUMBERS = (TypeError, ValueError, OverflowError)
+"""What NumPy and Python raise of what is no number, or larger than any."""
 FARTHEST = 1e4  # m from the base of a robot or the zero of a part
 
 
@@ -32,7 +34,7 @@ def of_kind(value: Any, kinds: type | tuple[type, ...], name: str, give: str, er
     """Refuse a ``value`` of another kind, with what to ``give`` instead: what is called later would only crash."""
     if not isinstance(value, kinds):
         first = kinds[0] if isinstance(kinds, tuple) else kinds
-        raise error(f"{name}: expected a {first.__name__}, found {value!r:.60}; give {give}.")
+        raise error(f"{name}: expected a {first.__name__}, found {brief(value)}; give {give}.")
 
 
 def as_floats(
@@ -50,8 +52,8 @@ def as_floats(
     """
     try:
         array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as exc:
-        found = no_number(value) or f"{value!r:.60}"
+    except NO_NUMBERS as exc:
+        found = no_number(value) or brief(value)
         raise error(f"{name}: expected numbers, found {found}.") from exc
     fits = array.ndim == len(shape) or (array.ndim > len(shape) and not one)
     trailing = array.shape[array.ndim - len(shape) :] if fits else None
@@ -73,9 +75,17 @@ def no_number(value: Any) -> str:
         return next((found for each in value if (found := no_number(each))), uneven)
     try:
         float(value)
-    except (TypeError, ValueError):
-        return f"{value!r:.60}"
+    except NO_NUMBERS:
+        return brief(value)
     return ""
+
+
+def brief(value: Any, most: int = 60) -> str:
+    """What was found, on one line and no longer than that."""
+    try:
+        return " ".join(f"{value!r:.{4 * most}}".split())[:most]
+    except ValueError:  # Python writes no whole number of more than 4300 digits
+        return "a whole number of thousands of digits"
 
 
 def check_place(p: ArrayLike, name: str, error: type[RobomillError]) -> None:
@@ -90,8 +100,13 @@ def frozen(array: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
     if isinstance(array, np.ndarray) and array.dtype == np.dtype(dtype) and _is_frozen(array):
         return array
     copy = np.array(array, dtype=dtype, order="C")
-    copy.flags.writeable = False
-    return copy
+    return shut(copy)
+
+
+def shut(array: NDArray[Any]) -> NDArray[Any]:
+    """The same numbers in an array that nobody can make writable again: NumPy asks whoever owns the memory."""
+    array.flags.writeable = False
+    return array.view() if array.base is None else array
 
 
 def sealed(value: T) -> T:
@@ -115,7 +130,10 @@ def sealed(value: T) -> T:
 
 
 def _is_frozen(array: NDArray[Any]) -> bool:
-    return array.base is None and bool(array.flags.c_contiguous) and not array.flags.writeable
+    base = array.base
+    whole = isinstance(base, np.ndarray) and base.base is None and base.size == array.size
+    owned = base is None or (whole and not base.flags.writeable)
+    return owned and bool(array.flags.c_contiguous) and not array.flags.writeable
 
 
 def digest(value: Any) -> str:

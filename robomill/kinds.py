@@ -14,7 +14,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import Arrays, Numbers, Rows, no_number
+from robomill.arrays import NO_NUMBERS, Arrays, Numbers, Rows, brief, no_number
 from robomill.errors import ArgumentError, RobomillError
 
 LOOKED_AT = 1000  # entries of a sequence
@@ -32,7 +32,7 @@ WORDS = {
 _NUMBERS, _ROWS, _LINE = (frozenset(get_args(each)) for each in (ArrayLike, Rows, Numbers))
 
 
-SLIPS = (TypeError, AttributeError, ValueError, LookupError)
+SLIPS = (TypeError, AttributeError, ValueError, LookupError, OverflowError)
 """What Python and NumPy raise of a value of another kind than they can use."""
 
 
@@ -57,7 +57,7 @@ def refuse_kinds(call: Callable[..., Any], who: str, given: Mapping[str, Any]) -
             numbers = _alternatives(known[name])[0] in (float, Arrays) and not isinstance(value, str)
             found = no_number(value) if numbers else ""
             raise ArgumentError(
-                f"{who}: {name}: expected {_words(known[name])}, found {found or f'{value!r:.60}'}.", where=name
+                f"{who}: {name}: expected {_words(known[name])}, found {found or brief(value)}.", where=name
             )
 
 
@@ -128,7 +128,7 @@ def _is_number(value: Any, whole: bool) -> bool:
         return False
     try:
         number = float(value)
-    except (TypeError, ValueError, OverflowError):
+    except NO_NUMBERS:
         return False
     return not whole or number.is_integer()
 
@@ -137,7 +137,7 @@ def _is_even(value: Any) -> bool:
     """Whether rows are as long as each other all the way down."""
     try:
         np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
+    except NO_NUMBERS:
         return False
     return True
 

@@ -7,6 +7,8 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 import numpy as np
 
+from robomill.arrays import shut
+
 T = TypeVar("T")
 
 
@@ -33,8 +35,9 @@ class cached_property(Generic[T]):  # noqa: N801 - the field's name for it
             return self
         value: Any = self._make(one)
         if not self._name.startswith("_"):
-            for array in value if type(value) is tuple else (value,):  # tuples by name are what kernels take and fill
-                if isinstance(array, np.ndarray):
-                    array.flags.writeable = False
+            if type(value) is tuple:  # tuples by name are what kernels take and fill
+                value = tuple(shut(each) if isinstance(each, np.ndarray) else each for each in value)
+            elif isinstance(value, np.ndarray):
+                value = shut(value)
         vars(one)[self._name] = value
         return value

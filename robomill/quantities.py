@@ -23,7 +23,7 @@ from typing import Any, Literal, get_type_hints
 
 import numpy as np
 
-from robomill.arrays import as_floats, frozen
+from robomill.arrays import NO_NUMBERS, as_floats, brief, frozen
 from robomill.errors import RobomillError
 from robomill.units import UNITS, format_short, unit_label
 
@@ -268,8 +268,8 @@ def _declared(declared: Quantity, default: Any, compare: bool = True) -> Any:
 def _number(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> float:
     try:
         return float(value)
-    except (TypeError, ValueError) as exc:
-        raise declared._refusal(f"{value!r:.40}", error, who) from exc
+    except NO_NUMBERS as exc:
+        raise declared._refusal(brief(value, 40), error, who) from exc
 
 
 def _array(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> Any:
@@ -287,21 +287,21 @@ def _whole(declared: Quantity, value: Any, error: type[RobomillError], who: str)
         number = float(value)
         if number.is_integer() and not isinstance(value, str | bool):
             return int(number)
-    except (TypeError, ValueError, OverflowError):
+    except NO_NUMBERS:
         pass
-    raise declared._refusal(f"{value!r:.40}", error, who)
+    raise declared._refusal(brief(value, 40), error, who)
 
 
 def _switch(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> bool:
     if isinstance(value, bool | np.bool_):
         return bool(value)
-    raise declared._refusal(f"{value!r:.40}", error, who)
+    raise declared._refusal(brief(value, 40), error, who)
 
 
 def _choice(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> str:
     if isinstance(value, str) and value in declared.options:
         return value
-    raise declared._refusal(f"{value!r:.40}", error, who)
+    raise declared._refusal(brief(value, 40), error, who)
 
 
 _CONVERTERS = {"number": _number, "array": _array, "whole": _whole, "switch": _switch, "choice": _choice}

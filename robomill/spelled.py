@@ -21,7 +21,7 @@ import numpy as np
 
 from robomill.arguments import asked as telling
 from robomill.arguments import named, refuse_unknown
-from robomill.arrays import no_number
+from robomill.arrays import NO_NUMBERS, brief, no_number
 from robomill.errors import ArgumentError, RobomillError
 from robomill.kinds import kinds_told
 from robomill.quantities import Quantity, quantities
@@ -140,8 +140,8 @@ def converted(value: Any, unit: str, error: type[RobomillError], name: str) -> A
         return tuple(converted(one, unit, error, name) for one in value)
     try:
         numbers = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        found = no_number(value) or f"{value!r:.60}"
+    except NO_NUMBERS:
+        found = no_number(value) or brief(value)
         raise error(f"{name}: expected a number, found {found}.", where=name) from None
     return to_si(float(numbers), unit) if numbers.ndim == 0 else to_si(numbers, unit)
 
@@ -152,7 +152,7 @@ def refuse_slip(declared: Quantity, value: Any, error: type[RobomillError], who:
         return
     try:
         found = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
+    except NO_NUMBERS:
         return  # what is no number is refused where it is settled
     size = np.where(np.isfinite(found), np.abs(found), 0.0)
     if size.max(initial=0.0) > declared.slip:
@@ -221,7 +221,8 @@ def refuse_tiny(declared: Quantity, value: Any, error: type[RobomillError], who:
         least = f"at least {declared.short(declared.tiny)}" if tiny else f"an angle in degrees; {_in_degrees(largest)}"
         raise error(f"{declared.said_of(who)}: found {declared.short(largest)}; expected {least}.", where=declared.name)
     unit, si = unit_label(declared.unit), SI_NAMES[declared.unit]
-    found, meant = f"{float(from_si(largest, declared.unit)):.6g}", f"{largest:.6g}"
+    sign = "-" if sizes.ndim == 0 and value < 0.0 else ""
+    found, meant = f"{sign}{float(from_si(largest, declared.unit)):.6g}", f"{sign}{largest:.6g}"
     least = f", expected at least {from_si(declared.tiny or 0.0, declared.unit):.3g}" if tiny else ""
     space = "" if unit == "°" else " "
     other, right = name_in_code(declared), f"{float(from_si(float(found), declared.unit)):.5g}"

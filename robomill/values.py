@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from robomill.arrays import digest, sealed
+from robomill.arrays import digest, sealed, shut
 from robomill.frames import Columns, data_frame
 from robomill.lazy import cached_property
+from robomill.quantities import described
 from robomill.units import format_count, format_significant
 
 if TYPE_CHECKING:
@@ -37,7 +38,13 @@ class ReadOnly:
 
     def __post_init__(self) -> None:
         for each in fields(self):  # type: ignore[arg-type]
-            sealed(getattr(self, each.name))
+            _keep(self, each.name, getattr(self, each.name))
+
+
+def _keep(one: Any, name: str, value: Any) -> None:
+    """What a field holds, read-only from now on."""
+    kept = shut(value) if isinstance(value, np.ndarray) else sealed(value)
+    object.__setattr__(one, name, kept)
 
 
 class Value(ReadOnly):
@@ -71,7 +78,7 @@ class Value(ReadOnly):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         for name, value in state.items():
-            object.__setattr__(self, name, sealed(value))
+            _keep(self, name, value)
 
     def _said(self) -> str:
         """What one wants to know of it at first sight."""
@@ -86,6 +93,17 @@ class Value(ReadOnly):
 
     def _repr_html_(self) -> str:
         return captioned(self, "".join(_row("th", [name], "td", [words]) for name, words in self._facts()))
+
+
+class Said:
+    """A small value (``repr=False``) that says in one line what it is; equality and fields are its class's own."""
+
+    def _said(self) -> str:
+        """What one wants to know of it at first sight."""
+        return described(self)
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 class Table:

@@ -112,10 +112,22 @@ def source(name: str, unit: str = "", feed_mm_min: float | None = None) -> Any:
     from robomill.io.programs import program_from_bytes, read_program
 
     if name == STDIN:
+        check_points_options("standard input", unit, feed_mm_min)
         return program_from_bytes(stdin(PROGRAM, ProjectError), "stdin.nc")
     if Path(name).suffix.lower() in DRAWN:
         raise ProjectError(f"{name}: this is a drawing; make a program of it with 'robomill drawing', and name that.")
-    return points(name, unit, feed_mm_min) or read_program(name)
+    found = points(name, unit, feed_mm_min)
+    if not found:
+        check_points_options(name, unit, feed_mm_min)
+    return found or read_program(name)
+
+
+def check_points_options(name: str, unit: str, feed_mm_min: float | None) -> None:
+    """Refuse what is said of points where ``name`` names none: it would change nothing, without a word."""
+    said = "--feed" if feed_mm_min is not None else "--unit" if unit else ""
+    if said:
+        what = f"{name} is a program, which says its own" if name else "the set-up's own path says its own"
+        raise ProjectError(f"{said}: this is for a table of points (.csv, .parquet); {what}.")
 
 
 def points(name: str, unit: str = "", feed_mm_min: float | None = None) -> Any:

@@ -30,6 +30,15 @@ def wholes(text: str, option: str) -> tuple[int, ...]:
     return tuple(int(v) for v in numbers(text, option, None, "whole numbers"))
 
 
+def number(text: str) -> float:
+    """A number, as argparse takes it; raises its refusal."""
+    try:
+        return float(text)
+    except ValueError:
+        point = f"; write {text.replace(',', '.')}" if floats([text.replace(",", ".")]) else ""
+        raise argparse.ArgumentTypeError(f"expected a number, found {text!r:.40}{point}") from None
+
+
 def whole(most: int, text: str) -> int:
     """A whole number from 1 on, as argparse takes it; raises its refusal."""
     if not (text.isascii() and text.isdecimal() and len(text) < 9 and 0 < int(text) <= most):

@@ -3,6 +3,7 @@
 import argparse
 import textwrap
 from collections.abc import Callable
+from difflib import get_close_matches
 from functools import partial
 from importlib import import_module
 from shutil import get_terminal_size
@@ -11,7 +12,7 @@ from typing import Any
 from robomill import __version__
 from robomill.cli import completers
 from robomill.cli.completers import offered
-from robomill.cli.options import whole
+from robomill.cli.options import number, whole
 from robomill.cli.serve import serve_options
 
 EXIT_CODES = (
@@ -78,9 +79,21 @@ MODULES = {
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
 
+class Parser(argparse.ArgumentParser):
+    """A parser that says what was meant by a word that is not one of its choices."""
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        if action.choices is None or value in action.choices:
+            return
+        words = [str(each) for each in action.choices]
+        close = get_close_matches(str(value).lower(), words, 1, 0.5)
+        meant = f"did you mean {close[0]!r}?" if close else f"expected one of {', '.join(words)}"
+        raise argparse.ArgumentError(action, f"there is no {value!r:.40}; {meant}")
+
+
 def make_parser() -> argparse.ArgumentParser:
     """The verbs and their options."""
-    top = argparse.ArgumentParser(
+    top = Parser(
         prog="robomill", description="Path deviation of a milling robot. Without a verb: the app.", epilog=EXIT_CODES
     )
     top.add_argument("--version", action="version", version=f"robomill {__version__}")
@@ -192,7 +205,7 @@ def _points_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--unit", default="", choices=("mm", "in", "cm", "m"), help="unit of points whose header is silent"
     )
-    sub.add_argument("--feed", type=float, metavar="MM_MIN", help="feed of points that have none, mm/min")
+    sub.add_argument("--feed", type=number, metavar="MM_MIN", help="feed of points that have none, mm/min")
 
 
 def _drawing_options(sub: argparse.ArgumentParser) -> None:
@@ -217,7 +230,7 @@ def _drawing_options(sub: argparse.ArgumentParser) -> None:
         ("clearance", "MM", "height of rapids, mm (5)"),
         ("spindle", "1_MIN", "spindle speed, 1/min"),
     ):
-        sub.add_argument(f"--{name}", type=float, metavar=metavar, help=text)
+        sub.add_argument(f"--{name}", type=number, metavar=metavar, help=text)
     sub.add_argument("--out", metavar="PROGRAM.nc", help="write the path there as G-code; an older file is replaced")
 
 
@@ -229,8 +242,8 @@ def _map_options(grid: argparse.ArgumentParser) -> None:
     offered(wanted, completers.quantities)
     for axis in "xyz":
         grid.add_argument(f"--{axis}", required=True, metavar="LOW:HIGH:STEP", help="mm, or one number")
-    grid.add_argument("--a-deg", type=float, default=0.0, help="tool tilt A")
-    grid.add_argument("--b-deg", type=float, default=0.0, help="tool tilt B")
+    grid.add_argument("--a-deg", type=number, default=0.0, help="tool tilt A")
+    grid.add_argument("--b-deg", type=number, default=0.0, help="tool tilt B")
     _compliance_set(grid)
     grid.add_argument("--out", help="write the map there: .csv, .parquet or .vti; an older file is replaced")
 
@@ -277,14 +290,16 @@ def _outside(sub: argparse.ArgumentParser, what: str) -> None:
 
 def _design_options(sub: argparse.ArgumentParser) -> None:
     _setup(sub)
-    sub.add_argument("--tolerance-mm", type=float, metavar="MM", help="of walls and floors, mm (that of the set-up)")
+    sub.add_argument(
+        "--tolerance-mm", "--tol", type=number, metavar="MM", help="of walls and floors, mm (that of the set-up)"
+    )
     sub.add_argument(
         "--measure",
         default="verdict",
         choices=("verdict", "wall", "floor", "tip"),
         help="what has to keep it: what the verdict judges (default), one of its parts, or the tip's deviation",
     )
-    sub.add_argument("--most", type=float, metavar="TIMES", help="how many times as stiff a joint may be made (10)")
+    sub.add_argument("--most", type=number, metavar="TIMES", help="how many times as stiff a joint may be made (10)")
 
 
 def _asked_for(sub: argparse.ArgumentParser) -> None:
@@ -300,7 +315,7 @@ def _turn_options(sub: argparse.ArgumentParser) -> None:
     _setup(sub)
     _another_robot(sub)
     _asked_for(sub)
-    sub.add_argument("--rate", type=float, metavar="DEG_MM", help="how fast the spin may change, degrees a mm (1)")
+    sub.add_argument("--rate", type=number, metavar="DEG_MM", help="how fast the spin may change, degrees a mm (1)")
 
 
 def _place_options(sub: argparse.ArgumentParser) -> None:
@@ -315,7 +330,9 @@ def _place_options(sub: argparse.ArgumentParser) -> None:
         help="a box, mm, in the robot's base that the stock keeps out of; one --keep-out a box",
     )
     _asked_for(sub)
-    sub.add_argument("--room", type=float, metavar="SHARE", help="of its half range a joint keeps to its limits (0.05)")
+    sub.add_argument(
+        "--room", type=number, metavar="SHARE", help="of its half range a joint keeps to its limits (0.05)"
+    )
     sub.add_argument(
         "--candidates", type=partial(whole, 100_000), default=1000, metavar="PLACES", help="places of the map (1000)"
     )
@@ -329,7 +346,9 @@ def _cut_options(run: argparse.ArgumentParser) -> None:
     told = "of a corrected program: the one it was made of, from whose path the deviation is told"
     _named(run, "--wanted", told, "program")
     _another_robot(run)
-    run.add_argument("--tol", type=float, metavar="MM", help="another tolerance of walls and floors, mm")
+    run.add_argument(
+        "--tol", "--tolerance-mm", type=number, metavar="MM", help="another tolerance of walls and floors, mm"
+    )
     _compliance_set(run, "another of the robot's compliance sets")
 
 
@@ -376,7 +395,7 @@ def _compensate_options(run: argparse.ArgumentParser) -> None:
     )
     run.add_argument(
         "--bound-um",
-        type=float,
+        type=number,
         default=2.0,
         metavar="UM",
         help="how near the program keeps to the corrected path, um (default 2)",

@@ -46,6 +46,8 @@ def asked_setup(arguments: Any) -> Any:
     if arguments.program:
         changes["source"] = given.source(arguments.program, arguments.unit, arguments.feed)
         said["path"] = Provenance("user", f"{changes['source'].kind} {changes['source'].name}")
+    else:
+        given.check_points_options("", arguments.unit, arguments.feed)
     if arguments.wanted:
         changes["source"] = _corrected_for(changes.get("source", setup.source), arguments.wanted)
     if arguments.robot:

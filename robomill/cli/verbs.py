@@ -59,6 +59,8 @@ def run_gcode(arguments: Any) -> int:
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 
     table = given.points(arguments.file, arguments.unit, arguments.feed)
+    if not table:
+        given.check_points_options(arguments.file, arguments.unit, arguments.feed)
     source = b"" if table else given.program(arguments.file)
     files = Written.before([Path(arguments.moves)] if arguments.moves else [])
     if arguments.moves and (table or given.is_apt(source)):
@@ -93,7 +95,8 @@ def run_map(arguments: Any) -> int:
     grid = Grid(**{f"{axis}_mm": options.axis(getattr(arguments, axis), f"--{axis}") for axis in "xyz"})
     A, B = to_si(arguments.a_deg, "deg"), to_si(arguments.b_deg, "deg")
     everything = compliance_map(robot, grid, A, B)
-    fields = [everything.field(name) for name in dict.fromkeys(",".join(arguments.quantity).split(","))]
+    names = dict.fromkeys(name.strip() for name in ",".join(arguments.quantity).split(","))
+    fields = [everything.field(name) for name in names]
     files = Written.before([Path(arguments.out)] if arguments.out else [])
     if arguments.out:
         write_map(arguments.out, fields)

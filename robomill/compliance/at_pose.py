@@ -17,10 +17,12 @@ from robomill.kinematics.forward import joint_angles, joint_frames
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.lazy import cached_property
 from robomill.robot.model import Robot
+from robomill.units import format_si
+from robomill.values import Said
 
 
-@dataclass(frozen=True, eq=False)
-class PoseReport:
+@dataclass(frozen=True, eq=False, repr=False)
+class PoseReport(Said):
     """The arm at the configuration theta (n,) rad (m where prismatic); every number NaN where theta is NaN.
 
     Examples
@@ -33,6 +35,11 @@ class PoseReport:
 
     robot: Robot
     theta: FloatArray
+
+    def _said(self) -> str:
+        units = self.robot.joint_units
+        theta = ", ".join(format_si(each, unit, 2) for each, unit in zip(self.theta, units, strict=True))
+        return f"of {self.robot.name} at {theta}" if self.reached else f"of {self.robot.name}, not reached"
 
     @property
     def reached(self) -> bool:

@@ -18,12 +18,13 @@ from robomill.cutting.tool import Cutter
 from robomill.errors import RobotError
 from robomill.provenance import Provenance
 from robomill.quantities import settle
+from robomill.values import Said
 
 ASSUMED = Provenance("assumed", "entered without a source")
 TYPED = Provenance("user", "entered in the app")
 
 
-class Spring:
+class Spring(Said):
     """Something in series with the joints; its children say how it gives (``contribution``).
 
     A child is a frozen dataclass whose numbers are declared with ``quantity``; they are checked here, and files, the

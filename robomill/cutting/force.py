@@ -21,6 +21,7 @@ from robomill.errors import CuttingError
 from robomill.progress import gathered
 from robomill.provenance import Finding, Provenance
 from robomill.quantities import described, settle
+from robomill.values import Said
 
 BY_HAND = Provenance("user", "entered by hand")
 
@@ -47,7 +48,7 @@ class ForceSpread:
     at_peak: FloatArray
 
 
-class ForceModel:
+class ForceModel(Said):
     """Mean force on the tool at every step, in the ``frame`` it is known in. Each model is a file in ``forces``.
 
     A child is a frozen dataclass whose numbers are declared with ``quantity``; they are checked here, and files, the
@@ -81,6 +82,9 @@ class ForceModel:
     takes: ClassVar[type[Material] | None] = None
     example: ClassVar[str] = ""
     kinds: ClassVar[dict[str, type[ForceModel]]] = {}
+
+    def _said(self) -> str:
+        return self.numbers or self.title
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()

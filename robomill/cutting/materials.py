@@ -13,9 +13,10 @@ from typing import Any, ClassVar
 from robomill.cutting.edge import EdgeTerm
 from robomill.errors import CuttingError
 from robomill.provenance import GIVEN, Provenance
-from robomill.quantities import quantities, quantity, settle
+from robomill.quantities import described, quantities, quantity, settle
 from robomill.spelled import Replaceable
 from robomill.units import to_si
+from robomill.values import Said
 
 PUBLISHED = {"radial": (0.2, 0.95), "axial": (0.04, 0.42)}
 """Lowest and highest share of the tangential force that the six rows for aluminium of doi 10.1186/s10033-021-00536-9,
@@ -33,8 +34,8 @@ def per_area(label: str, *, leads: bool = False, optional: bool = False) -> Any:
     return quantity(label, "N/mm2", optional=optional, least=least, most=to_si(5e4, "N/mm2"))
 
 
-@dataclass(frozen=True)
-class Material(Replaceable):
+@dataclass(frozen=True, repr=False)
+class Material(Replaceable, Said):
     """Cutting force coefficients of one alloy with one kind of cutter. A child declares those of its law.
 
     ``alloy`` groups the alternative sets of one alloy ("Al 7075"), ``title`` tells them apart.
@@ -57,6 +58,9 @@ class Material(Replaceable):
     title: str
     alloy: str
     provenance: Provenance
+
+    def _said(self) -> str:
+        return f"{self.name}: {described(self)}"
 
     def __post_init__(self) -> None:
         if not self.name or not self.title or not self.alloy:

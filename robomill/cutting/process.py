@@ -36,7 +36,7 @@ def _share(part: str) -> Any:
     return quantity(label, optional=True, least=0.0, most=3.0, digits=2, boxed=False, hint=hint)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ProcessForce(ForceModel):
     """Mean force over a revolution from a cutter and a material row; parent of the models that differ in their rows.
 

@@ -360,7 +360,7 @@ def _default(value: ArrayLike | None, m: int, name: str) -> FloatArray:
         return np.zeros((m, 3))
     try:
         return np.broadcast_to(np.asarray(value, dtype=np.float64), (m, 3))
-    except ValueError as exc:
+    except (ValueError, OverflowError) as exc:
         raise LoadTestError(f"{name}: expected shape (3,) or ({m}, 3), found {np.shape(value)}.") from exc
 
 

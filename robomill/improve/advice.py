@@ -22,15 +22,15 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PointsSource
 from robomill.units import format_percent, format_si, from_si
-from robomill.values import Tabled
+from robomill.values import Said, Tabled
 
 SLOWEST, FASTEST, HALVED = 0.1, 4.0, 7  # times the feed, and how often the way between is halved
 MOST_LEVELS = 4
 ALLOWANCE = 0.1  # of the depth: what roughing leaves for a last pass
 
 
-@dataclass(frozen=True, eq=False)
-class Way:
+@dataclass(frozen=True, eq=False, repr=False)
+class Way(Said):
     """One way to cut it: its ``name`` and ``title``; the ``run`` (None where it does not apply, with the reason in
     ``refused``); ``factor`` times the feed, 1 where that stays."""
 
@@ -39,6 +39,9 @@ class Way:
     run: SimulationResult | None
     refused: str = ""
     factor: float = 1.0
+
+    def _said(self) -> str:
+        return f"{self.title}: {self.refused or (self.run.verdict.sentence if self.run else 'not run')}"
 
     @property
     def seconds(self) -> float:

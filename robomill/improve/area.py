@@ -9,26 +9,28 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, as_floats, check_place
+from robomill.arrays import BoolArray, FloatArray, as_floats, brief, check_place
 from robomill.errors import SetupError
 from robomill.kinematics.asked import longest_reach
 from robomill.kinematics.transforms import rotation_z, transform
+from robomill.provenance import Finding
 from robomill.quantities import Quantity
 from robomill.simulation.setup import SimulationSetup
 from robomill.spelled import one_of
 from robomill.surface.stock import Stock
-from robomill.units import format_many, to_si
+from robomill.units import format_many, from_si, to_si
 
 AROUND = 0.15  # of the arm's length, all links in a row: how far to each side of today's place where no box is given
 FULL_TURN = 2.0 * np.pi
 COARSE_YAW = to_si(45.0, "deg")
 COARSE_Z = 3
+LIKE_RADIANS = 3.2  # degrees: a range of yaw as narrow is as likely one in rad, up to half a turn
 MOST_CANDIDATES = 100_000
 WHO = "Placement"
 RANGES = (
-    Quantity("x", "mm", "array", shape=(2,), name="x", key="x_mm", slip=200.0, tiny=2e-3),
-    Quantity("y", "mm", "array", shape=(2,), name="y", key="y_mm", slip=200.0, tiny=2e-3),
-    Quantity("z", "mm", "array", shape=(2,), name="z", key="z_mm", slip=200.0, tiny=2e-3),
+    Quantity("x", "mm", "array", shape=(2,), name="x", key="x_mm", slip=20.0, tiny=2e-3),
+    Quantity("y", "mm", "array", shape=(2,), name="y", key="y_mm", slip=20.0, tiny=2e-3),
+    Quantity("z", "mm", "array", shape=(2,), name="z", key="z_mm", slip=20.0, tiny=2e-3),
     Quantity("yaw", "deg", "array", shape=(2,), name="yaw", key="yaw_deg", slip=4.0 * np.pi, quarters=True),
 )
 BOXES = Quantity("keep-out boxes", "mm", "array", name="keep_out", key="keep_out_mm", slip=200.0)
@@ -44,6 +46,7 @@ class Area:
     R: FloatArray
     stock: Stock
     keep_out: FloatArray
+    doubts: tuple[Finding, ...] = ()
 
     def T_MW(self, places: FloatArray) -> FloatArray:
         """(k, 4, 4) of places (k, 4)."""
@@ -119,18 +122,36 @@ def area(setup: SimulationSetup, asked: dict[str, Any]) -> Area:
         if plain is None and in_unit is None:
             continue
         given = one_of(declared, plain, in_unit, SetupError, WHO)
-        lower[i], upper[i] = _range(declared, given)
+        lower[i], upper[i] = _range(declared, given, plain if in_unit is None else in_unit)
     if upper[3] - lower[3] > FULL_TURN:
         upper[3] = lower[3] + FULL_TURN
-    return Area(lower, upper, turned_back(setup), setup.stock_block, _boxes(asked))
+    doubts = () if asked.get("yaw_deg") is None else _doubts(lower[3], upper[3])
+    return Area(lower, upper, turned_back(setup), setup.stock_block, _boxes(asked), doubts)
 
 
-def _range(declared: Quantity, given: Any) -> FloatArray:
+def _doubts(least: float, most: float) -> tuple[Finding, ...]:
+    """What to say of a range of yaw, given in degrees, that hardly turns the part: it may have been meant in rad."""
+    widest = float(from_si(max(abs(least), abs(most)), "deg"))
+    if not least < most or widest > LIKE_RADIANS:
+        return ()
+    meant = f"{from_si(widest, 'deg'):.0f}°"
+    words = (
+        f"The part is turned by no more than {widest:.3g}°: yaw is in degrees. Was {widest:.3g} rad, {meant}, meant?"
+    )
+    return (Finding("suspicious", words, code="unit-doubt"),)
+
+
+def _range(declared: Quantity, given: Any, as_given: Any) -> FloatArray:
+    """Least and largest (2,) of what is ``given`` in SI; one number stands for both."""
     name = f"{WHO}, {declared.name}"
-    found = np.atleast_1d(as_floats(given, name, (), error=SetupError))
+    found = as_floats(given, name, (), error=SetupError)
+    if found.ndim == 0:
+        found = np.array([found, found])
     if found.shape != (2,):
         raise SetupError(
-            f"{name}: expected two numbers, the least and the largest, found {given!r:.40}.", where=declared.name
+            f"{name}: expected two numbers, the least and the largest, or one to hold it there; found "
+            f"{brief(as_given, 40)}.",
+            where=declared.name,
         )
     if found[0] > found[1]:
         ends = format_many(found, declared.unit, 2, " to ")

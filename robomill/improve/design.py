@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked
-from robomill.arrays import FloatArray, as_floats, digest, frozen, of_kind
+from robomill.arrays import FloatArray, as_floats, brief, digest, frozen, of_kind
 from robomill.compliance.deflection import shares_along
 from robomill.errors import SetupError
 from robomill.frames import Columns
@@ -23,8 +23,8 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.spelled import one_of
-from robomill.units import format_limit, format_short, format_si
-from robomill.values import Tabled
+from robomill.units import format_count, format_limit, format_percent, format_short, format_si
+from robomill.values import Said, Tabled
 
 STIFFEST = 10.0  # times as stiff: the bound where none is given
 ROUNDS = 8  # of solving and running the cut with what was found
@@ -33,14 +33,20 @@ HALVED = 6  # times, where the least cost was not found
 SETTLED = 1e-3  # change of a stiffness ratio, of itself, that is none
 
 
-@dataclass(frozen=True, eq=False)
-class Front:
+@dataclass(frozen=True, eq=False, repr=False)
+class Front(Said):
     """What each deviation costs: share (k,) of the tolerance that is used, cost (k,), stiffness_ratio (k, n); by the
     errors as they go with the joints about the cut as it is."""
 
     share: FloatArray
     cost: FloatArray
     stiffness_ratio: FloatArray
+
+    def _said(self) -> str:
+        if not len(self.cost):
+            return "no points"
+        shares = f"{format_percent(self.share.min())} to {format_percent(self.share.max())} of the tolerance"
+        return f"{format_count(len(self.cost), 'point')}, {shares}, cost {self.cost.min():.2f} to {self.cost.max():.2f}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -203,9 +209,11 @@ def design(
     setup = _asked_for(setup, tolerance, tolerance_mm)
     n = setup.robot.n
     ratios = _bounds(bounds, n)
-    weights = np.broadcast_to(as_floats(weight, "weight", (n,) if np.ndim(weight) else (), error=SetupError), (n,))
-    if (weights <= 0.0).any():
-        raise SetupError("Weight: expected numbers above zero, one for all joints or one for each.", where="weight")
+    weights = as_floats(weight, "Weight", (), error=SetupError)
+    if weights.shape not in ((), (n,)) or (weights <= 0.0).any():
+        words = f"expected numbers above zero, one for all {n} joints or one for each"
+        raise SetupError(f"Weight: {words}; found {brief(weight)}.", where="weight")
+    weights = np.broadcast_to(weights, (n,))
     before = simulate(setup)
     _check(before, measure)
     search = _Search(setup, measure, weights, 1.0 / ratios[:, 1], 1.0 / ratios[:, 0])
@@ -326,11 +334,18 @@ def _asked_for(setup: SimulationSetup, tolerance: float | None, tolerance_mm: fl
     declared = quantities(SimulationSetup)["tolerance"]
     asked_for = one_of(declared, tolerance, tolerance_mm, SetupError, "Design")
     said = {**setup.provenance, "tolerance": Provenance("user", "asked for")}
+    asked_for = declared.settled(asked_for, SetupError, "Design")
     return setup.replace(tolerance=asked_for, floor_tolerance=None, provenance=said)
 
 
 def _bounds(bounds: ArrayLike, n: int) -> FloatArray:
     given = np.asarray(bounds, dtype=object)
+    if given.shape not in ((2,), (n, 2)):
+        raise SetupError(
+            f"Bounds of the stiffness ratio: expected two numbers, the least and the most times as stiff, such as "
+            f"(1, 4), or two for each of {n} joints; found {brief(bounds)}.",
+            where="bounds",
+        )
     shape = (n, 2) if given.ndim == 2 else (2,)
     found = np.broadcast_to(as_floats(bounds, "bounds", shape, error=SetupError), (n, 2))
     for joint, (low, high) in enumerate(found, 1):

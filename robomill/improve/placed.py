@@ -204,7 +204,7 @@ def place_of(result: SimulationResult, at: FloatArray, measure: Asked) -> Place:
 
 def findings(found: Placement, where: Area, result: SimulationResult) -> tuple[Finding, ...]:
     """What a reader of the numbers must know."""
-    said = []
+    said = list(where.doubts)
     setup, at = found.setup, np.append(found.best.zero, found.best.yaw)
     around = where.upper[3] - where.lower[3] >= 2.0 * np.pi - 1e-9
     free = (where.upper > where.lower) & ~np.array([False, False, False, around])

@@ -25,7 +25,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import reaching
 from robomill.spelled import Replaceable, in_units
 from robomill.units import format_percent, format_short, to_si
-from robomill.values import ReadOnly, Value
+from robomill.values import ReadOnly, Said, Value
 
 ROUNDS = 100  # of drawing again what cannot be
 USUAL = {
@@ -41,7 +41,7 @@ published force coefficients differ by at best; the others are what is reached w
 
 
 def _spread(label: str, unit: str, hint: str, most: float) -> Any:
-    return quantity(label, unit, optional=True, least=0.0, most=most, hint=hint, slip=most)
+    return quantity(label, unit, optional=True, least=0.0, most=most, hint=hint, slip=None if unit == "1" else most)
 
 
 @in_units(SetupError, "Spread")
@@ -107,8 +107,8 @@ def _stated(name: str, given: float | None) -> tuple[float, Provenance]:
     return USUAL[name], Provenance("assumed", "not stated: a usual value")
 
 
-@dataclass(frozen=True)
-class Input:
+@dataclass(frozen=True, repr=False)
+class Input(Said):
     """One number that is not known exactly: ``key`` and ``label``, its ``value`` and standard deviation ``std`` in SI,
     the ``unit`` it is told in, what ``group`` it belongs to, and who says how unsure it is."""
 
@@ -125,6 +125,10 @@ class Input:
         if self.group not in ("compliance", "force"):
             return np.ones(np.shape(change), dtype=bool)
         return (self.value + change) * (1.0 if self.value >= 0.0 else -1.0) >= 0.0
+
+    def _said(self) -> str:
+        value, std = (format_short(each, self.unit) for each in (self.value, self.std))
+        return f"{self.label}: {value}, std {std} ({self.provenance.kind})"
 
 
 @dataclass(frozen=True, eq=False)

@@ -56,6 +56,10 @@ def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
         raise WorkspaceError("Map: there is no quantity to write.")
     if any(field.grid is not fields[0].grid for field in fields):
         raise WorkspaceError("Map: the quantities of one file must share one grid.")
+    names = [field.quantity.name for field in fields]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice:
+        raise WorkspaceError(f"Map: {twice} is there {names.count(twice)} times; a file has one column of each.")
     if path.is_dir():
         raise WorkspaceError(f"Map: {str(path)!r} is a folder; give the name of a file.")
     if suffix not in SUFFIXES:

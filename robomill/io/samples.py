@@ -107,8 +107,10 @@ def sample_or_file(kind: SampleKind, name: str | Path, error: type[RobomillError
         return path
     names = sample_names(kind)
     close = get_close_matches(str(name).lower(), names, 1, 0.5)
-    other = next((sample.kind for sample in samples() if sample.name == str(name)), None)
-    meant = f"; {str(name)!r} is a {other}" if other else f"; did you mean {close[0]!r}?" if close else ""
+    other = next((sample for sample in samples() if sample.name == str(name).lower()), None)
+    is_one = "" if other is None else "are load tests" if other.kind == "load tests" else f"is a {other.kind}"
+    meant = f"; {other.name!r} {is_one}" if other and other.kind != kind else ""
+    meant = meant or (f"; did you mean {close[0]!r}?" if close else "")
     refusal = error(
         f"{str(name)!r:.80}: there is no such file here and no {kind} of this name; those that come with robomill are "
         f"{', '.join(names)}{meant}{'' if meant.endswith('?') else '.'}"

@@ -13,6 +13,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import RobotError
 from robomill.files import ROBOT
 from robomill.io.texts import read_text
+from robomill.io.urdf_axes import PARALLEL, dh_from_axes
 from robomill.kinematics.transforms import rotation_x, rotation_y, rotation_z, transform
 from robomill.provenance import Provenance
 from robomill.robot.joints import ASSUMED_COMPLIANCE
@@ -21,7 +22,6 @@ from robomill.robot.table import doubtful_limit
 from robomill.spelled import to_give
 
 MOVING = ("revolute", "continuous", "prismatic")
-PARALLEL = 1e-9
 TIP = ("tip", "say which is the tip")
 ROS_TIP = "tool0"  # the tool frame that ROS-Industrial asks of every arm
 SAME_PLACE = 1e-9  # m, and of directions
@@ -97,9 +97,19 @@ def _read(given: str | Path | bytes, where: str) -> tuple[str, list[Joint], list
     root = _root(text, where)
     links = [link.get("name", "") for link in root.findall("link")]
     joints = [_joint(each, where) for each in root.findall("joint")]
+    _check_names(links, "link", where)
+    _check_names([joint.name for joint in joints], "joint", where)
     if not joints and any("xacro" in each.tag for each in root.iter()):
         raise RobotError(f"{where}: this is a xacro template; make the URDF of it first (xacro FILE > arm.urdf).")
     return root.get("name") or Path(where).stem, joints, links, where
+
+
+def _check_names(names: list[str], what: str, where: str) -> None:
+    twice = next((name for name in names if names.count(name) > 1), None) if len({*names}) < len(names) else None
+    if twice is not None:
+        raise RobotError(
+            f"{where}: {names.count(twice)} {what}s are called {twice!r:.60}; give each a name of its own."
+        )
 
 
 def _root(text: str, where: str) -> ElementTree.Element:
@@ -166,7 +176,20 @@ def _by_child(joints: list[Joint], links: list[str], where: str) -> dict[str, Jo
                 f"{where}: link {joint.child!r:.60} hangs on two joints, a closed loop; only a serial arm can be read."
             )
         parents[joint.child] = joint
+    for joint in joints:
+        _check_loop(joint, parents, where)
     return parents
+
+
+def _check_loop(joint: Joint, parents: Mapping[str, Joint], where: str) -> None:
+    """Refuse a joint from which the way up comes back to it."""
+    link, way = joint.parent, [joint.name]
+    while link != joint.child and link in parents and len(way) <= len(parents):
+        way.append(parents[link].name)
+        link = parents[link].parent
+    if link == joint.child:
+        some = f"joint {way[0]!r:.60} leads" if len(way) == 1 else f"joints {_listed(map(repr, way[::-1]))} lead"
+        raise RobotError(f"{where}: {some} back to link {link!r:.60}, a closed loop; only a serial arm can be read.")
 
 
 def _serial_chain(joints: list[Joint], links: list[str], tip: str | None, where: str) -> list[Joint]:
@@ -330,70 +353,3 @@ def _check_units(chain: list[Joint], where: str) -> None:
             f"{where}: all links together are {reach:g} m long, expected at least {SHORTEST:g}: a URDF is in m; was "
             "another unit meant?"
         )
-
-
-def dh_from_axes(k: FloatArray, p: FloatArray, T_MT: FloatArray) -> dict[str, FloatArray]:
-    """Columns of a modified D-H table, T_base and T_tool, from the joint axes at zero: k (n, 3) unit, p (n, 3) m.
-
-    Frame i has its z along axis i and its x along the common perpendicular from axis i to axis i + 1 (any where they
-    cross, as before where they are parallel); the last one stands as near {T} as its axis allows. The base frame takes
-    up where the first one stands.
-    """
-    n = len(k)
-    frames = []
-    x = _any_square(k[0])
-    for i in range(n):
-        last = i + 1 == n
-        along = k[i] * (k[i] @ (T_MT[:3, 3] - p[i]))
-        x, origin = (_square_part(T_MT[:3, 0], k[i]), p[i] + along) if last else _common_perpendicular(k, p, i, x)
-        T = np.eye(4)
-        T[:3, :3] = np.column_stack([x, np.cross(k[i], x), k[i]])
-        T[:3, 3] = origin
-        frames.append(T)
-    alpha, a, d, theta = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    for i in range(1, n):
-        # Rx(alpha) Tx(a) Rz(theta) Tz(d) between neighbouring frames.
-        E = np.linalg.inv(frames[i - 1]) @ frames[i]
-        alpha[i] = np.arctan2(-E[1, 2], E[2, 2])
-        a[i] = E[0, 3]
-        theta[i] = np.arctan2(-E[0, 1], E[0, 0])
-        d[i] = -E[1, 3] * np.sin(alpha[i]) + E[2, 3] * np.cos(alpha[i])
-    return {
-        "alpha": alpha,
-        "a": a,
-        "d": d,
-        "theta_offset": theta,
-        "T_base": _rigid(frames[0]),
-        "T_tool": _rigid(np.linalg.inv(frames[-1]) @ T_MT),
-    }
-
-
-def _common_perpendicular(k: FloatArray, p: FloatArray, i: int, before: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(x, origin) of the frame on axis i: x from axis i to axis i + 1, origin where the perpendicular leaves axis i."""
-    across = np.cross(k[i], k[i + 1])
-    size = float(np.linalg.norm(across))
-    gap = p[i + 1] - p[i]
-    if size > PARALLEL:
-        origin = p[i] + k[i] * (np.cross(gap, k[i + 1]) @ across) / size**2
-        return across * (-1.0 if gap @ across < 0 else 1.0) / size, origin
-    between = gap - k[i] * (gap @ k[i])
-    size = float(np.linalg.norm(between))
-    return (between / size if size > PARALLEL else _square_part(before, k[i])), p[i]
-
-
-def _any_square(k: FloatArray) -> FloatArray:
-    return _square_part(np.eye(3)[np.argmin(np.abs(k))], k)
-
-
-def _square_part(x: FloatArray, k: FloatArray) -> FloatArray:
-    part = x - k * (x @ k)
-    size = np.linalg.norm(part)
-    return part / size if size > 1e-9 else _any_square(k)
-
-
-def _rigid(T: FloatArray) -> FloatArray:
-    """T with its rotation made exactly orthonormal and its last row exact."""
-    u, _, vt = np.linalg.svd(T[:3, :3])
-    result = np.eye(4)
-    result[:3, :3], result[:3, 3] = u @ vt, T[:3, 3]
-    return result

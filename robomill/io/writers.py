@@ -1,5 +1,6 @@
 """Values as files, the place first: ``write_robot("arm.toml", robot)``. Each is written whole or not at all."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,14 @@ from robomill.surface.zmap import ZMap
 from robomill.toolpath.path import Toolpath
 
 FEWEST_FACES = 12  # of a box
+WHOSE = {
+    Robot: "a Robot",
+    SimulationSetup: "a SimulationSetup",
+    Toolpath: "a Toolpath (of a set-up: setup.toolpath)",
+    Material: "a material row",
+    ZMap: "a ZMap (of a run: result.machined or result.ideal)",
+}
+"""What is written, and where it is found."""
 
 
 @asked
@@ -52,7 +61,7 @@ def write_robot(path: str | Path, robot: Robot) -> Path:
     >>> rm.load_robot(rm.write_robot(pathlib.Path(tempfile.mkdtemp()) / "arm.toml", robot)) == robot
     True
     """
-    _check(path, robot, Robot, RobotError)
+    _check(path, robot, Robot, RobotError, (".toml", ".urdf"))
     return _write(path, robot_to_urdf(robot) if is_urdf(str(path)) else robot_to_toml(robot), RobotError)
 
 
@@ -85,7 +94,7 @@ def write_setup(path: str | Path, setup: SimulationSetup) -> Path:
     >>> rm.load_setup(rm.write_setup(pathlib.Path(tempfile.mkdtemp()) / "copy.toml", setup)) == setup
     True
     """
-    _check(path, setup, SimulationSetup, ProjectError)
+    _check(path, setup, SimulationSetup, ProjectError, (".toml",))
     return _write(path, setup_to_toml(setup), ProjectError)
 
 
@@ -207,10 +216,12 @@ def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_TRIANGLE
     return _write(path, mesh_bytes(surface, "stl", max_faces=max_faces), SurfaceError)
 
 
-def _check(path: Any, value: Any, kind: type, error: type[RobomillError]) -> None:
+def _check(path: Any, value: Any, kind: type, error: type[RobomillError], ends: Sequence[str] = ()) -> None:
     if not isinstance(path, str | Path) or not isinstance(value, kind):
         found = f"{type(path).__name__}, {type(value).__name__}"
-        raise error(f"Write: expected a file's name and then a {kind.__name__}, found {found}.")
+        raise error(f"Write: expected a file's name and then {WHOSE[kind]}, found {found}.")
+    if ends and Path(path).suffix.lower() not in ends:
+        raise error(f"{shown_place(path)}: expected a name that ends in {' or '.join(ends)}.")
 
 
 def _write(path: str | Path, content: str | bytes, error: type[RobomillError]) -> Path:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, check_place
+from robomill.arrays import NO_NUMBERS, BoolArray, FloatArray, brief, check_place
 from robomill.errors import RobotError
 from robomill.quantities import Quantity
 
@@ -16,7 +16,7 @@ def column(value: Any, declared: Quantity, rows: int | None, where: str, slides:
     name = declared.label
     try:
         array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
+    except NO_NUMBERS:
         raise RobotError(f"{where}: {name}: expected numbers, found {_first_non_number(value)}.") from None
     if array.ndim != 1 or (rows is not None and len(array) != rows):
         want = "one number a joint" if rows is None else f"{rows} numbers, one a joint"
@@ -51,9 +51,9 @@ def _first_non_number(value: Any) -> str:
     for item in value if isinstance(value, list | tuple | np.ndarray) else [value]:
         try:
             float(item)
-        except (TypeError, ValueError):
-            return f"{item!r:.40}"
-    return f"{value!r:.40}"
+        except NO_NUMBERS:
+            return brief(item, 40)
+    return brief(value, 40)
 
 
 def joint_count(rows: int, where: str) -> None:
@@ -82,8 +82,8 @@ def frame(value: Any, name: str, where: str) -> FloatArray:
     """A rigid transform (4, 4): rotation to 1e-9, last row 0 0 0 1."""
     try:
         T = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise RobotError(f"{where}: {name}: expected a 4 x 4 matrix of numbers, found {value!r:.40}.") from None
+    except NO_NUMBERS:
+        raise RobotError(f"{where}: {name}: expected a 4 x 4 matrix of numbers, found {brief(value, 40)}.") from None
     if T.shape != (4, 4) or not np.isfinite(T).all():
         raise RobotError(f"{where}: {name}: expected a 4 x 4 matrix of finite numbers, found shape {T.shape}.")
     R = T[:3, :3]

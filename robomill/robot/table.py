@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, as_floats
+from robomill.arrays import NO_NUMBERS, BoolArray, FloatArray, as_floats, brief
 from robomill.errors import RobotError
 from robomill.provenance import GIVEN, Provenance
 from robomill.quantities import Quantity
@@ -31,7 +31,7 @@ ALIKE = 3e-3  # of a right angle: so near to it in radians is a twist that was g
 SHORTEST, SLIGHTEST = 0.05, 0.01  # m: no arm has links that are as short together, or stands on such with its tool
 FARTHEST = 200.0  # m: a limit of a sliding joint beyond it was meant in mm
 FRAME = {
-    part: Quantity(f"{part} frame", "mm", "array", name=f"{part}_xyz", key=f"{part}_xyz_mm", slip=20.0)
+    part: Quantity(f"{part} frame", "mm", "array", name=f"{part}_xyz", key=f"{part}_xyz_mm", slip=20.0, tiny=1e-3)
     for part in ("base", "tool")
 }
 
@@ -193,8 +193,8 @@ def _check_links(
 def _numbers(value: Any, name: str, who: str) -> FloatArray:
     try:
         found = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise RobotError(f"{who}: {name}: expected a list of numbers, one a joint; found {value!r:.40}.") from None
+    except NO_NUMBERS:
+        raise RobotError(f"{who}: {name}: expected a list of numbers, one a joint; found {brief(value, 40)}.") from None
     if found.ndim > 1:
         raise RobotError(f"{who}: {name}: expected one number, or one a joint; found shape {found.shape}.")
     return found
@@ -248,20 +248,20 @@ def _pairs(value: Any, rows: int, who: str) -> list[Any]:
     if value is None:
         return [None] * rows
     if isinstance(value, str) or not hasattr(value, "__iter__"):
-        raise RobotError(f"{who}: limits: expected [lower, upper] for each of {rows} joints, found {value!r:.60}.")
-    items = list(value)
+        raise RobotError(f"{who}: limits: expected [lower, upper] for each of {rows} joints, found {brief(value)}.")
+    items = list(np.asarray(value) if hasattr(value, "__array__") else value)  # of a table its rows, not its names
     if len(items) == 2 and all(np.ndim(item) == 0 and item is not None for item in items):
         return [items] * rows
     if len(items) != rows or any(item is not None and np.shape(item) != (2,) for item in items):
-        raise RobotError(f"{who}: limits: expected [lower, upper] for each of {rows} joints, found {value!r:.60}.")
+        raise RobotError(f"{who}: limits: expected [lower, upper] for each of {rows} joints, found {brief(value)}.")
     return items
 
 
 def _pair(value: Any, who: str) -> FloatArray:
     try:
         return np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        raise RobotError(f"{who}: limits: expected two numbers, [lower, upper], found {value!r:.40}.") from None
+    except NO_NUMBERS:
+        raise RobotError(f"{who}: limits: expected two numbers, [lower, upper], found {brief(value, 40)}.") from None
 
 
 def _check_limits_in_degrees(limits: FloatArray, who: str) -> None:

@@ -11,10 +11,11 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.progress import checkpoint
+from robomill.spelled import beside
 from robomill.surface.passes import feed_passes
 from robomill.surface.raster import skin_on_line
 from robomill.surface.stock import Stock
-from robomill.units import format_si
+from robomill.units import format_plain, format_short, format_si, to_si
 
 Heights = Callable[[FloatArray], FloatArray]
 
@@ -118,8 +119,11 @@ def station_at(p: FloatArray, cutting: BoolArray, station: float) -> Station:
     if not s[-1] > 0:
         raise SurfaceError("Section: the path has no feed move with a length, so it leaves no groove to measure.")
     if not -1e-12 <= station <= s[-1] + 1e-12:
+        meant = to_si(station, "mm")
+        slip = f": a station is in m; if {format_plain(station, 6)} mm is meant, give {meant:.6g}"
+        slip = slip if 0.0 <= meant <= s[-1] and not beside() else ""
         raise SurfaceError(
-            f"Section at {format_si(station, 'mm', 2)}: the feed path runs from 0 to {format_si(s[-1], 'mm', 2)}."
+            f"Section at {format_short(station, 'mm')}: the feed path runs from 0 to {format_si(s[-1], 'mm', 2)}{slip}."
         )
     entry = int(np.searchsorted(s, station, side="left"))
     entry = int(np.flatnonzero(steps > 0)[0]) + 1 if entry == 0 else entry

@@ -6,18 +6,24 @@ import numpy as np
 
 from robomill.arrays import FloatArray, frozen
 from robomill.toolpath.sketch import Shape, outline
-from robomill.units import format_many
+from robomill.units import format_many, format_si
+from robomill.values import Said
 
 CLOSED: tuple[Shape, ...] = ("polygon", "rectangle", "circle")
 
 
-@dataclass(frozen=True, eq=False)
-class Contour:
+@dataclass(frozen=True, eq=False, repr=False)
+class Contour(Said):
     """A line of a drawing: its ``layer``, and ``shape`` and ``points`` (r, 2) m in {W} as an Element has them."""
 
     layer: str
     shape: Shape
     points: FloatArray
+
+    def _said(self) -> str:
+        return (
+            f"{self.shape} on {self.layer}, {'closed' if self.closed else 'open'}, {format_si(self.length, 'mm')} long"
+        )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", frozen(self.points))

@@ -16,14 +16,14 @@ from robomill.arguments import asked
 from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.provenance import Finding
-from robomill.quantities import Quantity, choice, quantity, settle
+from robomill.quantities import Quantity, choice, quantity, settle, told
 from robomill.spelled import Replaceable, in_units, one_of
 from robomill.toolpath.contour import Contour
 from robomill.toolpath.parallel import beside_line
 from robomill.toolpath.path import SLOWEST
 from robomill.toolpath.sketch import DEEPEST, FASTEST, MAX_ELEMENTS, SHALLOWEST, Element, Sketch
 from robomill.units import format_count, format_many, format_si
-from robomill.values import Value
+from robomill.values import Said, Value
 
 SIDES = {
     "on": "on the line",
@@ -40,8 +40,8 @@ DIAMETER = Quantity(
 
 
 @in_units(ToolpathError, "Cut along a drawing")
-@dataclass(frozen=True)
-class LayerCut(Replaceable):
+@dataclass(frozen=True, repr=False)
+class LayerCut(Replaceable, Said):
     """How the lines of a layer are cut.
 
     side        "on" the line, or beside it by the radius of the cutter: "left" or "right" as the line runs; of closed
@@ -77,6 +77,10 @@ class LayerCut(Replaceable):
             feed_mm_min: float = ...,
             step_down_mm: float | None = ...,
         ) -> None: ...
+
+    def _said(self) -> str:
+        words = ", ".join(f"{name.lower()} {said}" for name, said in told(self) if name != "Side")
+        return f"{self.layer}, {self.side}: {words}"
 
     def __post_init__(self) -> None:
         settle(self, ToolpathError, f"Layer {self.layer}")

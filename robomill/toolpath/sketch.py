@@ -19,7 +19,8 @@ from robomill.errors import ToolpathError
 from robomill.quantities import choice, quantities, quantity, settle
 from robomill.spelled import Replaceable, in_units
 from robomill.toolpath.path import SLOWEST, Toolpath
-from robomill.units import format_si, from_si, to_si
+from robomill.units import format_count, format_short, format_si, from_si, to_si
+from robomill.values import Said
 
 Shape = Literal["line", "polyline", "polygon", "rectangle", "arc", "circle"]
 SHAPES: tuple[Shape, ...] = get_args(Shape)
@@ -44,8 +45,8 @@ SHALLOWEST = 5e-6  # m: nothing as shallow is milled
 
 
 @in_units(ToolpathError, "Sketch")
-@dataclass(frozen=True, eq=False)
-class Element(Replaceable):
+@dataclass(frozen=True, eq=False, repr=False)
+class Element(Replaceable, Said):
     """One shape: ``points`` (r, 2) m in {W}, cut ``depth`` m below the top face at ``v_f`` m/s.
 
     line        start, end                      rectangle   two opposite corners
@@ -79,6 +80,10 @@ class Element(Replaceable):
             feed_mm_min: float = ...,
         ) -> None: ...
 
+    def _said(self) -> str:
+        count, depth = format_count(len(self.points), "point"), format_short(self.depth, "mm")
+        return f"{self.shape} of {count}, {depth} deep, {format_short(self.v_f, 'mm/min')}"
+
     def __post_init__(self) -> None:
         settle(self, ToolpathError, "Sketch")
         points = tidy(self.points, "mm")
@@ -101,8 +106,8 @@ class Element(Replaceable):
 
 
 @in_units(ToolpathError, "Sketch")
-@dataclass(frozen=True, eq=False)
-class Sketch(Replaceable):
+@dataclass(frozen=True, eq=False, repr=False)
+class Sketch(Replaceable, Said):
     """Shapes in the order in which they are cut, and what they share; SI units, {W}.
 
     v_plunge    m/s  feed of plunges            n_s    1/s  spindle speed
@@ -147,6 +152,9 @@ class Sketch(Replaceable):
             depth_mm: float = ...,
             snap_mm: float = ...,
         ) -> None: ...
+
+    def _said(self) -> str:
+        return format_count(len(self.elements), "shape")
 
     def __post_init__(self) -> None:
         given = (self.elements,) if isinstance(self.elements, Element) else self.elements

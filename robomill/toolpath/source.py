@@ -35,7 +35,8 @@ from robomill.toolpath.path import (
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.text import split_lines
 from robomill.toolpath.tools import Tools
-from robomill.units import format_si, format_significant, from_si
+from robomill.units import format_count, format_si, format_significant, from_si
+from robomill.values import Said
 
 MAX_KEPT = 4
 LEANS = "tool"
@@ -43,8 +44,8 @@ LEANS = "tool"
 
 
 @in_units(ToolpathError, "Program")
-@dataclass(frozen=True)
-class GCodeSource:
+@dataclass(frozen=True, repr=False)
+class GCodeSource(Said):
     r"""A program as written: its text, the file's name and the dialect ("auto": guessed and said).
 
     ``table`` is the rotary axis that turns the part ("A", "-A" ...); "" where the tool leans, or nobody has said;
@@ -91,6 +92,9 @@ class GCodeSource:
 
     kind: ClassVar[Literal["program"]] = "program"
     block_name: ClassVar[str] = "line"
+
+    def _said(self) -> str:
+        return f"{self.name}, {format_count(len(split_lines(self.text)), 'line')}"
 
     def __post_init__(self) -> None:
         settle(self, ToolpathError, "Program")
@@ -174,8 +178,8 @@ def _keep(key: tuple[GCodeSource, str], found: Toolpath | GCodeError) -> None:
 
 
 @in_units(ToolpathError, "Lines")
-@dataclass(frozen=True, eq=False)
-class LinesSource:
+@dataclass(frozen=True, eq=False, repr=False)
+class LinesSource(Said):
     """A table of straight cuts: start, end (r, 3) m in {W}; v_f (r,) m/s; n_s spindle 1/s for the whole table.
 
     Examples
@@ -211,6 +215,9 @@ class LinesSource:
     kind: ClassVar[Literal["lines"]] = "lines"
     block_name: ClassVar[str] = "row"
 
+    def _said(self) -> str:
+        return f"{self.name}, {format_count(len(self.v_f), 'row')}"
+
     def __post_init__(self) -> None:
         settle(self, ToolpathError, "Lines")
 
@@ -225,8 +232,8 @@ class LinesSource:
 
 
 @asking
-@dataclass(frozen=True)
-class SketchSource:
+@dataclass(frozen=True, repr=False)
+class SketchSource(Said):
     """A path drawn by hand.
 
     Examples
@@ -241,6 +248,9 @@ class SketchSource:
     name: str = field(default="sketch", compare=False)
     kind: ClassVar[Literal["sketch"]] = "sketch"
     block_name: ClassVar[str] = "shape"
+
+    def _said(self) -> str:
+        return f"{self.name}, {format_count(len(self.sketch.elements), 'shape')}"
 
     def read(self, tools: Tools | None = None) -> Toolpath:
         """The path, which names no ``tools``; raises ToolpathError where nothing is drawn."""

@@ -14,6 +14,8 @@ SUFFIXES = (
     *(".din", ".dnc", ".fnc", ".hnc", ".ncc", ".pgm", ".prg", ".sub"),
 )
 
+DOS_END, FILLING = b"\x1a", b"\x1a\0 \t\r\n"  # Ctrl-Z ends a program from DOS, whose last block is filled up
+
 
 def read_source(source: Source) -> tuple[bytes, str]:
     """Bytes of the program (ASCII-compatible, "\\n" line ends not yet made) and a name for messages.
@@ -48,6 +50,14 @@ def _is_path(text: str) -> bool:
         return False
 
 
+def named_as_file(refused: GCodeError, source: Source) -> GCodeError:
+    """The refusal of what was read as a program; a text of one word may have been meant as the name of a file."""
+    if not isinstance(source, str) or len(source.split()) != 1 or _is_path(source):
+        return refused
+    words = f"there is no file {source!r:.80}, and it is no program: {refused}"
+    return GCodeError(words, line=refused.line)
+
+
 def _read_file(path: Path) -> bytes:
     return as_plain_bytes(read_file(path, PROGRAM, GCodeError), path.name)
 
@@ -67,6 +77,8 @@ def as_plain_bytes(data: bytes, name: str = "Program") -> bytes:
         if data.startswith(mark):
             data = data[len(mark) :] if not encoding else _recode(data, encoding, name)
             break
+    text, _, rest = data.partition(DOS_END)
+    data = data if rest.strip(FILLING) else text
     if not data.strip():
         raise GCodeError(f"{name}: found an empty file; expected a program.")
     nul = data.find(b"\0")

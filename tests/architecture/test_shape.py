@@ -42,6 +42,7 @@ UNUSED = {
     "over_time": "public: forces from arrays",
     "__signature__": "what completion and help ask a function for",
     "to_dataframe": "public name",
+    "_check_value": "argparse's",
     "run_*": "the parser of the command line finds what a verb runs by its name",
     "wall_left_*": "the metrology panel asks for the walls by their side",
     "wall_right_*": "the same",

@@ -118,3 +118,26 @@ def test_a_shell_that_asks_is_answered_before_anything_else(tmp_path: Path) -> N
     command = [sys.executable, "-m", "robomill", "simulate", "hea"]
     subprocess.run(command, env={**os.environ, **told}, cwd=tmp_path, timeout=60, check=True)
     assert answer.read_text().split() == ["heart"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["SIMULATE", "paper_flute"], "there is no 'SIMULATE'; did you mean 'simulate'?"),
+        (["simulat", "paper_flute"], "did you mean 'simulate'?"),
+        (["simulate", "paper_flute", "--tol", "0,1"], "expected a number, found '0,1'; write 0.1"),
+        (["simulate", "paper_flute", "--tol", "0.1mm"], "expected a number, found '0.1mm'"),
+    ],
+)
+def test_what_is_typed_wrongly_is_told_in_words(words: list[str], said: str, capsys) -> None:
+    with pytest.raises(SystemExit) as ended:
+        make_parser().parse_args(words)
+    assert ended.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_tolerance_goes_by_one_name_in_every_verb() -> None:
+    parse = make_parser().parse_args
+    for option in ("--tol", "--tolerance-mm"):
+        assert parse(["simulate", "paper_flute", option, "0.2"]).tol == 0.2
+        assert parse(["design", "paper_flute", option, "0.2"]).tolerance_mm == 0.2

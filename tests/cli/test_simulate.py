@@ -181,3 +181,11 @@ def test_tables_are_read_back(capsys, tmp_path: Path) -> None:
     with (tmp_path / "deviation.csv").open(newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if row["cutting"] == "1"]
     assert max(float(row["deviation_mm"]) for row in rows) == pytest.approx(found["max_deviation_mm"], rel=1e-6)
+
+
+@pytest.mark.parametrize("option", [["--feed", "600"], ["--unit", "mm"]])
+@pytest.mark.parametrize("program", [[], ["--program", "heart"]])
+def test_what_is_said_of_points_is_refused_where_there_are_none(option, program, capsys) -> None:
+    """It changed nothing: whoever swept the feed so got the same numbers every time."""
+    assert main(["simulate", "paper_flute", *program, *option]) == 2
+    assert f"robomill: {option[0]}: this is for a table of points" in capsys.readouterr().err

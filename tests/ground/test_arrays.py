@@ -62,7 +62,9 @@ def test_frozen_copies_once_and_keeps_what_is_frozen_already() -> None:
     for copied in (frozen(kept.T), frozen(kept[:1]), frozen(np.asfortranarray(source))):
         assert copied.flags.c_contiguous
         assert not copied.flags.writeable
-        assert copied.base is None
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            copied.setflags(write=True)
+        assert np.asarray(copied.base).size == copied.size  # nothing larger is kept for its sake
     # A view of somebody's array could still change under it.
     view = source[:]
     view.flags.writeable = False

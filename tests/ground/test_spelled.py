@@ -6,6 +6,7 @@ import copy
 import inspect
 import math
 import pickle
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -258,3 +259,52 @@ def test_at_another_door_a_refusal_names_what_stands_there() -> None:
         with pytest.raises(rm.RobomillError) as caught:
             rm.load_setup("paper_flute").replace(tolerance_mm=0.0003)
     assert str(caught.value) == "Set-up, Tolerance: found 0.0003 mm; expected at least 0.001 mm."
+
+
+HUGE = 10**400, 10**5000
+"""Larger than any float, and longer than Python writes out."""
+
+
+@pytest.mark.parametrize("huge", HUGE, ids=["400 digits", "5000 digits"])
+def test_a_whole_number_beyond_all_floats_is_refused_in_a_sentence(huge: int) -> None:
+    flat = {"a_mm": [huge] * 2}
+    calls: list[Callable[[], object]] = [
+        lambda: rm.Cutter("flat", diameter=huge),
+        lambda: rm.Cutter("flat", diameter_mm=huge),
+        lambda: rm.Robot.from_dh(**flat),
+        lambda: rm.Robot.from_dh(a_mm=[500, 400], limits_deg=(-huge, huge)),
+        lambda: rm.Toolpath.from_points([[0, 0, huge], [0, 0, 0]], 0.02),
+        lambda: rm.PathForce(feed_normal=huge),
+        lambda: rm.pose_from_world([0, 0, huge, 0, 0]),
+        lambda: rm.Grid(x_mm=huge, y_mm=0, z_mm=0),
+    ]
+    for call in calls:
+        with pytest.raises(RobomillError) as refused:
+            call()
+        assert len(str(refused.value)) < 300
+        assert "\n" not in str(refused.value)
+
+
+def test_what_was_found_is_said_on_one_line() -> None:
+    pd = pytest.importorskip("pandas")
+    with pytest.raises(RobomillError) as refused:
+        rm.Cutter("flat", diameter=pd.Series([0.008]))
+    assert "\n" not in str(refused.value)
+
+
+def test_a_share_above_one_is_refused_without_words_of_units() -> None:
+    with pytest.raises(RobomillError, match="^Spread, Compliance: found 10; expected 0 to 1, or left out.$"):
+        rm.Spread(compliance=10)
+
+
+def test_a_sign_is_not_lost_on_the_way_to_a_refusal() -> None:
+    with pytest.raises(RobomillError, match="found -0.0001 mm"):
+        rm.load_setup("paper_flute").replace(tolerance_mm=-0.0001)
+
+
+def test_places_in_mm_under_a_name_of_m_are_refused() -> None:
+    with pytest.raises(RobomillError, match="Pose, X, Y or Z: found -1300 m"):
+        rm.pose_from_world([0, -1300, 0, 0, 0])
+    with pytest.raises(RobomillError, match="tool frame: found 0.16 mm.* If 0.16 m is meant, give tool_xyz"):
+        rm.Robot.from_dh(a_mm=[500, 400], tool_xyz_mm=[0, 0, 0.16])
+    assert rm.Robot.from_dh(a_mm=[500, 400], tool_xyz_mm=[0, 0, 1.6]).T_tool[2, 3] == 0.0016

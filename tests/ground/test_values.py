@@ -197,3 +197,39 @@ def test_what_cannot_be_judged_is_still_shown(result):
     block, aside = result.setup.stock_block, np.array([0.0, 1.0, 0.0])
     beside = run(lambda s: s.replace(stock=Stock(block.lower + aside, block.upper + aside)))
     assert "no deviation, missed: The path never touches the stock" in repr(beside)
+
+
+def test_nobody_makes_an_array_of_a_value_writable_again() -> None:
+    """NumPy lets whoever owns the memory: a result's array was written to after setflags(write=True)."""
+    result = rm.simulate(rm.load_setup("paper_flute").replace(step_mm=5, cell_mm=0.5))
+    again = pickle.loads(pickle.dumps(result))
+    robot = result.setup.robot
+    for one in (result, again, copy.deepcopy(result)):
+        arrays = (one.delta, one.F, one.deviation, one.path.p, one.setup.T_MW, one.machined.z, one.delta_joint, one.C)
+        for array in arrays:
+            with pytest.raises(ValueError, match="WRITEABLE"):
+                array.setflags(write=True)
+    for array in (robot.C_theta, robot.a, robot.limits, result.groove(0.05).z_machined):
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            array.setflags(write=True)
+
+
+def test_small_values_say_themselves_in_a_line() -> None:
+    cut = rm.load_setup("paper_flute/setup_process")
+    square = rm.Element("rectangle", [[-0.02, -0.02], [0.02, 0.02]], depth=0.0015, v_f=0.02)
+    said = {
+        repr(rm.PathForce(feed_normal=100.0)),
+        repr(rm.ConstantForce((0.0, 100.0, 0.0))),
+        repr(cut.force),
+        repr(cut.force.material),
+        repr(cut.source),
+        repr(rm.ToolBending(diameter_mm=8, stick_out_mm=40)),
+        repr(square),
+        repr(rm.Sketch((square,))),
+        repr(rm.at_pose(cut.robot, cut.robot.home)),
+        repr(rm.LayerCut("slots", depth_mm=3, feed_mm_min=600)),
+    }
+    assert max(map(len, said)) < 140
+    assert all(words.isascii() and "\n" not in words for words in said)
+    assert "<PathForce 100 N left of the feed>" in said
+    assert "<Element rectangle of 2 points, 1.5 mm deep, 1200 mm/min>" in said

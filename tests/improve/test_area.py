@@ -96,8 +96,8 @@ def test_a_full_turn_has_no_place_twice() -> None:
             {"x_mm": (300, -300)},
             "Placement, x: the bounds contradict each other, 300.00 to −300.00 mm",
         ),
-        ({"y_mm": -1300}, "Placement, y: expected two numbers, the least and the largest, found -1.3"),
-        ({"x": (-300, 300)}, "Placement, x: found -300 m, expected at most 200: a name alone is in m"),
+        ({"y_mm": (1, 2, 3)}, "the least and the largest, or one to hold it there; found (1, 2, 3)."),
+        ({"x": (-100, 100)}, "Placement, x: found -100 m, expected at most 20: a name alone is in m"),
         ({"x_mm": (-0.3, 0.3)}, "x_mm is in mm. If 0.3 m is meant"),
         ({"x_mm": (-1e9, 1e9)}, "Placement, x"),
         ({"x": (-0.3, 0.3), "x_mm": (-300, 300)}, "x and x_mm are the same; give one of them"),
@@ -112,3 +112,23 @@ def test_what_is_no_area_is_refused(given: dict, said: str) -> None:
     with pytest.raises(SetupError) as refusal:
         area(setup(), given)
     assert said in str(refusal.value)
+
+
+def test_one_number_holds_a_coordinate_there() -> None:
+    held = area(setup(), {"y_mm": -1250, "yaw": 0.5})
+    assert held.lower[[1, 3]].tolist() == held.upper[[1, 3]].tolist() == [-1.25, 0.5]
+
+
+@pytest.mark.parametrize(
+    ("given", "doubted"),
+    [
+        ({"yaw_deg": (-1, 1)}, "1°: yaw is in degrees. Was 1 rad, 57°, meant?"),
+        ({"yaw_deg": (0, 2.5)}, "2.5°: yaw is in degrees. Was 2.5 rad, 143°, meant?"),
+        *(({"yaw_deg": given}, "") for given in ((-5, 5), (-90, 90), 2, (2, 2))),
+        ({"yaw": (-0.02, 0.02)}, ""),
+    ],
+)
+def test_a_range_of_yaw_that_hardly_turns_the_part_is_doubted(given: dict, doubted: str) -> None:
+    """57.3 degrees are a radian: a range within half a turn in radians may be one; whoever gives rad means it."""
+    said = [each.message for each in area(setup(), given).doubts]
+    assert [words.endswith(doubted) for words in said] == [True] * bool(doubted)

@@ -109,9 +109,11 @@ def test_the_front_falls_and_its_ends_are_the_cut_as_it_is_and_the_least() -> No
         ("paper_flute", {"tolerance_mm": float("nan")}, "olerance"),
         ("paper_flute", {"bounds": (3, 2)}, "smaller one first"),
         ("paper_flute", {"bounds": (0, 2)}, "above zero"),
-        ("paper_flute", {"bounds": [(1, 2)] * 3}, "bounds"),
+        ("paper_flute", {"bounds": [(1, 2)] * 3}, "Bounds of the stiffness ratio: expected two numbers"),
         ("paper_flute", {"weight": 0}, "above zero"),
-        ("paper_flute", {"weight": [1, 2]}, "weight"),
+        ("paper_flute", {"bounds": 4}, "such as \\(1, 4\\), or two for each of 5 joints; found 4"),
+        ("paper_flute", {"tolerance_mm": 100}, "Design, Tolerance: found 100 mm; expected more than 0 mm to 50 mm"),
+        ("paper_flute", {"weight": [1, 2]}, "one for all 5 joints or one for each; found"),
         ("paper_flute", {"measure": "mean"}, "verdict, wall, floor, tip"),
     ],
 )

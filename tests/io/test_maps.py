@@ -89,3 +89,9 @@ def test_an_image_may_be_flat_and_stands_where_the_grid_does(field, tmp_path):
         write_map(tmp_path / "map.vti", [odd.field("C_yy")])
     nearly = compliance_map(field.robot, Grid(x=[0], y=[-1.4, -1.3, -1.2 + 1e-10], z=[0]))
     assert write_map(tmp_path / "map.vti", [nearly.field("C_yy")]).is_file()
+
+
+def test_one_quantity_has_one_column(field, tmp_path):
+    with pytest.raises(WorkspaceError, match="C_yy is there 2 times"):
+        write_map(tmp_path / "map.csv", [field.field("C_yy")] * 2)
+    assert not list(tmp_path.iterdir())

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from robomill.errors import ProjectError
+import robomill as rm
+from robomill.errors import ProjectError, RobomillError
 from robomill.io import samples
 from robomill.io.projects import load_setup
 
@@ -75,3 +76,12 @@ def test_samples_are_copied_and_other_files_are_never_replaced(tmp_path) -> None
     (tmp_path / "file").write_text("")
     with pytest.raises(ProjectError, match="cannot write there"):
         samples.copy_samples(tmp_path / "file" / "in", ["heart"])
+
+
+def test_another_sample_of_the_name_is_said_whatever_its_case() -> None:
+    with pytest.raises(RobomillError, match="'grid_45x6' are load tests"):
+        rm.load_robot("grid_45x6")
+    with pytest.raises(RobomillError, match="'slavkovic_5r' is a robot"):
+        rm.load_setup("SLAVKOVIC_5R")
+    with pytest.raises(RobomillError, match="did you mean 'slavkovic_5r'"):
+        rm.load_robot("SLAVKOVIC_5R")

@@ -141,8 +141,26 @@ def test_the_tip(tmp_path):
 
 def test_a_ring_of_joints_is_refused(tmp_path):
     ring = LINKS + _joint("1", "a", "b") + _joint("2", "b", "c") + _joint("3", "c", "a") + _joint("4", "b", "d")
-    with pytest.raises(RobotError, match="the joints above link 'd' form a loop"):
+    with pytest.raises(RobotError, match="joints '2', '3', '1' lead back to link 'b', a closed loop"):
         read_urdf(_write(tmp_path, ring), tip="d")
+
+
+@pytest.mark.parametrize(
+    ("joints", "said"),
+    [
+        (
+            _joint("1", "a", "b") + _joint("2", "c", "d") + _joint("3", "d", "c"),
+            "joints '3', '2' lead back to link 'd'",
+        ),
+        (_joint("1", "a", "b") + _joint("2", "c", "c"), "joint '2' leads back to link 'c', a closed loop"),
+        (_joint("1", "a", "b") + _joint("1", "b", "c") + _joint("3", "c", "d"), "2 joints are called '1'"),
+        ('<link name="b"/>' + _joint("1", "a", "b"), "2 links are called 'b'; give each a name of its own"),
+    ],
+)
+def test_rings_beside_the_arm_and_names_that_are_there_twice_are_refused(tmp_path, joints, said):
+    """A ring that hangs on nothing was dropped without a word, and of two joints of one name nobody knew which."""
+    with pytest.raises(RobotError, match=said):
+        read_urdf(_write(tmp_path, LINKS + joints), tip="b")
 
 
 def test_a_branch_of_fixed_parts_is_no_branch(tmp_path):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.errors import ProjectError, RobotError, SurfaceError, ToolpathError
+from robomill.errors import ProjectError, RobomillError, RobotError, SurfaceError, ToolpathError
 
 SETUP = rm.load_setup("samples/paper_flute")
 
@@ -85,3 +85,20 @@ def test_a_solid_is_written_under_its_own_ending_and_never_uncut(tmp_path) -> No
     with pytest.raises(SurfaceError, match=r"part\.obj: this is written as STL; give it a name that ends in \.stl"):
         rm.write_stl(tmp_path / "part.obj", far.machined)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_name_that_would_not_be_read_back_is_refused(tmp_path: Path) -> None:
+    setup = rm.load_setup("paper_flute")
+    for write, value, ends in ((rm.write_robot, setup.robot, ".toml or .urdf"), (rm.write_setup, setup, ".toml")):
+        with pytest.raises(RobomillError, match=f"expected a name that ends in {ends}"):
+            write(tmp_path / "arm.txt", value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_is_to_be_written_is_named_with_where_it_is_found(tmp_path: Path) -> None:
+    setup = rm.load_setup("paper_flute")
+    with pytest.raises(RobomillError, match=r"a Toolpath \(of a set-up: setup.toolpath\)"):
+        rm.write_gcode(tmp_path / "part.nc", setup)
+    assert rm.write_gcode(tmp_path / "part.nc", setup.toolpath).is_file()
+    with pytest.raises(RobomillError, match=r"a ZMap \(of a run: result.machined or result.ideal\)"):
+        rm.write_stl(tmp_path / "part.stl", setup)

@@ -83,3 +83,33 @@ def test_what_comes_in_without_a_unit_is_doubted_beside_the_result() -> None:
         result = rm.simulate(setup.replace(robot=setup.robot.replace(C_theta=times * setup.robot.C_theta)))
         assert [note for note in result.notes if note.code == "unit-doubt" and words in note.message]
     assert not [note for note in rm.simulate(setup).notes if note.code == "unit-doubt"]
+
+
+# Lengths between the joints (m) and torques (N m) of URDF descriptions by others (kroshu/kuka_robot_descriptions), with
+# a tool of 150 mm.
+TORQUES = {
+    "KR 800": ([0.6402, 1.25, 0.7343, 0.346, 0.2488, 0.24], [15000, 17880, 15009, 5754, 5724, 2811]),
+    "KR 4": ([0.1915, 0.29, 0.1805, 0.1476, 0.0647, 0.18], [119, 105.9, 54.3, 11.8, 12.3, 6.92]),
+    "LBR iisy 11": ([0.1535, 0.5905, 0.1377, 0.4212, 0.0979, 0.244], [405.8, 366.2, 147.2, 65.5, 64.7, 15.7]),
+}
+
+
+@pytest.mark.parametrize("per_torque", [100.0, 300.0, 1100.0])
+@pytest.mark.parametrize("name", TORQUES)
+def test_arms_from_the_smallest_to_the_largest_are_told_from_a_thousand_times_as_stiff(
+    name: str, per_torque: float
+) -> None:
+    """Gears turn by 1/100 to 1/1100 rad under their torque: such an arm is taken, in another unit it is refused."""
+    links, torques = TORQUES[name]
+    k = per_torque * np.array(torques)
+
+    def straight(**given: object) -> rm.Robot:
+        return rm.Robot.from_dh(a=links, **given)
+
+    right = straight(k_theta_Nm_per_rad=np.maximum(k, 1001.0))
+    assert hardly_an_arm(right) == ""
+    stretched = np.cumsum(np.array(links)[::-1])[::-1]
+    assert tip_compliance(right) == pytest.approx((stretched**2 / np.maximum(k, 1001.0)).sum())
+    for wrong in ({"k_theta_kNm_per_rad": k}, {"k_theta_Nm_per_rad": k / 1000}):
+        with pytest.raises(RobotError, match="no arm|in another unit"):
+            straight(**wrong)

@@ -156,3 +156,11 @@ def test_a_changed_robot_is_asked_the_same() -> None:
     for wrong in ({"C_theta": [2.5] * 5}, {"alpha": [90, 0, 0, 0, 0]}):
         with pytest.raises(RobotError, match="is meant, give"):
             robot.replace(**wrong)
+
+
+def test_columns_and_limits_of_a_data_frame_are_numbers() -> None:
+    """Of a table its rows count; its columns' names were taken for the limits of joint 1."""
+    pd = pytest.importorskip("pandas")
+    table = pd.DataFrame({"a": [500, 400], "lower": [-170, -150], "upper": [170, 150]})
+    robot = rm.Robot.from_dh(a_mm=table["a"], limits_deg=table[["lower", "upper"]])
+    assert robot == rm.Robot.from_dh(a_mm=[500, 400], limits_deg=[(-170, 170), (-150, 150)])

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import robomill as rm
 from robomill.errors import GCodeError
 from robomill.files import FileKind
 from robomill.toolpath import text as texts
@@ -82,3 +83,21 @@ def test_what_is_no_text_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: P
 @pytest.mark.parametrize("text", ["a\nb", "a\r\nb\n", "a\rb\r", "\n\n", "", "a", "a\n\n"])
 def test_lines_are_those_of_a_text_that_may_end_one(text: str) -> None:
     assert split_lines(text) == text.splitlines()
+
+
+@pytest.mark.parametrize("end", [b"\x1a", b"\r\n\x1a", b"\x1a" * 128, b"\x1a\0\0\0", b"\x1a\r\n"])
+def test_a_program_from_dos_ends_in_ctrl_z(end: bytes) -> None:
+    """CP/M and DOS end a text so, and fill up its last block: it was called a binary file."""
+    lines = b"G21 G90\r\nG0 X0 Y0 Z5\r\nG1 X10 F100"
+    path = rm.read_gcode(lines + end)
+    assert path == rm.read_gcode(lines)
+    assert path.p[-1].tolist() == [0.01, 0.0, 0.005]
+    with pytest.raises(GCodeError):
+        rm.read_gcode(b"G21 G90\nG1 X10 F100\n\x1aG1 X20\n")  # what stands behind it is not left out in silence
+
+
+@pytest.mark.parametrize("name", ["slavkovic_5r", "part.ncx", "C:\\\\jobs\\\\part.xyz", "", "nope"])
+def test_a_word_that_is_no_file_and_no_program_is_told_as_both(name: str) -> None:
+    with pytest.raises(GCodeError) as refused:
+        rm.read_gcode(name)
+    assert ("there is no file" in str(refused.value)) == bool(name)

@@ -39,7 +39,7 @@ def _bending(axis: str) -> Any:
 
 
 @in_units(RobotError, "Bending of a joint")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class JointBending(Spring):
     """Tilting of joint ``joint`` (1-based among the free joints) about the x and y axes of its frame, rad/(N m).
 

@@ -24,7 +24,7 @@ SOFTEST = 1e-3  # m/N: no spindle gives as much: was it meant in um/N?
 
 
 @in_units(RobotError, "Spindle and holder")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SpindleSpring(Spring):
     """Spindle, holder and bearings as springs at the tip: ``lateral`` and ``axial`` compliance, m/N; 0 is rigid.
 

@@ -15,7 +15,7 @@ from robomill.errors import RobotError
 from robomill.provenance import Provenance
 from robomill.quantities import quantity
 from robomill.spelled import in_units
-from robomill.units import format_si, to_si
+from robomill.units import format_short, format_si, to_si
 
 #: Young's modulus of solid carbide, Pa.
 E_CARBIDE = to_si(600e3, "N/mm2")
@@ -26,7 +26,7 @@ CARBIDE = Provenance("assumed", "cantilever of solid carbide, E = 600 GPa, bendi
 
 
 @in_units(RobotError, "Tool bending")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ToolBending(Spring):
     """The cutter as a cantilever: delta = F L^3 / (3 E I) across its axis, rigid along it.
 
@@ -74,6 +74,9 @@ class ToolBending(Spring):
             stick_out_mm: float = ...,
             E_N_mm2: float = ...,
         ) -> None: ...
+
+    def _said(self) -> str:
+        return f"{format_short(self.diameter, 'mm')} thick, sticks out {format_short(self.stick_out, 'mm')}"
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -19,7 +19,7 @@ from robomill.units import format_short
 
 
 @in_units(CuttingError, "Path force")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PathForce(ForceModel):
     """Constant components that follow the path: feed, feed_normal (left of the feed), axial (+ out of the part), N.
 

@@ -18,7 +18,7 @@ from robomill.spelled import in_units
 
 
 @in_units(CuttingError, "Constant force")
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ConstantForce(ForceModel):
     """The paper's static force: one vector (3,) N in {M} wherever the tool cuts.
 

@@ -16,7 +16,7 @@ REFERENCE_CHIP = to_si(1.0, "mm")
 
 
 @asking
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class KienzleRow(Material):
     """F_t = kc11 (h / 1 mm)^(-mc) h b, kc11 in N/m^2; radial_ratio and axial_ratio are F_r / F_t and F_a / F_t.
 
@@ -44,7 +44,7 @@ class KienzleRow(Material):
 
 
 @asking
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class KienzleForce(ProcessForce):
     """Kienzle's kc = kc1.1 (h / 1 mm)^(-mc), its mean over the arc as incomplete beta integrals.
 

@@ -102,7 +102,7 @@ class ForceRecord:
 
 
 @asking
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MeasuredForce(ForceModel):
     """A record laid on the path. ``start`` is the record's time (s) or path length (m) at the start of the first cut.
 

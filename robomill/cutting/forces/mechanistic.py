@@ -18,7 +18,7 @@ def _per_length(label: str, *, optional: bool = False) -> Any:
 
 
 @asking
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MechanisticRow(Material):
     """Ktc, Krc, Kac (N/m^2): per chip area, tangential, radial, axial; Kte, Kre, Kae (N/m): per length of edge.
 
@@ -59,7 +59,7 @@ class MechanisticRow(Material):
 
 
 @asking
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MechanisticForce(ProcessForce):
     """Chip and edge coefficients (Ktc..Kae), closed form of the mean (Altintas, Manufacturing Automation).
 

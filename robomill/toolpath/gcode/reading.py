@@ -22,7 +22,7 @@ from robomill.toolpath.gcode.macro_calls import begin_empty
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program, most_moves
 from robomill.toolpath.path import TABLES, Toolpath
-from robomill.toolpath.text import Source, read_source
+from robomill.toolpath.text import Source, named_as_file, read_source
 from robomill.toolpath.tools import Tools
 
 
@@ -67,7 +67,10 @@ def read_gcode(
     >>> float(path.s[-1]), float(path.v_f[-1])
     (0.052000000000000005, 0.01)
     """
-    program = interpret(path_or_text, dialect=dialect, tools=tools)
+    try:
+        program = interpret(path_or_text, dialect=dialect, tools=tools)
+    except GCodeError as refused:
+        raise named_as_file(refused, path_or_text) from None
     if table and table in TABLES:
         program = replace(program, findings=doubt_second_table(program, table))
     elif table:
