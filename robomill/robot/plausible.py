@@ -15,7 +15,8 @@ from robomill.units import format_short
 # harmonic and cycloidal drives): so 40 arms of 0.8 to 4.5 m, whose makers' descriptions state torques, give 1.4e-6 to
 # 4.7e-4 m/N. Each of them a thousand times as stiff or as soft (N m taken for kN m) lies beyond a bound.
 STIFFEST_SOFTEST = 1e7  # N m/rad: no arm's softest joint is as stiff
-STIFFEST_TIP, SOFTEST_TIP = 5e-7, 1e-3  # m/N: no arm gives less; none that mills gives more
+STIFFEST_TIP = 5e-7 / 6  # m/N for each joint that turns: no arm gives less
+SOFTEST_TIP = 1e-3  # m/N: no arm that mills gives more
 NAMES = {"k_theta_kNm_per_rad": ("kN m/rad", "N m/rad", "k_theta_Nm_per_rad")}
 NAMES |= {"k_theta_Nm_per_rad": ("N m/rad", "kN m/rad", "k_theta_kNm_per_rad")}
 
@@ -50,7 +51,7 @@ def hardly_an_arm(robot: Arm) -> str:
     C_theta, gives = robot.C_theta[turns], tip_compliance(robot)
     if not turns.any() or not (robot.C_theta > 0.0).all():
         return ""
-    if gives < STIFFEST_TIP or 1.0 / C_theta.max() > STIFFEST_SOFTEST:
+    if gives < STIFFEST_TIP * turns.sum() or 1.0 / C_theta.max() > STIFFEST_SOFTEST:
         softest = format_short(1.0 / float(C_theta.max()), "kN m/rad")
         return f"no arm's joints are as stiff (its softest has {softest})"
     if gives > SOFTEST_TIP:

@@ -113,3 +113,10 @@ def test_arms_from_the_smallest_to_the_largest_are_told_from_a_thousand_times_as
     for wrong in ({"k_theta_kNm_per_rad": k}, {"k_theta_Nm_per_rad": k / 1000}):
         with pytest.raises(RobotError, match="no arm|in another unit"):
             straight(**wrong)
+
+
+def test_of_fewer_joints_less_is_asked() -> None:
+    """Two joints of 3000 and 2000 kN m/rad with links of 0.5 and 0.4 m give 3.5e-7 m/N: stiff, and no slip."""
+    two = rm.Robot.from_dh(a_mm=[500, 400], k_theta_kNm_per_rad=[3000, 2000])
+    assert tip_compliance(two) == pytest.approx(0.81 / 3e6 + 0.16 / 2e6)
+    assert hardly_an_arm(two) == ""
