@@ -18,7 +18,6 @@ from robomill.vectors import angle_between
 
 UNIT = 1e-6  # to which the axes of a pose are unit and square, as files and controllers round them
 TILT = Quantity("A or B", "deg", name="A or B", key="", slip=2.0 * np.pi)
-PLACE = Quantity("X, Y or Z", "mm", name="X, Y or Z", key="", slip=200.0)
 
 
 def _rotation(angle: ArrayLike, i: int, j: int) -> FloatArray:
@@ -117,7 +116,6 @@ def pose_from_world(x_M: ArrayLike) -> FloatArray:
     [0.1, -1.2, 0.05]
     """
     x_M = as_floats(x_M, "x_M", (5,), error=KinematicsError)
-    refuse_slip(PLACE, x_M[..., :3], KinematicsError, "Pose")
     refuse_slip(TILT, x_M[..., 3:], KinematicsError, "Pose")
     return transform(rotation_x(x_M[..., 3]) @ rotation_y(x_M[..., 4]), x_M[..., :3])
 
