@@ -3,9 +3,22 @@
 import argparse
 import math
 from collections.abc import Sequence
+from difflib import get_close_matches
 from typing import Any
 
 from robomill.errors import RobomillError
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that says what was meant by a word that is not one of its choices."""
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        if action.choices is None or value in action.choices:
+            return
+        words = [str(each) for each in action.choices]
+        close = get_close_matches(str(value).lower(), words, 1, 0.5)
+        meant = f"did you mean {close[0]!r}?" if close else f"expected one of {', '.join(words)}"
+        raise argparse.ArgumentError(action, f"there is no {value!r:.40}; {meant}")
 
 
 def numbers(text: str, option: str, count: int | None, what: str) -> list[float]:

@@ -3,7 +3,6 @@
 import argparse
 import textwrap
 from collections.abc import Callable
-from difflib import get_close_matches
 from functools import partial
 from importlib import import_module
 from shutil import get_terminal_size
@@ -12,7 +11,7 @@ from typing import Any
 from robomill import __version__
 from robomill.cli import completers
 from robomill.cli.completers import offered
-from robomill.cli.options import number, whole
+from robomill.cli.options import Parser, number, whole
 from robomill.cli.serve import serve_options
 
 EXIT_CODES = (
@@ -77,18 +76,6 @@ MODULES = {
     "report",
 }
 SHELLS = ("bash", "zsh", "fish", "powershell")
-
-
-class Parser(argparse.ArgumentParser):
-    """A parser that says what was meant by a word that is not one of its choices."""
-
-    def _check_value(self, action: argparse.Action, value: Any) -> None:
-        if action.choices is None or value in action.choices:
-            return
-        words = [str(each) for each in action.choices]
-        close = get_close_matches(str(value).lower(), words, 1, 0.5)
-        meant = f"did you mean {close[0]!r}?" if close else f"expected one of {', '.join(words)}"
-        raise argparse.ArgumentError(action, f"there is no {value!r:.40}; {meant}")
 
 
 def make_parser() -> argparse.ArgumentParser:

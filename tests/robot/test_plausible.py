@@ -53,7 +53,7 @@ def test_the_sentence_says_both_ways_out() -> None:
     with pytest.raises(RobotError) as caught:
         arm("its tenth", k_theta_kNm_per_rad=PUBLISHED["its tenth"][2])
     assert str(caught.value) == (
-        "Robot 'robot': k_theta_kNm_per_rad: no arm's joints are as stiff (its softest has 47000 kN m/rad): "
+        "Robot 'robot': k_theta_kNm_per_rad: no arm's joints are as stiff (its softest has 47\u202f000 kN m/rad): "
         "k_theta_kNm_per_rad is in kN m/rad. If N m/rad are meant, give k_theta_Nm_per_rad; if these stiffnesses are, "
         "give C_theta, one over each."
     )
