@@ -176,8 +176,10 @@ def on_profile(shape: Shape, stretch: int, s: float) -> Place:
 def beside_place(shape: Shape, stretch: int, near: Place, s: float) -> Place:
     """The place ``s`` m along a stretch of the profile, known one so near that its normal is turned by less than 0.1
     rad: on a round nose by the series of the small angle between them."""
-    if stretch != NOSE or shape.kind == CHAMFER:
+    if stretch != NOSE:
         return on_profile(shape, stretch, s)
+    if shape.kind == CHAMFER:
+        return Place(s, shape.r0 + s * near.cosine, s * near.sine, near.sine, near.cosine)
     turn = (s - near.s) / shape.rc
     q = turn * turn
     c = 1.0 - q * (1.0 / 2.0) * (1.0 - q * (1.0 / 12.0) * (1.0 - q * (1.0 / 30.0) * (1.0 - q * (1.0 / 56.0))))

@@ -30,8 +30,8 @@ from robomill.cutting.profile_kernels import (
     on_profile,
     stretch_ends,
 )
-from robomill.surface.material_kernels import FAR, World, standing, top_over
-from robomill.surface.relief_kernels import UNKNOWN, Relief, told, tops_about, tops_between
+from robomill.surface.material_kernels import FAR, World, standing, standing_near, top_over
+from robomill.surface.relief_kernels import UNKNOWN, Relief, square_about, told, tops_between
 from robomill.surface.rib_kernels import change_between, is_plain
 from robomill.surface.step_kernels import Step
 from robomill.surface.turn_kernels import (
@@ -103,8 +103,9 @@ def about_at(world: World, step: Step, ray: Ray, at: Place) -> float:
     """Whether the cutter is in the material there, told by the relief where it can: ``FAR`` or -``FAR``; else
     ``engaged_at``."""
     x, y, z = point_at(step, ray, at)
-    what = told(world.relief, tops_about(world.relief, x, y), z, z)
-    return FAR * what if what != UNKNOWN else standing(world, (x, y, z), step.run)
+    low, high, sides = square_about(world.relief, x, y)
+    what = told(world.relief, (low, high), z, z)
+    return FAR * what if what != UNKNOWN else standing_near(world, (x, y, z), step.run, sides)
 
 
 @part

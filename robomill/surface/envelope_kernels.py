@@ -12,7 +12,7 @@ import math
 from typing import NamedTuple
 
 from robomill.compiled import part
-from robomill.cutting.profile_kernels import Shape, clip, contact_lag, profile, upright_part
+from robomill.cutting.profile_kernels import Shape, clip, contact_lag, profile_within, upright_part
 
 POINT = 1e-12  # m: a move shorter than this in plan goes straight up or down
 
@@ -55,7 +55,7 @@ def swept_height(shape: Shape, move: Move, x: float, y: float) -> float:
     s = X * move.ux + Y * move.uy
     v = Y * move.ux - X * move.uy
     t = clip(s - contact_lag(shape, move.m, v * v), 0.0, move.length)
-    return move.az + move.m * t + profile(shape, math.sqrt((s - t) ** 2 + v * v))
+    return move.az + move.m * t + profile_within(shape, (s - t) ** 2 + v * v)
 
 
 @part

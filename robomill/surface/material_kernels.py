@@ -17,7 +17,7 @@ from robomill.arrays import FloatArray
 from robomill.compiled import Axes, Out2, Out3, OutInt1, called, part
 from robomill.cutting.profile_kernels import profile_within, shape_of
 from robomill.surface.envelope_kernels import Move, move_between, nearest, swept_height
-from robomill.surface.relief_kernels import Relief, sides_about, tops_about
+from robomill.surface.relief_kernels import Relief, square_about, tops_about
 from robomill.surface.tilt_kernels import move_in_frame, tool_frame, vertical_line
 
 Names3 = Annotated[NDArray[np.int32], Axes("int32", 3, written=True)]
@@ -273,6 +273,13 @@ def under_triangle(t: FloatArray, x: float, y: float, z: float) -> bool:
 def standing(world: World, point: tuple[float, float, float], run: int) -> float:
     """How deep in the material a point (x, y, z) is, m: > 0 in it, < 0 in air; exact near where it ends, elsewhere
     about. The point is known to be outside what ``run`` has swept."""
+    _, _, sides = square_about(world.relief, point[0], point[1])
+    return standing_near(world, point, run, sides)
+
+
+@part
+def standing_near(world: World, point: tuple[float, float, float], run: int, sides: bool) -> float:
+    """``standing`` where it is known whether the ``sides`` of runs may pass about the point."""
     x, y, z = point
     bounds, dexels = world.bounds, world.dexels
     within = min(min(x - bounds.x_low, bounds.x_high - x), min(y - bounds.y_low, bounds.y_high - y))
@@ -280,7 +287,7 @@ def standing(world: World, point: tuple[float, float, float], run: int) -> float
     if within < 0.0:
         return max(within, -FAR)
     cells = cells_around(dexels, x, y)
-    near = sides_about(world.relief, x, y) and has_side(dexels, cells)
+    near = sides and has_side(dexels, cells)
     deep = 0.0 if near else looked_up(dexels, cells, z)
     if deep == 0.0:
         deep = -dexels.slack

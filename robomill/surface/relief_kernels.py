@@ -40,21 +40,20 @@ class Relief(NamedTuple):
 
 
 @part
-def tops_about(relief: Relief, x: float, y: float) -> tuple[float, float]:
-    """Between which heights the material ends about a point in plan, m: within the margin."""
+def square_about(relief: Relief, x: float, y: float) -> tuple[float, float, bool]:
+    """Between which heights the material ends about a point in plan, m, and whether the side of a run may pass there:
+    within the margin."""
     i, j = math.floor((x - relief.x0) * relief.per_x), math.floor((y - relief.y0) * relief.per_y)
     if i < 0 or j < 0 or i >= relief.tops.shape[0] or j >= relief.tops.shape[1]:
-        return -math.inf, math.inf
-    return relief.tops[i, j, LOW], relief.tops[i, j, HIGH]
+        return -math.inf, math.inf, True
+    return relief.tops[i, j, LOW], relief.tops[i, j, HIGH], relief.tops[i, j, SIDES] != 0.0
 
 
 @part
-def sides_about(relief: Relief, x: float, y: float) -> bool:
-    """Whether the side of a run may pass about a point in plan: within the margin."""
-    i, j = math.floor((x - relief.x0) * relief.per_x), math.floor((y - relief.y0) * relief.per_y)
-    if i < 0 or j < 0 or i >= relief.tops.shape[0] or j >= relief.tops.shape[1]:
-        return True
-    return bool(relief.tops[i, j, SIDES] != 0.0)
+def tops_about(relief: Relief, x: float, y: float) -> tuple[float, float]:
+    """Between which heights the material ends about a point in plan, m: within the margin."""
+    low, high, _ = square_about(relief, x, y)
+    return low, high
 
 
 @part

@@ -260,5 +260,14 @@ CASES = (
     CutCase("over a cavity", FLAT, (along_x(0, -2),), holes=CAVITY),
     CutCase("ball over a cavity", BALL, (along_x(0, -3),), holes=(((-15, -12, -6), (15, 1, -1)),)),
     CutCase("tilted over a cavity", FLAT, (along_x(0, -2, tilt=(8, 6)),), holes=CAVITY),
+    CutCase("chamfer of 1 mm along an edge", CHAMFER, (along_x(-22, -3),)),
+    CutCase("skin of 0.05 mm, ball", BALL, (along_x(0, -0.05),)),
+    CutCase(
+        "ball down 30 degrees beside its own pass",
+        BALL,
+        (Pass(((-10, 1.5, 1), (7, 1.5, -9))), Pass(((-10, 0, 1), (7, 0, -9)))),
+        span=(6.0, 18.0),
+        steady=False,
+    ),
     CutCase("across a tunnel", FLAT, (along_x(0, -3),), holes=TUNNEL, span=(20, 40), steady=False),
 )

@@ -9,7 +9,7 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.surface.march import March
 from robomill.surface.material_kernels import cells_around, has_side
-from robomill.surface.relief_kernels import AIR, MATERIAL, UNKNOWN, sides_about, told, tops_about, tops_between
+from robomill.surface.relief_kernels import AIR, MATERIAL, UNKNOWN, square_about, told, tops_about, tops_between
 from robomill.surface.stock import Stock
 
 MM = 1e-3
@@ -71,7 +71,7 @@ def test_what_is_told_of_places_is_so(seed, leaning):
     assert not (said[~near] == np.where(left, AIR, MATERIAL)[~near]).any()
     dexels = march._stepwise[0].dexels
     near = np.array([has_side(dexels, cells_around(dexels, x, y)) for x, y, _ in points])
-    about = np.array([sides_about(relief, x, y) for x, y, _ in points])
+    about = np.array([square_about(relief, x, y)[2] for x, y, _ in points])
     assert about[near].all()
     assert near.any()
     assert (said == AIR).sum() > 20
