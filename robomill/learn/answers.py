@@ -3,7 +3,7 @@
 format = "robomill answers"
 version = 1
 student = "1234567"
-name = "Ada Müller"
+name = "Ada Lovelace"
 robot = "slavkovic_5r"
 
 [answers]

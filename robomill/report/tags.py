@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable
 
 # What steers a terminal, or turns what stands after it round, is no part of a page; neither is half a character.
-_STEERS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+_STEERS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
 VOID = {"meta", "rect", "line", "path", "polyline", "polygon", "circle", "col"}
 
 

@@ -51,10 +51,11 @@ def notice() -> None:
         pieces.error(f"The link was not opened. {found.why} Your project is as it was.")
         inputs.button("OK", "arriving.ok", "check", session.drop, NOTICE, type="tertiary")
         return
-    name = as_markdown(found.project.setup.name)
     with st.container(horizontal=True, vertical_alignment="center", gap="small", key="arriving-notice"):
-        words = f":material/link: The link holds another project, {name}. Yours is as it was."
-        st.markdown(words, width="stretch")
+        name = found.project.setup.name
+        st.markdown(
+            f":material/link: The link holds another project, {as_markdown(name)}. Yours is as it was.", width="stretch"
+        )
         inputs.button("Open it", "arriving.open", "folder_open", _open, found.project, type="tertiary")
         inputs.button("Keep mine", "arriving.keep", "check", session.drop, NOTICE, type="tertiary")
 

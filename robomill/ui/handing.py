@@ -76,7 +76,7 @@ def shared(project: Project) -> None:
     file = f"{pieces.called()}{SUFFIX}"
     link = link_of(project, st.query_params)
     pieces.note("The symbol at the right of each copies it.")
-    st.caption("Link to this page")
+    pieces.note("Link to this page")
     if link is None:
         pieces.note("This project is too long for an address: send its file, which opens on any page.")
     else:
@@ -87,7 +87,7 @@ def shared(project: Project) -> None:
         pieces.error(exc)
         return
     for title, words, language in (("Command", said.command, "bash"), ("Python", said.python, "python")):
-        st.caption(title)
+        pieces.note(title)
         st.code(words, language=language, wrap_lines=True)
     if said.by_file or link is None:
         pieces.note(f"Run it in the folder in which {file} stands.")
