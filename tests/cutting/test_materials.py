@@ -58,7 +58,7 @@ def test_alternatives_share_alloy_and_kind():
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"Ktc": -7e8}, "Material 'al', Ktc: found −700 N/mm²; expected 10 N/mm² to 50000 N/mm²."),
+        ({"Ktc": -7e8}, "Material 'al', Ktc: found −700 N/mm²; expected 10 N/mm² to 50\u202f000 N/mm²."),
         ({"Ktc": 0.0}, "Ktc: found 0 N/mm²"),
         ({"Kre": -1.0}, "Kre: found −0.001 N/mm; expected 0 N/mm to 1000 N/mm"),
         ({"Ktc": None}, "Material 'al', Ktc: found nothing; expected 10 N/mm²"),
@@ -70,7 +70,7 @@ def test_alternatives_share_alloy_and_kind():
         ({"mc": 1.0}, "mc: found 1; expected 0 to less than 1"),
         ({"Ktc": 767.0}, "Ktc: found 0.000767 N/mm²"),
         ({"Ktc": 7e14}, "Ktc: found 7e+08 N/mm²"),
-        ({"Kte": 2e7}, "Kte: found 20000 N/mm"),
+        ({"Kte": 2e7}, "Kte: found 20\u202f000 N/mm"),
         ({"Krc": math.nan}, "Krc: found nan"),
         ({"Krc": "soft"}, "Krc: found 'soft'"),
         ({"name": ""}, "needs a name"),
