@@ -45,6 +45,13 @@ def until(robot: Robot, draws: Draws, fits: Callable[[PoseReport], bool]) -> Pos
     raise LearnError(f"{robot.title or robot.name}: no configuration suits this exercise; choose another robot.")
 
 
+def giving(robot: Robot, draws: Draws) -> tuple[PoseReport, int]:
+    """A configuration, and an axis along which it gives about as it does along its softest one."""
+    pose = until(robot, draws, lambda _: True)
+    direct = np.diag(pose.C)
+    return pose, draws.one_of([a for a in range(3) if direct[a] > 0.15 * direct.max()])
+
+
 def place(pose: PoseReport) -> str:
     """The configuration in words."""
     return f"The arm stands at θ = ({format_many(pose.theta, 'deg', 0)})"
@@ -251,15 +258,7 @@ def softest(robot: Robot, draws: Draws) -> Made:
 def press(robot: Robot, draws: Draws) -> Made:
     """Which force moves the tip so far, where nothing holds it aside."""
     way = 1e-5 * draws.whole(4, 30)
-    axes: list[int] = []
-
-    def fits(pose: PoseReport) -> bool:
-        direct = np.diag(pose.C)
-        axes[:] = [a for a in range(3) if direct[a] > 0.15 * direct.max()]
-        return True
-
-    pose = until(robot, draws, fits)
-    a = draws.one_of(axes)
+    pose, a = giving(robot, draws)
     name = "XYZ"[a]
 
     def value(C: FloatArray) -> float:

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
-from robomill.compliance.at_pose import PoseReport
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.forces.mechanistic import MechanisticForce, MechanisticRow
 from robomill.cutting.tool import Cutter
@@ -14,7 +11,7 @@ from robomill.io.materials import load_material
 from robomill.learn.draws import Draws
 from robomill.learn.exercise import Slip
 from robomill.learn.made import Made
-from robomill.learn.poses import place, until
+from robomill.learn.poses import giving, place
 from robomill.robot.model import Robot
 from robomill.units import format_number, format_percent, format_si, to_si
 
@@ -24,15 +21,7 @@ ROWS = ("al7075_t6_carbide_ref190", "al7075_hss_ref156", "al7075_carbide_ref47",
 def left_over(robot: Robot, draws: Draws) -> Made:
     """What stays of a corrected program where the robot is softer than its model."""
     force, wrong = 10.0 * draws.whole(8, 40), draws.whole(2, 8) / 20.0
-    axes: list[int] = []
-
-    def fits(pose: PoseReport) -> bool:
-        direct = np.diag(pose.C)
-        axes[:] = [a for a in range(3) if direct[a] > 0.15 * direct.max()]
-        return True
-
-    pose = until(robot, draws, fits)
-    a = draws.one_of(axes)
+    pose, a = giving(robot, draws)
     name = "XYZ"[a]
     model = float(pose.C[a, a] * force)
     actual = (1.0 + wrong) * model

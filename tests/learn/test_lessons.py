@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 import pytest
-from truth import compliance, jacobian
+from truth import SEVEN, compliance, jacobian
 
 import robomill as rm
 from robomill.compliance.at_pose import PoseReport
@@ -17,13 +17,6 @@ from robomill.learn.lesson import COUNT, MINUTES, TITLES, Lesson
 from robomill.learn.lessons import lesson
 from robomill.learn.marking import check
 
-SEVEN = rm.Robot.from_dh(
-    d_mm=[340, 0, 400, 0, 400, 0, 126],
-    alpha_deg=[-90, 90, 90, -90, -90, 90, 0],
-    a_mm=[0] * 7,
-    limits_deg=(-170, 170),
-    k_theta_kNm_per_rad=[90, 80, 60, 50, 30, 20, 10],
-)
 STANDS = {
     "kuka_kr270": [10, -60, 80, 20, 40, 15],
     "fanuc_r2000ic": [10, -60, 80, 20, 40, 15],

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import scipy.optimize
-from truth import axis_of, compliance, jacobian, numbers, theta_of
+from truth import SEVEN, axis_of, compliance, jacobian, numbers, theta_of
 
 import robomill as rm
 from robomill import learn
@@ -20,13 +20,6 @@ from robomill.learn.personal import TASKS, _made
 
 STUDENTS = (1234567, "S-0815", 42)
 ROBOTS = robot_names()
-SEVEN = rm.Robot.from_dh(
-    d_mm=[340, 0, 400, 0, 400, 0, 126],
-    alpha_deg=[-90, 90, 90, -90, -90, 90, 0],
-    a_mm=[0] * 7,
-    limits_deg=(-170, 170),
-    k_theta_kNm_per_rad=[90, 80, 60, 50, 30, 20, 10],
-)
 
 
 def exercise(task: str, student: str | int, name: str) -> tuple[learn.Exercise, rm.Robot]:

@@ -10,6 +10,14 @@ import robomill as rm
 from robomill.learn import Exercise
 
 STEP = 1e-6
+SEVEN = rm.Robot.from_dh(
+    d_mm=[340, 0, 400, 0, 400, 0, 126],
+    alpha_deg=[-90, 90, 90, -90, -90, 90, 0],
+    a_mm=[0] * 7,
+    limits_deg=(-170, 170),
+    k_theta_kNm_per_rad=[90, 80, 60, 50, 30, 20, 10],
+)
+"""An arm of seven axes, whose stiffnesses differ."""
 
 
 def numbers(text: str) -> list[float]:
