@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from robomill.cutting.tool_table import TableTool as TableTool
     from robomill.cutting.tool_table import ToolTable as ToolTable
     from robomill.errors import RobomillError as RobomillError
+    from robomill.identification.knowledge import Knowledge as Knowledge
     from robomill.identification.load_test import JointTests as JointTests
     from robomill.identification.load_test import LoadTests as LoadTests
     from robomill.identification.result import IdentificationResult as IdentificationResult
@@ -144,6 +145,7 @@ _PUBLIC = {
     "ToolTable": "robomill.cutting.tool_table",
     "RobomillError": "robomill.errors",
     "identify": "robomill.io.identified",
+    "Knowledge": "robomill.identification.knowledge",
     "JointTests": "robomill.identification.load_test",
     "LoadTests": "robomill.identification.load_test",
     "IdentificationResult": "robomill.identification.result",

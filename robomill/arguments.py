@@ -58,6 +58,33 @@ def asking(cls: C) -> C:
     return cls
 
 
+def made_by(call: str) -> Callable[[C], C]:
+    """A public dataclass that people get from ``call`` and hardly make themselves: so they are told who tried."""
+
+    def of(cls: C) -> C:
+        init: Callable[..., None] = cls.__init__  # type: ignore[misc]
+        signature = inspect.signature(init)
+
+        @wraps(init)
+        def told(self: Any, *args: Any, **given: Any) -> None:
+            try:
+                init(self, *args, **given)
+            except RobomillError:
+                raise
+            except SLIPS:
+                try:
+                    found = signature.bind(self, *args, **given).arguments
+                except TypeError:
+                    raise ArgumentError(f"{cls.__name__}: {call} makes it; it is not made by hand.") from None
+                refuse_kinds(init, cls.__name__, found)
+                raise
+
+        cls.__init__ = told  # type: ignore[misc]
+        return cls
+
+    return of
+
+
 def named(
     signature: inspect.Signature, who: str, args: Sequence[Any], given: Mapping[str, Any], whole: bool = False
 ) -> dict[str, Any]:

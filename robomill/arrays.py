@@ -34,7 +34,9 @@ def of_kind(value: Any, kinds: type | tuple[type, ...], name: str, give: str, er
     """Refuse a ``value`` of another kind, with what to ``give`` instead: what is called later would only crash."""
     if not isinstance(value, kinds):
         first = kinds[0] if isinstance(kinds, tuple) else kinds
-        raise error(f"{name}: expected a {first.__name__}, found {brief(value)}; give {give}.")
+        what = "a text" if first is str else f"{'an' if first.__name__[0] in 'AEIOU' else 'a'} {first.__name__}"
+        rest = "." if give == what else f"; give {give}."
+        raise error(f"{name}: expected {what}, found {brief(value)}{rest}")
 
 
 def as_floats(

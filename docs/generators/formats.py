@@ -70,6 +70,7 @@ def _setup() -> str:
         *((f'[[springs]] with kind = "{kind}"', "springs", kind, _by_key(spring)) for kind, spring in SPRINGS.items()),
         ("[measured_map]", "measured_map", "", {}),
         ("[links]", "links", "", _by_key(LinkMasses)),
+        ("[uncertainty]", "uncertainty", "", {}),
         ("[numerics]", "numerics", "", {each.key: each for each in numbers.values()}),
     ]
     found["tools", ""] -= set(_by_key(Cutter))  # which stand with [cutter]; the page says so

@@ -18,8 +18,10 @@ from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.springs import SPRINGS
 from robomill.cutting.forces import FORCES
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
+from robomill.identification.knowledge import Knowledge
 from robomill.io import points
 from robomill.io.beside import Beside
+from robomill.io.identified import identify
 from robomill.io.materials import material_from_toml, material_to_toml, sample_materials
 from robomill.io.projects import load_setup, setup_from_toml, setup_to_toml
 from robomill.io.robots import load_robot, robot_from_toml, robot_to_toml
@@ -149,6 +151,10 @@ def _variants(base: SimulationSetup, process: SimulationSetup) -> Iterator[Simul
     yield base.replace(
         springs=(*(cls(joint=1) if cls.each_joint else cls.first(base.cutter) for cls in SPRINGS.values()),)
     )
+    found = identify(base.robot, "tilted_bending_tool", model="joints+bending")
+    sure = Knowledge.of(found, base.robot, "from load tests").widened(base.robot, force=1.0, length=1e-4)
+    arm, springs = found.applied_to(base.robot), found.springs(base.robot)
+    yield base.replace(robot=arm, springs=springs, knowledge=sure.held_by(arm, springs))
     record = ForceRecord(np.arange(6.0), np.full((6, 3), 50.0))
     yield base.replace(force=MeasuredForce(record))
     rows = {type(row): row for row in sample_materials()}

@@ -32,7 +32,7 @@ WORDS: dict[str, dict[str, str]] = {
         "view": "How the app looks at a project; no run depends on it.",
         "maps": "What the app's maps look at; no run depends on it.",
         "experiments": "Load tests kept in the app's project; no run depends on them.",
-        "uncertainty": "What load tests let know of the compliances, kept in the app's project.",
+        "uncertainty": "How sure the compliances in force are: table `[uncertainty]`. No run depends on it.",
     },
     "tolerance_mm": {
         "wall": "Of walls, mm.",
@@ -124,6 +124,20 @@ WORDS: dict[str, dict[str, str]] = {
         "provenance": "Where the map comes from, as in `[provenance]`.",
     },
     "links": {"source": "Where the masses come from, as in `[provenance]`."},
+    "uncertainty": {
+        "model": 'What was fitted: `"joints"`, `"joints+bending"`, `"joints+tool"`, `"joints+bending+tool"` or '
+        '`"constant"`.',
+        "bending_joints": "At which joints links bend, in models with bending.",
+        "bending_turned": "Whether the axes of bending turn with the joint.",
+        "parameters": "What was found, in SI: the joints first, then further springs. Where these are not the "
+        "compliances in force, the table is of others, and results say so.",
+        "covariance": "Of the parameters, row by row, in SI.",
+        "dof": "Degrees of freedom of the fit. Left out: known exactly.",
+        "model_error": "What the model misses besides: a share of the displacement, m a newton, m at least.",
+        "force_covariance": "Of the force, three rows, N².",
+        "lengths": "Standard deviations of the D-H lengths, m: every a, then every d.",
+        "words": "From where it is known.",
+    },
     "numerics": {},
     "provenance": {
         "kind": "One of `paper`, `measured`, `assumed`, `user`, `computed`, `synthetic`.",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.compliance.cartesian import full_compliance, joint_contributions
 from robomill.compliance.deflection import displacement, soft_direction
@@ -21,6 +21,7 @@ from robomill.units import format_si
 from robomill.values import Said
 
 
+@made_by("rm.at_pose(robot, theta)")
 @dataclass(frozen=True, eq=False, repr=False)
 class PoseReport(Said):
     """The arm at the configuration theta (n,) rad (m where prismatic); every number NaN where theta is NaN.

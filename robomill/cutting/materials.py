@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from robomill.arguments import made_by
 from robomill.cutting.edge import EdgeTerm
 from robomill.errors import CuttingError
 from robomill.provenance import GIVEN, Provenance
@@ -34,6 +35,7 @@ def per_area(label: str, *, leads: bool = False, optional: bool = False) -> Any:
     return quantity(label, "N/mm2", optional=optional, least=least, most=to_si(5e4, "N/mm2"))
 
 
+@made_by("rm.load_material(name)")
 @dataclass(frozen=True, repr=False)
 class Material(Replaceable, Said):
     """Cutting force coefficients of one alloy with one kind of cutter. A child declares those of its law.

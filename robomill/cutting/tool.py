@@ -25,6 +25,7 @@ from robomill.values import Value
 DISH = math.sin(to_si(0.5, "deg"))
 #: Sine of the slope below which nothing of it does: what its heel meets is less than the rounding of its edges.
 PRESSED = math.sin(to_si(0.05, "deg"))
+LARGEST = 2.0  # m: no cutter is as wide, whatever its unit
 WIDEST, LONGEST = 0.6, 2.0  # m: hardly a cutter is wider, hardly one sticks out as far: was it meant in mm?
 THINNEST, SHORTEST = 0.05e-3, 0.2e-3  # m: no robot mills with less, none sticks out less: was it meant in m?
 SLIGHTEST, SHARPEST = to_si(1.5, "deg"), to_si(3.2, "deg")  # no helix is as slight, no tip as sharp: meant in rad?
@@ -89,7 +90,7 @@ class Cutter(Value):
     """
 
     kind: str = choice("Kind", {kind: family.short for kind, family in FAMILIES.items()})
-    diameter: float = quantity("Diameter", "mm", least=1e-6, slip=WIDEST, tiny=THINNEST)
+    diameter: float = quantity("Diameter", "mm", least=1e-6, most=LARGEST, slip=WIDEST, tiny=THINNEST)
     corner_radius: float = quantity("Corner radius", "mm", default=0.0, least=0.0, slip=WIDEST, tiny=5e-6)
     flutes: int = whole("Flutes", default=2, least=1, most=MOST_FLUTES)
     helix: Hand = choice(

@@ -4,20 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from types import NoneType
+from typing import TYPE_CHECKING
 
 from robomill.arguments import asked, asking
-from robomill.cutting.tool import Cutter
+from robomill.arrays import of_kind
+from robomill.cutting.tool import WIDEST, Cutter
 from robomill.errors import CuttingError
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.quantities import quantities, quantity, settle, whole
+from robomill.spelled import in_units
 from robomill.units import format_si
 
+FARTHEST = 10.0  # m: hardly a machine counts as far: was it meant in mm?
 ASKED = ("kind", "flutes", "helix_angle")
 """Fields of a cutter that a force needs and a table of a machine does not say; without a word they are assumed."""
 
 
-@asking
+@in_units(CuttingError, "Tool")
 @dataclass(frozen=True)
 class TableTool:
     """A tool as T and H words call it by its ``number``.
@@ -29,22 +34,44 @@ class TableTool:
     Examples
     --------
     >>> import robomill as rm
-    >>> rm.TableTool(3, rm.Cutter("ball", diameter_mm=6, flutes=2), length=0.05).diameter
+    >>> rm.TableTool(3, rm.Cutter("ball", diameter_mm=6, flutes=2), length_mm=50).diameter
     0.006
     """
 
     number: int = whole("Tool", least=0)
     cutter: Cutter | None = None
-    length: float = quantity("Length", "mm", default=0.0)
-    offset_x: float = quantity("Offset X", "mm", default=0.0, boxed=False)
-    offset_y: float = quantity("Offset Y", "mm", default=0.0, boxed=False)
+    length: float = quantity("Length", "mm", default=0.0, slip=FARTHEST)
+    offset_x: float = quantity("Offset X", "mm", default=0.0, boxed=False, slip=FARTHEST)
+    offset_y: float = quantity("Offset Y", "mm", default=0.0, boxed=False, slip=FARTHEST)
     orientation: int = whole("Orientation of the nose", default=0, least=0, most=9, boxed=False)
-    compensates: float | None = quantity("Diameter of compensation", "mm", optional=True, boxed=False)
+    compensates: float | None = quantity("Diameter of compensation", "mm", optional=True, boxed=False, slip=WIDEST)
     assumed: tuple[str, ...] = ()
     name: str = ""
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            number: int,
+            cutter: Cutter | None = ...,
+            length: float = ...,
+            offset_x: float = ...,
+            offset_y: float = ...,
+            orientation: int = ...,
+            compensates: float | None = ...,
+            assumed: tuple[str, ...] = ...,
+            name: str = ...,
+            *,
+            length_mm: float = ...,
+            offset_x_mm: float = ...,
+            offset_y_mm: float = ...,
+            compensates_mm: float | None = ...,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         settle(self, CuttingError, f"Tool {self.number}")
+        give = 'rm.Cutter("flat", diameter_mm=8), or None'
+        of_kind(self.cutter, (Cutter, NoneType), f"Tool {self.number}, cutter", give, CuttingError)
         unknown = sorted(set(self.assumed) - set(quantities(Cutter)))
         if unknown:
             known = ", ".join(quantities(Cutter))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from robomill.arguments import made_by
 from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.compliance.spring import Spring
 from robomill.errors import ProjectError
@@ -14,17 +15,31 @@ from robomill.identification.model_error import ModelError
 from robomill.identification.models import Model
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
+from robomill.units import format_count
+from robomill.values import Said
 
 
-@dataclass(frozen=True, eq=False)
-class Knowledge:
+@made_by("rm.SimulationSetup(..., knowledge=rm.identify(robot, tests))")
+@dataclass(frozen=True, eq=False, repr=False)
+class Knowledge(Said):
     """Compliances of a model's springs, and what is not known exactly of them, of the force and of the arm.
 
-    model: the springs; parameters (p,) SI and their covariance (p, p); dof of the fit that gave it (None: known
-    exactly, normal quantiles); error: what the model misses besides, from poses left out (None: noise only); F (3, 3)
-    N^2 covariance of the force, the same along a path; lengths (2 rows,) m standard deviations of a_1..a_k, then
-    d_1..d_k; what is None is taken as certain. source: from where, in words; compliances: the ``compliance_digest`` of
-    the arm it holds for, "" while it belongs to none.
+    model        the springs
+    parameters   (p,) SI; covariance (p, p) of them
+    dof          of the fit that gave it; None: known exactly, normal quantiles
+    error        what the model misses besides, from poses left out; None: noise only
+    F            (3, 3) N^2, covariance of the force, the same along a path; None: certain
+    lengths      (2 rows,) m, standard deviations of a_1..a_k, then d_1..d_k; None: certain
+    source       from where, in words
+    compliances  by which the arm is known that it holds for; "" while it belongs to none
+
+    Examples
+    --------
+    >>> import robomill as rm
+    >>> setup = rm.load_setup("paper_flute")
+    >>> found = rm.identify(setup.robot, "nine_points")
+    >>> setup.replace(robot=found.applied_to(setup.robot), knowledge=found).known
+    <Knowledge joint springs, 5 parameters: identified>
     """
 
     model: Model
@@ -62,6 +77,9 @@ class Knowledge:
             covariance[unseen, unseen] = robot.C_theta[unseen] ** 2
         error = None if result.band is None else result.band.error
         return cls(result.choice, parameters, covariance, result.dof, source=source, error=error)
+
+    def _said(self) -> str:
+        return f"{self.model.title.lower()}, {format_count(len(self.parameters), 'parameter')}: {self.source}"
 
     def noise_only(self) -> Knowledge:
         """The same as if the model were the arm: too narrow wherever it is not, and said to be so."""

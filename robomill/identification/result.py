@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import FloatArray, IntArray
 from robomill.compliance.spring import Spring
 from robomill.compliance.springs.joint_bending import JointBending
@@ -63,6 +63,7 @@ class Band:
     components: int
 
 
+@made_by("rm.identify(robot, tests)")
 @dataclass(frozen=True, eq=False, repr=False)
 class IdentificationResult(Tabled):
     """Fitted compliances with their uncertainty. n joints, p parameters (the joints first, then extra springs).

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import FloatArray, digest, of_kind
 from robomill.errors import RobomillError, SetupError
 from robomill.frames import Columns
@@ -67,6 +67,7 @@ class Way(Said):
         return self.run is not None and not self.run.verdict.red
 
 
+@made_by("rm.advise(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class Advice(Tabled):
     """Ways to cut the same part as ``setup`` does, which is the first (``ways[0]``); each number is that of a run.

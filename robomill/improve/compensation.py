@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from robomill.arguments import made_by
 from robomill.arrays import FloatArray, digest
 from robomill.errors import CompensationError
 from robomill.frames import Columns
@@ -41,6 +42,7 @@ TURNED = to_si(5.0, "deg")  # a joint that stands further off than this stands o
 STILL = 1e-7  # rad: a joint that turns no further rests
 
 
+@made_by("rm.compensate(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class Compensation(Tabled):
     """A corrected program with what it leaves.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import FloatArray, as_floats, brief, digest, frozen, of_kind
 from robomill.compliance.deflection import shares_along
 from robomill.errors import SetupError
@@ -49,6 +49,7 @@ class Front(Said):
         return f"{format_count(len(self.cost), 'point')}, {shares}, cost {self.cost.min():.2f} to {self.cost.max():.2f}"
 
 
+@made_by("rm.design(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class Design(Tabled):
     """The cheapest stiffer joints that keep a tolerance on a path, or the best there are.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import betaincinv
 
+from robomill.arguments import made_by
 from robomill.arrays import BoolArray, FloatArray, digest
 from robomill.errors import SetupError
 from robomill.frames import Columns
@@ -21,6 +22,7 @@ from robomill.units import format_beside, format_count, format_percent, format_s
 from robomill.values import Tabled
 
 
+@made_by("rm.uncertainty(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class Tornado(Tabled):
     """What each input alone does to the share of the tolerance that is used, the largest part of the variance first.
@@ -62,6 +64,7 @@ class Tornado(Tabled):
         return ", ".join([*some, "..."] if len(self.inputs) > 2 else some)
 
 
+@made_by("rm.uncertainty(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class Uncertainty(Tabled):
     """The distribution of a cut's deviation over what is not known exactly.

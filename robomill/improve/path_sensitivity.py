@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import FloatArray, digest, frozen, of_kind
 from robomill.errors import SetupError
 from robomill.frames import Columns
@@ -27,6 +27,7 @@ from robomill.values import Tabled
 STEP = 1e-5  # m, for the derivative with respect to a length
 
 
+@made_by("rm.sensitivity(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class PathSensitivity(Tabled):
     """Derivatives of the deviation along a path, by every compliance and then every a and d of the D-H table.

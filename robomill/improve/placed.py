@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from robomill.arguments import made_by
 from robomill.arrays import FloatArray, IntArray
 from robomill.frames import Columns
 from robomill.improve.area import Area, turned_back
@@ -43,6 +44,7 @@ EDGE, TIP, IN_ROBOT, SCREENED, COUPLED, PARTLY = (
 )
 
 
+@made_by("rm.place(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class Place(Value):
     """A place of part zero and what a full simulation says of it.
@@ -83,6 +85,7 @@ class Place(Value):
         return bool(np.isfinite(self.share))
 
 
+@made_by("rm.place(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class Placement(Tabled):
     """The best place found, and what it was compared with.

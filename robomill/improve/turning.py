@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import BoolArray, FloatArray, of_kind
 from robomill.compliance.deflection import deflection, displacement
 from robomill.errors import SetupError
@@ -44,6 +44,7 @@ RATE_ASKED = Quantity("rate", "deg/mm", name="rate", key="rate_deg_mm", above=0.
 ONE_SPIN, HASTE = "spin-course", "spin-haste"
 
 
+@made_by("rm.turn(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class Turning(Tabled):
     """What the turn of the tool about its axis does along a path, and the best course of it.

@@ -21,6 +21,7 @@ from robomill.improve.screening import share_of
 from robomill.improve.unsure import Spread, Unsure, unsure_of
 from robomill.progress import step
 from robomill.provenance import Finding
+from robomill.simulation.doubts import OTHERS, known_notes
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
@@ -30,7 +31,7 @@ MANY, FULL, MOST = 10_000, 200, 1_000_000  # draws: usual, usual where each is a
 CHECKED = 6  # draws that are run in full, too: those with the largest errors
 AGREES = 0.02  # of the tolerance: by how much these may differ
 NAMES = ("wall", "floor", "end", "feed", "tip")
-DIFFERS, REDRAWN, IN_FULL, OTHERS = "draws-differ", "draws-again", "draws-in-full", "other-compliances"
+DIFFERS, REDRAWN, IN_FULL = "draws-differ", "draws-again", "draws-in-full"
 Errors = dict[str, FloatArray]
 
 
@@ -54,6 +55,7 @@ def uncertainty(
         One standard deviation of compliances, force, D-H lengths, part zero and tool; what is left out is assumed.
     known : Knowledge or IdentificationResult, optional
         How sure the compliances are, with their covariance and the model's own error; instead of ``spread.compliance``.
+        Left out: ``setup.known``, unless ``spread.compliance`` is stated.
     measure : {"verdict", "wall", "floor", "tip"}
         What is judged: what the verdict does, one of its parts, or the size of the tip's deviation.
     samples : int, optional
@@ -93,6 +95,8 @@ def uncertainty(
     _check(setup, measure, samples, seed)
     if isinstance(known, IdentificationResult):
         known = Knowledge.of(known, setup.robot, "identified")
+    elif known is None and asked_for.compliance is None:
+        known = setup.known
     run = simulate(setup)
     if run.verdict.level in ("unjudged", "unreached", "missed"):
         raise SetupError(f"There is no number to be sure of: {run.verdict.sentence}")
@@ -241,4 +245,4 @@ def _findings(
     if known is not None and not np.allclose(known.parameters[: robot.n], robot.C_theta, rtol=0.01, atol=0.0):
         text = "How sure the compliances are was found for others than are in force here."
         said.append(Finding("warning", text, code=OTHERS))
-    return tuple(said)
+    return (*said, *(known_notes(unsure.setup) if known is None else ()))

@@ -35,7 +35,7 @@ def compensate(
         m, or micrometres: how near the program keeps to the corrected path. A line is split, an arc becomes chords,
         only where it would not.
     known : Knowledge, optional
-        How sure the compliances are; gives the band of what remains.
+        How sure the compliances are; gives the band of what remains. Left out: ``setup.known``.
 
     Returns
     -------
@@ -64,4 +64,4 @@ def compensate(
     if not (isinstance(asked_for, Real) and math.isfinite(asked_for)):
         raise CompensationError(f"Bound: found {asked_for!r:.40}; expected a number.", where="bound")
     within = bound if bound_um is None else to_si(bound_um, "um")
-    return compensation(setup, components, within, toolpath_to_gcode, known)
+    return compensation(setup, components, within, toolpath_to_gcode, known or setup.known)

@@ -1,7 +1,9 @@
-"""What is known of the compliances in force, as the table [uncertainty] of a project file."""
+"""What is known of the compliances in force, as the table [uncertainty] of a set-up's file."""
 
 from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
 
 from robomill.compliance.spring import Spring
 from robomill.errors import LoadTestError
@@ -10,6 +12,8 @@ from robomill.identification.model_error import ModelError
 from robomill.identification.models import MODELS, Model
 from robomill.io.tables import Table
 from robomill.robot.model import Robot
+
+SAME = 0.01  # as a share: compliances that differ by more are others
 
 
 def knowledge_to_table(known: Knowledge) -> dict[str, Any]:
@@ -34,7 +38,10 @@ def knowledge_to_table(known: Knowledge) -> dict[str, Any]:
 
 
 def knowledge_from_table(table: Table, robot: Robot, springs: Sequence[Spring]) -> Knowledge:
-    """What a project file knows of the compliances in it. Raises ProjectError naming the key."""
+    """What a file knows of the compliances in it; where they were changed since, it belongs to none of these.
+
+    Raises ProjectError naming the key.
+    """
     joints = tuple(table.wholes("bending_joints", (2, 3)))
     model = Model(table.choice("model", tuple(MODELS)), joints, table.flag("bending_turned", False))
     try:
@@ -53,4 +60,5 @@ def knowledge_from_table(table: Table, robot: Robot, springs: Sequence[Spring]) 
         error=None if error is None else ModelError(*error),
     )
     table.finish()
-    return known.held_by(robot, springs)
+    of_these = not model.has("joint") or np.allclose(known.parameters[: robot.n], robot.C_theta, rtol=SAME, atol=0.0)
+    return known.held_by(robot, springs) if of_these else known

@@ -14,9 +14,11 @@ from robomill.cutting.tool import ASKED, Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import PROGRAM, ROBOT, SETUP
+from robomill.identification.knowledge import Knowledge
 from robomill.io.beside import ALONE, Beside
 from robomill.io.declared import from_table, kind_from_table, kind_to_table, read_quantity, to_table, write_quantity
 from robomill.io.force_models import force_from_table, force_to_table
+from robomill.io.knowledge import knowledge_from_table, knowledge_to_table
 from robomill.io.measured_maps import map_from_table, map_to_table
 from robomill.io.points import POINTS, points_from_table, points_to_table
 from robomill.io.programs import program_from_bytes
@@ -45,7 +47,7 @@ from robomill.toolpath.source import LEANS, GCodeSource, LinesSource, PathSource
 from robomill.toolpath.text import SUFFIXES
 
 FORMAT = "robomill-setup"
-OF_THE_APP = ("view", "maps", "experiments", "uncertainty")  # tables of a saved project that no run depends on
+OF_THE_APP = ("view", "maps", "experiments")  # tables of a saved project that only the app reads
 VERSION = 1
 NUMBERS = quantities(SimulationSetup)
 SOURCES = ("program", "program_text", "lines_mm", "sketch", *POINTS)
@@ -130,8 +132,10 @@ def setup_from_table(data: dict[str, Any], where: str, beside: Beside = ALONE) -
         **_numerics(top.table("numerics", {})),
     )
     known["provenance"] = _unstated(top, known) | known["provenance"]
+    if top.has("uncertainty"):
+        known["knowledge"] = knowledge_from_table(top.table("uncertainty"), robot, known["springs"])
     setup = made(SimulationSetup, known)
-    top.asked.update(("stock", "links", "measured_map", "tools", "tools_unit", *OF_THE_APP))
+    top.asked.update(("stock", "links", "measured_map", "uncertainty", "tools", "tools_unit", *OF_THE_APP))
     top.finish()
     return setup
 
@@ -248,8 +252,9 @@ def _provenance(table: Table) -> dict[str, Any]:
     return entries
 
 
-def setup_to_toml(setup: SimulationSetup) -> str:
-    """The set-up as one self-contained file that ``setup_from_toml`` reads back to the same digest."""
+def setup_to_toml(setup: SimulationSetup, known: Knowledge | None = None) -> str:
+    """The set-up as one self-contained file that ``setup_from_toml`` reads back to the same digest; ``known`` is what
+    is known of its compliances where it is not the set-up's own."""
     T_MW = setup.T_MW
     data: dict[str, Any] = {
         "format": FORMAT,
@@ -281,6 +286,8 @@ def setup_to_toml(setup: SimulationSetup) -> str:
         data["measured_map"] = map_to_table(setup.measured_map)
     if setup.links is not None:
         data["links"] = to_table(setup.links)
+    if (sure := known or setup.known) is not None:
+        data["uncertainty"] = knowledge_to_table(sure)
     # TOML reads the line ends of multi-line strings as plain ones, so a program with others is written escaped.
     plain = "\r" not in getattr(setup.source, "text", "")
     return tomli_w.dumps(data, multiline_strings=plain)

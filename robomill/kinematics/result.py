@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.frames import Columns
 from robomill.kinematics.choice import every, overshoot, spun, turn
@@ -23,6 +23,7 @@ from robomill.values import Tabled
 Mode = Literal["position", "axis", "pose"]
 
 
+@made_by("rm.inverse_kinematics(robot, T_MT)")
 @dataclass(frozen=True, eq=False, repr=False)
 class IKResult(Tabled):
     """Configurations for a batch of poses; every reached one has been checked by forward kinematics.

@@ -134,6 +134,7 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
     for name, turn in (record["tooth"] or {}).items():
         mean, low, high = (format_value(turn[end], "mm", sign=True) for end in ("mean", "low", "high"))
         lines.append(f"tooth     {name} {mean} by the mean force, {low} to {high} as teeth come by")
+    lines += [_band_line(each) for each in record["ranges"] if each["kind"] == "measured"]
     lines.append(f"left out  {', '.join(record['left_out'])}")
     reached, why = record["reached"], record["reached"]["reason"]
     lines.append(f"reached   {reached['count']} of {reached['of']} points{f'; first: {why}' if why else ''}")
@@ -144,6 +145,16 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
     lines.append("sections  station  kind     what is measured there (mm)")
     lines += [_section_line(section) for section in record["groove"]]
     return lines + finding_lines([f for f in record["findings"] if f["level"] != "ignored"])
+
+
+def _band_line(found: dict[str, Any]) -> str:
+    """Between which ends wall, floor and tip lie by how sure the compliances are."""
+    said = []
+    for name in ("wall", "floor", "tip"):
+        ends = [v for v in found[f"{name}_mm"] if v is not None and math.isfinite(v)]
+        told = " to ".join(format_value(v, "mm", sign=name != "tip") for v in ends)
+        said += [f"{name} {told}"] if len(ends) == 2 else []
+    return f"sure      {', '.join(said)} ({found['over']})"
 
 
 def _section_line(section: dict[str, Any]) -> str:

@@ -25,7 +25,7 @@ COMPONENTS = ("feed", "feed_normal", "axial")
 
 def simulation_record(result: SimulationResult, known: Knowledge | None = None) -> dict[str, Any]:
     """One run. ``deviation_mm``, ``joint_share_mm`` and ``force_N`` are those of the worst point, in {M}; ``known`` is
-    how sure the compliances are, for the ``ranges``."""
+    how sure the compliances are, for the ``ranges``: left out, what the set-up knows."""
     i = result.worst
     section = section_at(result, decides_at(result))
 
@@ -59,7 +59,7 @@ def simulation_record(result: SimulationResult, known: Knowledge | None = None) 
         "joint_shares_add_up": result.setup.measured_map is None,
         **_uncertain(result, i),
         "over_lengths": lengths_record(result, i),
-        "ranges": [range_record(each) for each in ranges(result, known)],
+        "ranges": [range_record(each) for each in ranges(result, known or result.setup.known)],
         "station_mm": shown(result.path.s[i], "mm") if i >= 0 else None,
         "worst_block": result.worst_block,
         "reached": {

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.kinematics.asked import longest_reach
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
@@ -16,18 +17,31 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_count, format_many, format_short, format_si
 
-CODE = "unit-doubt"
+CODE, OTHERS = "unit-doubt", "other-compliances"
 THIN = 0.6e-3  # m: the widest cutter there is, with its metres taken for mm
 SMALL_PATH, NEAR, SHORT_TOOL = 2e-3, 0.05, 2e-3  # m
 SLIGHT, HEAVY = 1.0, 20e3  # N: hardly a cut pushes less, or more
+SOFT_SPINDLE = 5e-6  # m/N: the softest spindles and longest tools give way a tenth as much
 FINE, COARSE = 2e-6, 2e-3  # m a tooth
 
 
 def unit_doubts(setup: SimulationSetup, path: Toolpath, F: FloatArray, pushed: BoolArray) -> tuple[Finding, ...]:
     """What looks like another unit, for F (m, 3) N and the steps ``pushed`` (m,) that are judged and cut."""
     told = [*_of_sizes(setup, path), *_of_robot(setup.robot, setup.T_MW[:3, 3])]
-    told += [*_of_force(setup, F[pushed]), *_of_feed(setup, path, pushed)]
+    told += [*_of_springs(setup), *_of_force(setup, F[pushed]), *_of_feed(setup, path, pushed)]
     return tuple(Finding("suspicious", text, code=CODE) for text in told)
+
+
+def known_notes(setup: SimulationSetup) -> tuple[Finding, ...]:
+    """Whether what the set-up knows of compliances is of others than are in force."""
+    if setup.knowledge is None or setup.known is not None:
+        return ()
+    source = f" ({setup.knowledge.source})" if setup.knowledge.source else ""
+    text = (
+        f"How sure the compliances are is known{source}, but of others than are in force here: nothing is told of it. "
+        "Give that robot's compliances, or identify these."
+    )
+    return (Finding("warning", text, code=OTHERS),)
 
 
 def _of_sizes(setup: SimulationSetup, path: Toolpath) -> Iterator[str]:
@@ -61,6 +75,14 @@ def _of_robot(robot: Robot, zero: FloatArray) -> Iterator[str]:
     tip = float(np.linalg.norm(robot.T_tool[:3, 3]))
     if 1e-6 < tip < SHORT_TOOL:
         yield f"The tool ends {format_short(tip, 'mm')} from the last axis's frame: was its place given in m?"
+
+
+def _of_springs(setup: SimulationSetup) -> Iterator[str]:
+    """A spindle that gives way more than any tool bends."""
+    for spring in setup.springs:
+        largest = max(spring.lateral, spring.axial) if isinstance(spring, SpindleSpring) else 0.0
+        if largest > SOFT_SPINDLE:
+            yield f"{spring.name.capitalize()}: {format_short(largest, 'um/N')}: was its stiffness given, in N/µm?"
 
 
 def _of_force(setup: SimulationSetup, F: FloatArray) -> Iterator[str]:

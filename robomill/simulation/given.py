@@ -1,6 +1,6 @@
 """What may be given of a set-up in other words: the part zero as point and turn, a path as it is, a spin in degrees."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import NoneType
 from typing import Any
@@ -14,7 +14,9 @@ from robomill.cutting.force import ForceModel
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.errors import SetupError
+from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
+from robomill.identification.result import IdentificationResult
 from robomill.kinematics.asked import in_the_foot
 from robomill.provenance import Provenance, stated_blocks
 from robomill.quantities import Quantity
@@ -117,6 +119,34 @@ def check_kinds(setup: Any) -> None:
     of_kind(setup.springs, (tuple, list), "springs", "a list of rm.ToolBending and the like", SetupError)
     for spring in setup.springs:
         of_kind(spring, Spring, "springs", "rm.ToolBending, rm.SpindleSpring or rm.JointBending", SetupError)
+
+
+def knowledge_of(given: Any, robot: Robot, springs: Sequence[Spring]) -> Knowledge | None:
+    """How sure the compliances in force are, from what ``rm.identify`` returned; what is known already stays as it is.
+
+    Raises SetupError where other compliances were found than are in force.
+    """
+    if not isinstance(given, IdentificationResult):
+        of_kind(given, (Knowledge, NoneType), "knowledge", "what rm.identify returned, or known of another", SetupError)
+        known: Knowledge | None = given
+        return known
+    if given.n != robot.n:
+        raise SetupError(
+            f"knowledge: it was identified on an arm of {given.n} joints, and this one has {robot.n}.",
+            where="knowledge",
+        )
+    found = Knowledge.of(given, robot, "identified").held_by(given.applied_to(robot), springs)
+    if not found.holds_for(robot, springs):
+        raise SetupError(
+            "knowledge: the robot has other compliances than were found; give robot=found.applied_to(robot) with it.",
+            where="knowledge",
+        )
+    if {each.kind for each in given.springs(robot)} - {each.kind for each in springs}:
+        raise SetupError(
+            "knowledge: it is of springs beside the joints, too; give springs=found.springs(robot) with it.",
+            where="knowledge",
+        )
+    return found
 
 
 def stated(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import BoolArray, FloatArray, digest
 from robomill.compliance.deflection import displacement
 from robomill.cutting.conditions import CutConditions
@@ -23,7 +23,7 @@ from robomill.simulation.assumptions import Assumed, assumed_of_setup
 from robomill.simulation.columns import path_columns
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
-from robomill.simulation.doubts import unit_doubts
+from robomill.simulation.doubts import known_notes, unit_doubts
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.meant import corrected_notes, jump_notes
@@ -44,6 +44,7 @@ from robomill.units import format_si
 from robomill.values import Tabled
 
 
+@made_by("rm.simulate(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class SimulationResult(Tabled):
     """Arrays over the m samples of the path, SI, in {M} unless said otherwise; NaN where not reached.
@@ -198,7 +199,7 @@ class SimulationResult(Tabled):
         found += [*feed_notes(self.setup, self.path), *map_notes(self.setup, self.path)]
         pushed = self.judged & self.conditions.engaged
         found += suspicions(self.setup, self.force_components[pushed])
-        found += unit_doubts(self.setup, self.path, self.F, pushed)
+        found += [*unit_doubts(self.setup, self.path, self.F, pushed), *known_notes(self.setup)]
         if self.coupling is not None:
             found.append(self.coupling.finding)
         if self.setup.add_sag:

@@ -17,7 +17,9 @@ from robomill.cutting.force import ForceModel
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.errors import SetupError
+from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
+from robomill.identification.result import IdentificationResult
 from robomill.kinematics.spin import LEAST_MOTION, RULES
 from robomill.lazy import cached_property
 from robomill.provenance import Provenance
@@ -64,6 +66,8 @@ class SimulationSetup(Replaceable, Value):
     measured_map  compliance measured on a grid, used instead of joints and springs (whose shares are still shown)
     links       link masses for the sag under gravity (None: not computed); ``add_sag`` True adds it to the
                 deviation, False only shows it, since parts are zeroed with the arm sagged
+    knowledge   how sure the compliances are, as an identification leaves it: what ``rm.identify`` returned, or
+                ``known`` of another set-up. No run depends on it; bands and ``rm.uncertainty`` do
     provenance  block name -> where its numbers come from: path, part, cutter, force, stock, tools, tolerance. Of what
                 ``replace`` changes it says that it was given in code, unless more is said there of that block
 
@@ -149,6 +153,7 @@ class SimulationSetup(Replaceable, Value):
         default=False,
         hint="Off: shown only. A part is zeroed with the arm already sagged.",
     )
+    knowledge: Knowledge | None = field(default=None, compare=False)
     description: str = field(default="", compare=False)
     provenance: Mapping[str, Provenance] = field(default_factory=dict, compare=False)
 
@@ -189,6 +194,7 @@ class SimulationSetup(Replaceable, Value):
             measured_map: MeasuredField | None = ...,
             links: LinkMasses | None = ...,
             add_sag: bool = ...,
+            knowledge: Knowledge | IdentificationResult | None = ...,
             description: str = ...,
             provenance: Mapping[str, Provenance] = ...,
         ) -> None: ...
@@ -204,6 +210,7 @@ class SimulationSetup(Replaceable, Value):
         self._take_tolerances()
         self._take_spin()
         object.__setattr__(self, "springs", tuple(self.springs))
+        object.__setattr__(self, "knowledge", given.knowledge_of(self.knowledge, self.robot, self.springs))
         settle(self, SetupError)
         # A process force is computed for the cutter that cuts; a changed cutter changes it too.
         object.__setattr__(self, "force", self.force.cut_by(self.cutter).placed(self.T_MW[:3, :3]))
@@ -271,6 +278,12 @@ class SimulationSetup(Replaceable, Value):
         used = [self.tools.cutter(int(n)) for n in np.unique(path.tool[path.cutting]) if int(n) in self.tools]
         widest = max(used or [self.cutter], key=lambda cutter: cutter.diameter)
         return Stock.around(path, widest)
+
+    @property
+    def known(self) -> Knowledge | None:
+        """How sure the compliances in force are; None where nothing is known, or only of others than these."""
+        known = self.knowledge
+        return known if known is not None and known.holds_for(self.robot, self.springs) else None
 
     @property
     def carried_from(self) -> str:

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from robomill.arguments import made_by
 from robomill.provenance import named
 from robomill.simulation.seen import Run
 from robomill.units import format_beside, format_count, format_percent, format_share
@@ -56,6 +57,7 @@ class Reading:
         return self.stated and self.worst >= 0
 
 
+@made_by("rm.simulate(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class Verdict(Value):
     """``level`` ok | tight | out | unjudged | unreached | missed; ``share`` of the tolerance used by what decides; one

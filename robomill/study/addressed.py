@@ -49,6 +49,7 @@ def tables_of(setup: SimulationSetup, keys: list[str]) -> Data:
     """The set-up as the tables of its file, complete in themselves; the robot's and the material's own where one of
     ``keys`` is in them."""
     data = parse_toml(setup_to_toml(setup), "set-up")
+    data.pop("uncertainty", None)  # of the compliances as they are, which a parameter may change
     split = [parts_of(key) for key in keys]
     if any(parts[0] == "robot" and parts[1:2] and parts[1] not in NAMES for parts in split):
         robot = parse_toml(robot_to_toml(setup.robot), "robot")

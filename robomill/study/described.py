@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import digest
 from robomill.errors import RobomillError, StudyError
 from robomill.files import STUDY
@@ -29,6 +29,7 @@ FORMAT, VERSION = "robomill-study", 1
 COUNT = 100  # points where nothing is said
 
 
+@made_by('rm.load_study("study.toml")')
 @dataclass(frozen=True, eq=False, repr=False)
 class Study(Value):
     """Many runs of one set-up, described.

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import digest
 from robomill.errors import StudyError
 from robomill.extras import missing
@@ -30,6 +30,7 @@ EACH_S, MANY = 1.0, 2000  # rows are written at least so often, and as many at o
 LONG_S = 100.0  # a time that is told in minutes
 
 
+@made_by('rm.run_study(study, "out")')
 @dataclass(frozen=True, eq=False, repr=False)
 class StudyResult(Tabled):
     """What came of a study.

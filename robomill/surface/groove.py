@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import made_by
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
@@ -46,6 +47,7 @@ MEASURED = {
 NEIGHBOUR = "another pass took away a wall that this one was told to leave, so the middle is not measured"
 
 
+@made_by("rm.simulate(setup).groove(station)")
 @dataclass(frozen=True, eq=False, repr=False)
 class GrooveSection(Tabled):
     """One section across the commanded feed; lengths in m, angles in rad, NaN where there is nothing to measure.

@@ -23,6 +23,7 @@ from robomill.values import Value
 
 AXES = "XYZ"
 BESIDE, BENEATH, ABOVE = 2e-3, 5e-3, 1e-3  # m: what a block round a path has beyond what is cut
+LEAST = 0.5e-3  # m: what is smaller was certainly given in another unit
 SMALLEST, LARGEST = 2e-3, 5.0  # m: a part outside these was probably given in another unit
 WIDEST = 20.0  # m: hardly a part goes as far from its zero: was it meant in mm?
 
@@ -64,6 +65,12 @@ class Stock(Value):
             if not b - a > 1e-9:
                 found = f"{format_si(a, 'mm')} to {format_si(b, 'mm')}"
                 raise SurfaceError(f"Stock in {name}: found {found}; the upper end must lie above the lower end.")
+        if self.size.max() < LEAST:
+            size = format_many(self.size, "mm", 3, between=" × ")
+            raise SurfaceError(
+                f"Stock: the block is {size}, less than any part: was it meant in m? Then give lower and upper.",
+                where="lower",
+            )
         if self.triangles is not None:
             triangles = as_floats(self.triangles, "stock mesh", (None, 3, 3), error=SurfaceError)
             object.__setattr__(self, "triangles", frozen(triangles))

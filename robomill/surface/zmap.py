@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill.arguments import made_by
 from robomill.arrays import BoolArray, FloatArray, digest, frozen
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
@@ -24,6 +25,7 @@ JUST_ABOVE = 1e-12  # m: so far cells at walls are raised to see which a later c
 NO_EDGE = EdgeCells(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 6)))
 
 
+@made_by("rm.simulate(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
 class ZMap(Value):
     """Heights of the part over a grid in {W}.

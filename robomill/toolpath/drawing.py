@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.provenance import Finding
@@ -20,7 +20,7 @@ from robomill.quantities import Quantity, choice, quantity, settle, told
 from robomill.spelled import Replaceable, in_units, one_of
 from robomill.toolpath.contour import Contour
 from robomill.toolpath.parallel import beside_line
-from robomill.toolpath.path import SLOWEST
+from robomill.toolpath.path import MOST_FEED, SLOWEST
 from robomill.toolpath.sketch import DEEPEST, FASTEST, MAX_ELEMENTS, SHALLOWEST, Element, Sketch
 from robomill.units import format_count, format_many, format_si
 from robomill.values import Said, Value
@@ -59,7 +59,7 @@ class LayerCut(Replaceable, Said):
 
     layer: str
     depth: float = quantity("Depth", "mm", above=0.0, digits=2, slip=DEEPEST, tiny=SHALLOWEST)
-    v_f: float = quantity("Feed", "mm/min", above=0.0, key="feed_mm_min", slip=FASTEST, tiny=SLOWEST)
+    v_f: float = quantity("Feed", "mm/min", above=0.0, most=MOST_FEED, key="feed_mm_min", slip=FASTEST, tiny=SLOWEST)
     side: str = choice("Side", SIDES, default="on")
     step_down: float | None = quantity("Step down", "mm", optional=True, above=0.0, digits=2, slip=DEEPEST)
 
@@ -97,6 +97,7 @@ class LayerCut(Replaceable, Said):
         return self.depth * np.arange(1, passes + 1) / passes
 
 
+@made_by('rm.read_drawing("part.dxf")')
 @dataclass(frozen=True, eq=False, repr=False)
 class Drawing(Value):
     """The contours of a file, in {W}; ``read_drawing`` makes one.

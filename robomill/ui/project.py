@@ -20,7 +20,7 @@ from robomill.compliance.components import COMPONENTS
 from robomill.errors import ProjectError
 from robomill.identification.knowledge import Knowledge
 from robomill.io.declared import from_table, to_table
-from robomill.io.knowledge import knowledge_from_table, knowledge_to_table
+from robomill.io.knowledge import knowledge_from_table
 from robomill.io.projects import OF_THE_APP, load_setup, open_project, setup_to_toml
 from robomill.io.samples import samples_dir
 from robomill.io.tables import Table, parse_toml, shown
@@ -233,9 +233,7 @@ def project_to_toml(project: Project) -> str:
         tables["maps"] = to_table(project.maps)
     if project.bench.digest() != Bench().digest():
         tables["experiments"] = to_table(project.bench.kept())
-    if project.known is not None:
-        tables["uncertainty"] = knowledge_to_table(project.known)
-    return setup_to_toml(project.setup) + "\n" + tomli_w.dumps(tables)
+    return setup_to_toml(project.setup, project.known) + "\n" + tomli_w.dumps(tables)
 
 
 def project_from_toml(
@@ -246,7 +244,7 @@ def project_from_toml(
     Raises ProjectError with the reason.
     """
     data = parse_toml(text, WHERE)
-    own = {name: Table(data.pop(name), f"{WHERE}, [{name}]") for name in OF_THE_APP if name in data}
+    own = {name: Table(data.pop(name), f"{WHERE}, [{name}]") for name in (*OF_THE_APP, "uncertainty") if name in data}
     setup = open_project(data, WHERE)
     known = None
     if "uncertainty" in own:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from robomill.arguments import asked
+from robomill.arguments import asked, made_by
 from robomill.arrays import FloatArray, as_floats, digest, of_kind
 from robomill.errors import WorkspaceError
 from robomill.frames import Columns, data_array, data_set
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from robomill.frames import DataArray, Dataset
 
 
+@made_by('rm.compliance_map(robot, grid).field("C_yy")')
 @dataclass(frozen=True, eq=False, repr=False)
 class Field(Tabled):
     """One quantity over a grid: values (nx, ny, nz) in SI, NaN in all but the ``reached`` cells.
@@ -88,6 +89,7 @@ def _field(robot: Robot, grid: Grid, A: float, B: float, name: str, *found: Any)
     return Field(robot, grid, A, B, map_quantity(robot, name), *found)
 
 
+@made_by("rm.compliance_map(robot, grid)")
 @dataclass(frozen=True, eq=False, repr=False)
 class ComplianceMap(SolvedGrid, Tabled):
     """The cells of a grid, asked for any quantity by its name.

@@ -48,6 +48,48 @@ MADE = [
 ]
 
 
+# Public classes that people get from a function, each with a word of who makes it.
+GOT = {
+    "Advice": "advise",
+    "Compensation": "compensate",
+    "ComplianceMap": "compliance_map",
+    "Design": "design",
+    "Drawing": "read_drawing",
+    "Field": "field",
+    "GrooveSection": "groove",
+    "IKResult": "inverse_kinematics",
+    "IdentificationResult": "identify",
+    "Knowledge": "identify",
+    "Material": "load_material",
+    "PathSensitivity": "sensitivity",
+    "Place": "place",
+    "Placement": "place",
+    "PoseReport": "at_pose",
+    "SimulationResult": "simulate",
+    "Study": "load_study",
+    "StudyResult": "run_study",
+    "Tornado": "uncertainty",
+    "Turning": "turn",
+    "Uncertainty": "uncertainty",
+    "Verdict": "simulate",
+    "ZMap": "simulate",
+}
+BESIDE = {"JointTests", "LayerCut", "Spread", "ForceModel"}  # tried with their rooms, and a base
+
+
+def test_every_public_class_is_one_that_is_made_or_one_that_is_got() -> None:
+    classes = {name for name in rm.__all__ if inspect.isclass(getattr(rm, name))}
+    assert {name for name in classes if not issubclass(getattr(rm, name), Exception)} == {*MADE, *GOT, *BESIDE}
+
+
+@pytest.mark.parametrize("name", GOT)
+def test_an_answer_made_by_hand_says_who_makes_it(name: str) -> None:
+    for args, given in (((), {}), ((1,), {}), ((), {"qqqqqq": 1}), ((None,) * 60, {})):
+        with pytest.raises(ArgumentError, match=rf"^{name}: rm\..*{GOT[name]}.* makes it") as caught:
+            getattr(rm, name)(*args, **given)
+        assert isinstance(caught.value, TypeError)
+
+
 @pytest.mark.parametrize("name", [*CALLED, *MADE])
 def test_a_name_that_nothing_has_is_told_everywhere_alike(name: str) -> None:
     """It is a refusal, and the TypeError that Python's users expect."""

@@ -40,3 +40,9 @@ def test_it_is_widened_by_what_is_not_known_of_force_and_lengths(force, length):
 def test_its_arrays_are_read_only():
     with pytest.raises(ValueError, match="read-only"):
         Knowledge.of(FIT, ROBOT).covariance[0, 0] = 1.0
+
+
+def test_it_says_what_it_is_of_in_a_line():
+    assert repr(Knowledge.of(FIT, ROBOT, "from 72 load tests")) == (
+        "<Knowledge joints and bending links, 9 parameters: from 72 load tests>"
+    )

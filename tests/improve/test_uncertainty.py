@@ -229,3 +229,21 @@ def test_a_corrected_programs_draws_are_runs_of_its_text_on_other_arms() -> None
         tip = (run.path.p + run.delta @ setup.T_MW[:3, :3])[run.path.cutting] - [0.0, 0.0, -2e-3]
         assert drawn.wall[i] == pytest.approx(np.abs(tip[:, 1]).max(), abs=0.3e-6)
     assert drawn.quantile(0.95) < 0.3 * rm.uncertainty(setup, spread, samples=400).quantile(0.95)
+
+
+def test_what_the_set_up_knows_of_its_compliances_is_used_unless_something_else_is_said() -> None:
+    """As ``known=``; a stated spread goes before it, and what is known of other compliances is said not to be used."""
+    bare = slot()
+    fit = rm.identify(bare.robot, "nine_points")
+    arm = fit.applied_to(bare.robot)
+    setup = bare.replace(robot=arm, knowledge=fit)
+    own, given = rm.uncertainty(setup, samples=50), rm.uncertainty(bare.replace(robot=arm), known=fit, samples=50)
+    np.testing.assert_array_equal(own.share, given.share)
+    assert {each.provenance.kind for each in own.inputs if each.group == "compliance"} == {"measured"}
+    stated = rm.uncertainty(setup, rm.Spread(compliance=0.2), samples=50)
+    assert {each.provenance.kind for each in stated.inputs if each.group == "compliance"} == {"user"}
+    other = setup.replace(robot=bare.robot)
+    found = rm.uncertainty(other, samples=50)
+    assert {each.provenance.kind for each in found.inputs if each.group == "compliance"} == {"assumed"}
+    assert [each.code for each in found.findings].count("other-compliances") == 1
+    assert "other-compliances" not in [each.code for each in (*own.findings, *stated.findings)]

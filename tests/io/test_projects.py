@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from robomill.arrays import digest
 from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.springs.joint_bending import JointBending
 from robomill.compliance.springs.spindle import SpindleSpring
@@ -17,6 +18,7 @@ from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import ProjectError, RobomillError
 from robomill.identification.measured_field import MeasuredField
 from robomill.io.beside import Beside
+from robomill.io.identified import identify
 from robomill.io.programs import program_from_bytes
 from robomill.io.projects import load_setup, open_project, setup_from_toml, setup_to_toml
 from robomill.io.robot_writer import robot_to_toml
@@ -24,6 +26,7 @@ from robomill.io.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.io.tables import parse_toml
 from robomill.provenance import Provenance
+from robomill.simulation.doubts import known_notes
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.sketch_presets import preset
 from robomill.toolpath.source import GCodeSource, LinesSource, SketchSource
@@ -331,3 +334,32 @@ def test_what_a_file_leaves_out_is_assumed(sample: str, left_out: str, said: dic
     found = setup_from_toml(text, "mine", Beside(SAMPLE.parent)).provenance
     assert {block: each.source for block, each in found.items()} == said
     assert {each.kind for each in found.values()} <= {"assumed"}
+
+
+def test_how_sure_the_compliances_are_is_kept_in_the_file_and_read_from_it(setup) -> None:
+    found = identify(setup.robot, "nine_points")
+    known = setup.replace(robot=found.applied_to(setup.robot), knowledge=found)
+    text = setup_to_toml(known)
+    again = setup_from_toml(text)
+    assert again.digest() == known.digest()
+    assert digest(again.known) == digest(known.known)
+    assert "[uncertainty]" not in setup_to_toml(setup)
+    assert "[uncertainty]" not in setup_to_toml(known.replace(robot=setup.robot))  # of others than are in the file
+    with pytest.raises(ProjectError, match=r"\[uncertainty\].*covariance"):
+        setup_from_toml(text.replace("covariance = [", "covariance = [[1.0],"))
+    with pytest.raises(ProjectError, match="there is no 'covarianc'|covarianc"):
+        setup_from_toml(text.replace("covariance = [", "covarianc = ["))
+
+
+def test_a_file_whose_compliances_were_changed_by_hand_knows_nothing_of_these(setup) -> None:
+    found = identify(setup.robot, "nine_points")
+    text = setup_to_toml(setup.replace(robot=found.applied_to(setup.robot), knowledge=found))
+    start = text.index("[uncertainty]")
+    other = setup_to_toml(setup) + "\n" + text[start:]
+    read = setup_from_toml(other)
+    assert read.known is None
+    assert read.knowledge is not None
+    (note,) = known_notes(read)
+    assert note.code == "other-compliances"
+    assert "of others than are in force" in note.sentence
+    assert known_notes(setup) == ()

@@ -27,7 +27,7 @@ SHIFTED = np.diag([1.0, 1.0, 1.0, 1.0 + 1e-3])
     [
         ("name", "", "the name is empty"),
         ("name", "  ", "the name is empty"),
-        ("name", 3, "name: expected a str, found 3"),
+        ("name", 3, "name: expected a text, found 3"),
         ("convention", "craig", "convention is 'craig'; expected 'standard' or 'modified'"),
         ("alpha", [], "expected 1 to 7 joints, found none"),
         ("alpha", [0.0] * 8, "expected 1 to 7 joints, found 8"),

@@ -173,7 +173,7 @@ LINE = rm.Element("line", points_mm=[[0, 0], [50, 0]], depth_mm=2, feed_mm_min=1
     [
         (lambda: rm.plane_grid("z", "a", [0] * 3, [1] * 3, 0.1), "Plane, at .m.: expected numbers, found 'a'"),
         (lambda: rm.box_grid([0] * 3, [1] * 3, "a"), "Grid, step .m.: expected numbers, found 'a'"),
-        (lambda: rm.compliance_map(ARM, rm.Grid([0], [-1.3], 0)).values(3), "Quantity: expected a str, found 3"),
+        (lambda: rm.compliance_map(ARM, rm.Grid([0], [-1.3], 0)).values(3), "Quantity: expected a text, found 3"),
         (lambda: rm.compliance_map(ARM, rm.Grid([0], [-1.3], 0), A="x"), "Tool tilt A, B .rad.: expected numbers"),
         (lambda: rm.at_pose(ARM, ARM.home).delta([0, 100]), "F .N.: expected shape"),
         (lambda: rm.at_pose(ARM, [10.5, -20.2, 30.1, 0, 5]), "numpy.deg2rad"),
@@ -181,7 +181,7 @@ LINE = rm.Element("line", points_mm=[[0, 0], [50, 0]], depth_mm=2, feed_mm_min=1
         (lambda: rm.MeasuredForce("a.csv"), "record: expected a ForceRecord, .*rm.read_forces"),
         (lambda: rm.process_force("al7075_t6_carbide_ref190", 8), "cutter: expected a Cutter, found 8"),
         (lambda: rm.Robot.from_dh(a_mm=[100, 200], limits_deg=170), "limits: expected .lower, upper. for each of 2"),
-        (lambda: rm.Sketch([1]), "elements: expected a Element, found 1"),
+        (lambda: rm.Sketch([1]), "elements: expected an Element, found 1"),
         (lambda: rm.write_map("m.csv", 5), "Map: expected a Field, found 5"),
         (lambda: rm.write_map(5, []), "Expected the name of a file, found 5"),
         (lambda: rm.load_robot(5), "Expected the name of a file, found 5"),
@@ -190,7 +190,7 @@ LINE = rm.Element("line", points_mm=[[0, 0], [50, 0]], depth_mm=2, feed_mm_min=1
         (lambda: rm.identify(ARM, np.zeros((3, 11))), "found ndarray; of an array or a mapping make a DataFrame"),
         (lambda: rm.load_setup("paper_flute").replace(links=[1]), "links: expected a LinkMasses"),
         (lambda: rm.load_setup("paper_flute").replace(provenance={"a": "b"}), "provenance: expected a Provenance"),
-        (lambda: rm.load_setup("paper_flute").replace(name=5), "name: expected a str, found 5"),
+        (lambda: rm.load_setup("paper_flute").replace(name=5), "name: expected a text, found 5"),
     ],
 )
 def test_what_a_stranger_gives_by_mistake_is_refused_in_a_sentence(call, words: str) -> None:
@@ -209,3 +209,37 @@ def test_an_angle_of_one_decimal_within_a_turn_of_its_limits_is_taken() -> None:
     assert np.isfinite(rm.tool_pose(ARM, [np.floor(10.0 * most) / 10.0, 0, 0, 0, 0])).all()
     with pytest.raises(RobomillError, match="deg2rad"):
         rm.tool_pose(ARM, [np.ceil(10.0 * most) / 10.0, 0, 0, 0, 0])
+
+
+def test_what_an_identification_knows_goes_with_the_compliances_it_found() -> None:
+    found = rm.identify(FLUTE.robot, "nine_points")
+    arm = found.applied_to(FLUTE.robot)
+    setup = made(robot=arm, knowledge=found)
+    assert setup.known is setup.knowledge
+    np.testing.assert_array_equal(setup.known.parameters, found.parameters)
+    assert setup.digest() == made(robot=arm).digest()  # no run depends on it
+    assert setup.replace(tolerance_mm=0.2).known is setup.known
+    softer = setup.replace(robot=arm.replace(C_theta=arm.C_theta * 1.1))
+    assert softer.known is None
+    assert softer.knowledge is setup.knowledge
+    assert softer.replace(robot=arm).known is setup.known
+    assert made(robot=arm.replace(C_theta=arm.C_theta), knowledge=setup.known).known is setup.known
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (lambda: {"knowledge": rm.identify(FLUTE.robot, "nine_points")}, "give robot=found.applied_to"),
+        (lambda: {"knowledge": 0.1}, "knowledge: expected a Knowledge, found 0.1"),
+        (lambda: _bent() | {"springs": ()}, "give springs=found.springs"),
+        (lambda: _bent() | {"robot": rm.load_robot("kuka_kr270")}, "an arm of 5 joints, and this one has 6"),
+    ],
+)
+def test_what_is_known_of_other_compliances_is_refused(given, words: str) -> None:
+    with pytest.raises(SetupError, match=words):
+        made(**given())
+
+
+def _bent() -> dict[str, Any]:
+    found = rm.identify(FLUTE.robot, "tilted_bending_tool", model="joints+bending")
+    return {"robot": found.applied_to(FLUTE.robot), "springs": found.springs(FLUTE.robot), "knowledge": found}

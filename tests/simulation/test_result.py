@@ -12,6 +12,7 @@ import robomill as rm
 from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.unjudged import Unjudged
+from robomill.errors import SurfaceError
 from robomill.io.samples import samples_dir
 from robomill.report.simulation_record import simulation_record
 from robomill.simulation.given import part_frame
@@ -115,6 +116,21 @@ def test_stations_and_sections(bent):
     one = bent.groove(float(bent.stations[3]))
     assert (one.width, one.centre_offset) == (bent.sections[3].width, bent.sections[3].centre_offset)
     np.testing.assert_array_equal(one.z_machined, bent.sections[3].z_machined)
+
+
+@pytest.mark.parametrize(
+    ("station", "words"),
+    [
+        (50, "50 mm is meant, give 0.05"),  # mm as m, within the path
+        (5000, r"runs from 0 to \d+\.\d\d mm\.$"),  # nothing that would be on it in mm
+        (-0.01, r"runs from 0 to \d+\.\d\d mm\.$"),
+    ],
+)
+def test_a_station_beyond_the_path_says_how_far_it_goes_and_whether_mm_were_meant(bent, station, words: str):
+    with pytest.raises(SurfaceError, match=words):
+        bent.groove(station)
+    with pytest.raises(SurfaceError, match=words):
+        bent.grooves([0.01, station])
 
 
 def test_what_is_not_reached_is_not_cut():
