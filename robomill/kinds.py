@@ -160,5 +160,7 @@ def _word(kind: Any) -> str:
         return WORDS[cls]
     if cls in (Sequence, list, tuple, Iterable):
         return f"a sequence of {_words(inner[0])}" if inner else "a sequence"
+    if isclass(cls) and issubclass(cls, Mapping) and len(inner) == 2:
+        return f"a mapping from {_words(inner[0])} to {_words(inner[1])}"
     name = getattr(cls, "__name__", str(cls))
     return f"{'an' if name[:1] in 'AEIOU' else 'a'} {name}"

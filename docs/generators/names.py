@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import inspect
+from types import ModuleType
 
 import robomill as rm
+from robomill import learn
 
 ROOMS = {
     "io": "Files in and out",
@@ -41,7 +43,13 @@ def pages() -> dict[str, str]:
         if names:
             listed = sorted(names, key=lambda name: (not inspect.isclass(getattr(rm, name)), name.lower()))
             said += [f"## {title}", *(_directive(name) for name in listed)]
-    return {"names.md": "\n\n".join(said)}
+    return {"names.md": "\n\n".join(said), "names_learn.md": "\n\n".join(_of_learn())}
+
+
+def _of_learn() -> list[str]:
+    """The names of ``from robomill import learn``, functions first: they are what a course begins with."""
+    names = sorted(learn.__all__, key=lambda name: (inspect.isclass(getattr(learn, name)), name.lower()))
+    return [_directive(name, learn) for name in names]
 
 
 def _title(name: str, value: object) -> str:
@@ -53,10 +61,10 @@ def _title(name: str, value: object) -> str:
     return ROOMS.get(room, REST)
 
 
-def _directive(name: str) -> str:
-    value = getattr(rm, name)
+def _directive(name: str, of: ModuleType = rm) -> str:
+    value, called = getattr(of, name), f"{of.__name__}.{name}"
     if inspect.isclass(value):
-        return f"```{{eval-rst}}\n.. autoclass:: robomill.{name}\n   :members:\n```"
+        return f"```{{eval-rst}}\n.. autoclass:: {called}\n   :members:\n```"
     if inspect.isroutine(value):
-        return f"```{{eval-rst}}\n.. autofunction:: robomill.{name}\n```"
-    return f"```{{eval-rst}}\n.. autodata:: robomill.{name}\n```"
+        return f"```{{eval-rst}}\n.. autofunction:: {called}\n```"
+    return f"```{{eval-rst}}\n.. autodata:: {called}\n```"

@@ -19,11 +19,15 @@ def samples(kind: str, prefix: str, **_: Any) -> list[str]:
     """Names of samples of a ``kind`` and files that begin with ``prefix``."""
     from argcomplete.completers import FilesCompleter
 
+    return [*names(kind, prefix), *([] if kind == "any" else FilesCompleter()(prefix))]
+
+
+def names(kind: str, prefix: str, **_: Any) -> list[str]:
+    """Names of samples of a ``kind`` ("any": of all) that begin with ``prefix``."""
     from robomill.io import samples as stored
 
-    names = [sample.name for sample in stored.samples() if kind in (sample.kind, "any")]
-    files = [] if kind == "any" else FilesCompleter()(prefix)
-    return [*(name for name in dict.fromkeys(names) if name.startswith(prefix)), *files]
+    found = dict.fromkeys(sample.name for sample in stored.samples() if kind in (sample.kind, "any"))
+    return [name for name in found if name.startswith(prefix)]
 
 
 def words(module: str, name: str, more: tuple[str, ...], prefix: str, **_: Any) -> list[str]:

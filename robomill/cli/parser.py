@@ -196,7 +196,7 @@ def _points_options(sub: argparse.ArgumentParser) -> None:
 
 
 def _drawing_options(sub: argparse.ArgumentParser) -> None:
-    _named(sub, "file", "a drawing (.dxf or .svg), or a sample's name", "drawing")
+    _named(sub, "file", "a drawing (.dxf or .svg), a sample's name, or - for standard input", "drawing")
     units = ("mm", "in", "cm", "m", "px", "pt")
     sub.add_argument("--unit", default="", choices=units, help="unit of the drawing where it does not say it")
     sub.add_argument(
@@ -359,7 +359,7 @@ def _report_options(run: argparse.ArgumentParser) -> None:
 
 
 def _study_options(run: argparse.ArgumentParser) -> None:
-    _named(run, "study", "a study (.toml), or a sample's name", "study")
+    _named(run, "study", "a study (.toml), a sample's name, or - for standard input", "study")
     _outside(run, "the study")
     run.add_argument(
         "--out", required=True, metavar="DIR", help="keep its points there; where some are there already, go on"
@@ -394,6 +394,5 @@ def _grade_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--out", required=True, metavar="MARKS.csv", help="write the table of marks there; an older file is replaced"
     )
-    sub.add_argument(
-        "--robot", metavar="NAME", help="the robot that the class was given (any that comes with robomill)"
-    )
+    told = "the robot that the class was given (any that comes with robomill)"
+    offered(sub.add_argument("--robot", metavar="NAME", help=told), completers.names, "robot")

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from robomill.arguments import asked
 from robomill.errors import LearnError
 from robomill.files import FileKind, name_of, read_file
 from robomill.io.tables import Table, parse_toml, toml_value
@@ -41,8 +42,48 @@ class Answers:
     strange: tuple[str, ...] = ()
 
 
+@asked
 def answers_text(student: str | int, given: Mapping[str, str], name: str = "", robot: str = ROBOT) -> str:
-    """The file of a student's answers; what is blank is left out. Raises LearnError for what is no student number."""
+    """The file of a student's answers, as the Learn page exports it and ``grade`` marks it.
+
+    Parameters
+    ----------
+    student : str or int
+        The student number.
+    given : mapping
+        Answers by the ids of their exercises, as they were typed; what is blank is left out.
+    name : str
+        The student's name.
+    robot : str
+        The name of the robot that the exercises were made for.
+
+    Returns
+    -------
+    str
+        TOML.
+
+    Raises
+    ------
+    LearnError
+        For what is no student number, and an answer to no exercise.
+
+    Examples
+    --------
+    >>> from robomill import learn
+    >>> print(learn.answers_text(1234567, {"torque": "96,5 N m"}, "Ada"))
+    format = "robomill answers"
+    version = 1
+    student = "1234567"
+    name = "Ada"
+    robot = "slavkovic_5r"
+    <BLANKLINE>
+    [answers]
+    torque = "96,5 N m"
+    <BLANKLINE>
+    """
+    unknown = [key for key in given if key not in BY_ID]
+    if unknown:
+        raise LearnError(f"Answers: there is no exercise {unknown[0]!r:.40}; they are {', '.join(BY_ID)}.")
     head = {"format": FORMAT, "version": VERSION, "student": student_number(student), "name": name, "robot": robot}
     lines = [f"{key} = {toml_value(value)}" for key, value in head.items()]
     told = [f"{key} = {toml_value(given[key])}" for key in BY_ID if given.get(key, "").strip()]

@@ -10,7 +10,14 @@ from robomill.units import unit_label
 
 @dataclass(frozen=True)
 class Slip:
-    """A usual mistake: the ``value`` (SI) that it leads to, and the sentence that names it."""
+    """A usual mistake: the ``value`` (SI) that it leads to, and the sentence that names it.
+
+    Examples
+    --------
+    >>> from robomill import learn
+    >>> learn.exercise("torque", 1234567).slips[0].says
+    "The lever arm is missing: a torque is the force times its distance from the joint's axis."
+    """
 
     says: str
     value: float

@@ -44,7 +44,16 @@ class Row:
 
 @dataclass(frozen=True)
 class Marks:
-    """The marks of a class, rows by student number; what cannot be marked comes last."""
+    """The marks of a class, rows by student number; what cannot be marked comes last.
+
+    Examples
+    --------
+    >>> from robomill import learn
+    >>> from robomill.io.samples import samples_dir
+    >>> marks = learn.grade(samples_dir() / "answers/class")
+    >>> [(row.file, row.total) for row in marks.rows][:1]
+    [('answers-1234567.toml', 20.0)]
+    """
 
     rows: tuple[Row, ...]
 

@@ -28,6 +28,13 @@ class Judgement:
 
     kind: right; sign (right but for its sign); unit (by 1000 or a million, or degrees for radians); slip (what a named
     mistake gives); wrong; unread (no number); missing (no answer).
+
+    Examples
+    --------
+    >>> from robomill import learn
+    >>> found = learn.check(learn.exercise("torque", 1234567), "about ten")
+    >>> found.kind, found.right, found.marks
+    ('unread', False, 0.0)
     """
 
     kind: Kind

@@ -81,6 +81,20 @@ def test_shells_complete_verbs_options_samples_and_robots(tmp_path: Path, monkey
     assert "--program" in completed("robomill simulate --pr")
 
 
+@pytest.mark.parametrize("verb", ["simulate", "report", "advise", "design", "place", "turn", "compensate"])
+def test_a_verb_that_takes_a_set_up_is_offered_samples_and_files(verb: str, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "paper.toml").write_text("")
+    assert {"paper_flute", "paper_flute/setup_process", "paper.toml"} <= completed(f"robomill {verb} paper")
+    assert not completed(f"robomill {verb} al70")
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_option_of_a_verb_is_offered(verb: str) -> None:
+    taken = {option for action in VERBS[verb]._actions for option in action.option_strings if option[:2] == "--"}
+    assert completed(f"robomill {verb} --") == taken
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
@@ -89,6 +103,7 @@ def test_shells_complete_verbs_options_samples_and_robots(tmp_path: Path, monkey
         ("identify slavkovic_5r nine_points --weights ", {"equal", "size"}),
         ("identify slavkovic_5r nine_points --leave-out ", {"pose", "neighbours"}),
         ("gcode heart --dialect s", {"sinumerik"}),
+        ("grade answers --robot slav", {"slavkovic_5r"}),
         ("gcode heart --dialect ", {"auto", "linuxcnc", "fanuc", "grbl", "sinumerik", "heidenhain"}),
         ("pose slavkovic_5r --compliance-set ", {"table_2", "table_3"}),
         ("simulate paper_flute --compliance-set table_3", {"table_3"}),

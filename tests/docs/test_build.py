@@ -14,6 +14,7 @@ from fnmatch import fnmatchcase
 import pytest
 
 import robomill as rm
+from robomill import learn
 from robomill.cli import main
 from robomill.cli.parser import make_parser
 from tests.docs.documents import DOCS, ROOT
@@ -58,6 +59,8 @@ def test_every_public_name_stands_in_the_api(built):
     page = (built / "api.html").read_text(encoding="utf-8")
     for name in rm.__all__:
         assert re.search(rf'id="robomill\.{name}"', page), name
+    for name in learn.__all__:
+        assert re.search(rf'id="robomill\.learn\.{name}"', page), name
 
 
 def test_every_verb_and_option_stands_in_the_command_line(built):
@@ -68,6 +71,13 @@ def test_every_verb_and_option_stands_in_the_command_line(built):
         for action in verb._actions:
             for option in [] if isinstance(action, argparse._HelpAction) else action.option_strings:
                 assert option in page, f"{name} {option}"
+
+
+def test_the_readme_names_every_verb():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    verbs = next(each for each in make_parser()._actions if isinstance(each, argparse._SubParsersAction))
+    for name in verbs.choices:
+        assert re.search(rf"(`|robomill ){name}\b", text), name
 
 
 def test_every_key_that_a_reader_names_in_the_source_stands_in_the_file_formats(built):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -181,6 +181,7 @@ def takes(
     line: Numbers = (),
     array: FloatArray | None = None,
     place: str | Path | None = None,
+    named: Mapping[str, float] | None = None,
 ) -> None:
     """Uses nothing of it and fails."""
     raise AttributeError("of its own")
@@ -198,6 +199,7 @@ def takes(
         ({"rows": "x"}, "takes: rows: expected numbers or 'auto', found 'x'."),
         ({"line": [1, "b"]}, "takes: line: expected numbers, found 'b'."),
         ({"array": [[1], [1, 2]]}, "takes: array: expected numbers, or None, found [[1], [1, 2]]."),
+        ({"named": {"a": "b"}}, "takes: named: expected a mapping from a text to a number, or None, found {'a': 'b'}."),
         ({"place": 3}, "takes: place: expected a text or a Path, or None, found 3."),
     ],
 )

@@ -5,12 +5,15 @@ from __future__ import annotations
 import doctest
 import inspect
 import re
+from types import ModuleType
 from typing import Any
 
 import pytest
 
 import robomill as rm
+from robomill import learn
 
+EVERY = [*((rm, name) for name in rm.__all__), *((learn, name) for name in learn.__all__)]
 OPTIONS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 NOTHING_REFUSED = {"material_names", "robot_names", "map_quantities", "sample_names", "samples"}  # they take any input
 HEAD = re.compile(r"^(\w+)\n-+$", re.MULTILINE)
@@ -29,9 +32,13 @@ def sections(documented: Any) -> dict[str, str]:
     return dict(zip(parts[1::2], parts[2::2], strict=True))
 
 
-@pytest.mark.parametrize("name", rm.__all__)
-def test_a_public_name_says_what_it_takes_gives_and_refuses(name: str) -> None:
-    public = getattr(rm, name)
+def called(given: Any) -> str:
+    return given if isinstance(given, str) else str(given.__name__)
+
+
+@pytest.mark.parametrize(("room", "name"), EVERY, ids=called)
+def test_a_public_name_says_what_it_takes_gives_and_refuses(room: ModuleType, name: str) -> None:
+    public = getattr(room, name)
     found, said = sections(public), inspect.getdoc(public) or ""
     assert re.match(r"\S.*[.:]$", said.partition("\n\n")[0].replace("\n", " ")), "a summary in a sentence"
     assert ">>> " in found.get("Examples", ""), "an example"
@@ -44,15 +51,15 @@ def test_a_public_name_says_what_it_takes_gives_and_refuses(name: str) -> None:
     assert name in NOTHING_REFUSED or re.search(r"^\w+Error$", found["Raises"], re.MULTILINE)
 
 
-@pytest.mark.parametrize("name", [name for name in rm.__all__ if inspect.isclass(getattr(rm, name))])
-def test_a_public_method_says_what_it_is(name: str) -> None:
-    silent = [each for each, method in own_methods(getattr(rm, name)) if not (inspect.getdoc(method) or "").strip()]
+@pytest.mark.parametrize(("room", "name"), [each for each in EVERY if inspect.isclass(getattr(*each))], ids=called)
+def test_a_public_method_says_what_it_is(room: ModuleType, name: str) -> None:
+    silent = [each for each, method in own_methods(getattr(room, name)) if not (inspect.getdoc(method) or "").strip()]
     assert not silent
 
 
-@pytest.mark.parametrize("name", rm.__all__)
-def test_an_example_prints_what_it_says(name: str) -> None:
-    public = getattr(rm, name)
+@pytest.mark.parametrize(("room", "name"), EVERY, ids=called)
+def test_an_example_prints_what_it_says(room: ModuleType, name: str) -> None:
+    public = getattr(room, name)
     found = doctest.DocTestFinder(recurse=inspect.isclass(public)).find(public, name, globs={})
     tests = [test for test in found if test.examples]
     assert tests
