@@ -158,7 +158,8 @@ def refuse_slip(declared: Quantity, value: Any, error: type[RobomillError], who:
     if size.max(initial=0.0) > declared.slip:
         worst = float(found.ravel()[np.argmax(size)])
         if _BESIDE.get() is not None:
-            bounded = declared.below is not None or declared.most is not None
+            highest = declared.most if declared.below is None else declared.below
+            bounded = highest is not None and highest <= declared.slip
             least = declared.expected if bounded else f"at most {declared.short(declared.slip)}"
             words = f"found {declared.short(worst)}; expected {least}."
         else:

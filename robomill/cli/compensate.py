@@ -29,8 +29,6 @@ def run_compensate(arguments: Any) -> int:
 
 def _check_kept(place: Path, setup: str, source: Any) -> None:
     """Refuse to write over the program that is corrected, wherever the set-up has it from."""
-    if place.is_dir():
-        raise ProjectError(f"--out {place}: this is a folder; give the name of a file.")
     if not place.is_file():
         return
     folder = Path(setup) if Path(setup).is_dir() else Path(setup).parent

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from robomill.cli import given
 from robomill.cli.saying import Written, say
 from robomill.errors import ToolpathError
 from robomill.provenance import Finding
@@ -14,11 +15,10 @@ STANDING = Finding(
 
 def run_drawing(arguments: Any) -> int:
     """List the layers; with ``--cut`` make the path, with ``--out`` write it."""
-    from robomill.io.drawings import read_drawing
     from robomill.io.writers import write_gcode
     from robomill.report.drawing_record import drawing_lines, drawing_record
 
-    drawing = read_drawing(arguments.file, unit=arguments.unit).moved(arguments.origin)
+    drawing = given.drawing(arguments.file, arguments.unit).moved(arguments.origin)
     if not arguments.cut:
         if arguments.out:
             raise ToolpathError("--out: say what is cut, with --cut LAYER:SIDE:DEPTH for each layer.")

@@ -1,15 +1,27 @@
 """What a command is given by name: a file, a sample, or what comes in by standard input (``-``)."""
 
+import re
 import sys
 from pathlib import Path
 from typing import Any
 
 from robomill.errors import GCodeError, LoadTestError, ProjectError, RobomillError, RobotError, ToolpathError
-from robomill.files import PROGRAM, ROBOT, SETUP, STUDY, TABLE, TOOLS, FileKind, check_size, name_of, read_file
+from robomill.files import DRAWING, PROGRAM, ROBOT, SETUP, STUDY, TABLE, TOOLS, FileKind, check_size, name_of, read_file
 from robomill.io.samples import find_sample, sample_or_file
+from robomill.toolpath.text import check_program_name
 
 STDIN, CALLED = "-", "standard input"
+BEGINNING = b"\xef\xbb\xbf \t\r\n"  # what may stand before the first word of a text
 DRAWN = (".dxf", ".svg")
+# What a verb writes by an option, and how its name ends; refused before anything is computed.
+WRITTEN = {
+    ("identify", "out"): ("a robot", (".toml",)),
+    ("identify", "sheet"): ("a table", (".csv",)),
+    ("place", "out"): ("a set-up", (".toml",)),
+    ("report", "out"): ("a page", (".html", ".htm")),
+    ("grade", "out"): ("a table", (".csv",)),
+}
+PROGRAMS = ("compensate", "drawing")  # whose names end as a control likes it, but as no other file
 
 
 def check_once(arguments: Any) -> None:
@@ -39,7 +51,22 @@ def check_kept(arguments: Any) -> None:
             )
         if any(place.resolve() == each.resolve() for each in written):
             raise RobomillError(f"--{name} {place}: another option writes there already; give another.")
+        _check_name(said["verb"], name, place)
         written.append(place)
+
+
+def _check_name(verb: str, option: str, place: Path) -> None:
+    """Refuse a name by which nobody would find again what is written. Raises RobomillError."""
+    what, ends = WRITTEN.get((verb, option), ("", ()))
+    program = verb in PROGRAMS and option == "out"
+    if (ends or program) and place.is_dir():
+        raise RobomillError(f"--{option} {place}: this is a folder; give the name of a file.")
+    if ends and place.suffix.lower() not in ends:
+        listed = ", ".join(ends).rpartition(", ")
+        told = " or ".join(filter(None, (listed[0], listed[2])))
+        raise RobomillError(f"--{option} {place}: {what} is written there; give a name that ends in {told}.")
+    if program:
+        check_program_name(place)
 
 
 def _same(place: Path, read: Path) -> bool:
@@ -95,10 +122,13 @@ def study(name: str, allow_outside: bool) -> Any:
     return study_from_toml(text, CALLED, Beside(Path.cwd(), allow_outside))
 
 
+def come_in(name: str) -> bytes | None:
+    """What comes in by standard input in place of a program's or a table's file; None where a file is named."""
+    return stdin(PROGRAM, GCodeError) if name == STDIN else None
+
+
 def program(name: str) -> Path | bytes:
     """The file of a program; where that is a stream, which can be read once, what comes out of it."""
-    if name == STDIN:
-        return stdin(PROGRAM, GCodeError)
     file = sample_or_file("program", name, GCodeError)
     if file.suffix.lower() == ".toml":
         raise GCodeError(
@@ -111,15 +141,14 @@ def source(name: str, unit: str = "", feed_mm_min: float | None = None) -> Any:
     """A program, or points, as the path of a set-up."""
     from robomill.io.programs import program_from_bytes, read_program
 
-    if name == STDIN:
-        check_points_options("standard input", unit, feed_mm_min)
-        return program_from_bytes(stdin(PROGRAM, ProjectError), "stdin.nc")
+    data = come_in(name)
     if Path(name).suffix.lower() in DRAWN:
         raise ProjectError(f"{name}: this is a drawing; make a program of it with 'robomill drawing', and name that.")
-    found = points(name, unit, feed_mm_min)
-    if not found:
-        check_points_options(name, unit, feed_mm_min)
-    return found or read_program(name)
+    found = points(name, unit, feed_mm_min, data)
+    if found:
+        return found
+    check_points_options(name if data is None else CALLED, unit, feed_mm_min)
+    return read_program(name) if data is None else program_from_bytes(data, "stdin.nc")
 
 
 def check_points_options(name: str, unit: str, feed_mm_min: float | None) -> None:
@@ -130,17 +159,26 @@ def check_points_options(name: str, unit: str, feed_mm_min: float | None) -> Non
         raise ProjectError(f"{said}: this is for a table of points (.csv, .parquet); {what}.")
 
 
-def points(name: str, unit: str = "", feed_mm_min: float | None = None) -> Any:
-    """A table of points as the path of a set-up; None where the name ends otherwise."""
+def points(name: str, unit: str = "", feed_mm_min: float | None = None, data: bytes | None = None) -> Any:
+    """A table of points as the path of a set-up; None where the name ends otherwise, or ``data`` begin otherwise."""
     from robomill.files import POINTS
     from robomill.io.point_tables import SUFFIXES, points_from_bytes
     from robomill.spelled import one_of
     from robomill.toolpath.path import FEED
 
-    if Path(name).suffix.lower() not in SUFFIXES:
+    if not (Path(name).suffix.lower() in SUFFIXES if data is None else is_table(data)):
         return None
     feed = None if feed_mm_min is None else one_of(FEED, None, feed_mm_min, ToolpathError, "--feed")
+    if data is not None:
+        return points_from_bytes(data, "stdin.csv", unit, feed)
     return points_from_bytes(read_file(name, POINTS, ToolpathError), name_of(name), unit, feed)
+
+
+def is_table(data: bytes) -> bool:
+    """Whether a text begins as a table of points does: with a row that names X, Y and Z."""
+    head = next((line for line in data[:10_000].splitlines() if line.strip(BEGINNING) and line[:1] != b"#"), b"")
+    words = re.split(r"[,;\t]", head.decode("utf-8-sig", "replace").lower())
+    return {"x", "y", "z"} <= {re.split(r"[^a-z]", word.strip().strip('"'))[0] for word in words}
 
 
 def load_tests(name: str, robot: Any) -> tuple[Any, str]:
@@ -152,6 +190,16 @@ def load_tests(name: str, robot: Any) -> tuple[Any, str]:
         text, _ = read_text(stdin(TABLE, LoadTestError), LoadTestError, TABLE, CALLED)
         return read_load_tests(f"{text}\n", robot), CALLED
     return read_load_tests(name, robot), name_of(find_sample("load tests", name) or name)
+
+
+def drawing(name: str, unit: str) -> Any:
+    """A drawing; what comes in by standard input is told by how it begins."""
+    from robomill.io.drawings import drawing_from_bytes, read_drawing
+
+    if name != STDIN:
+        return read_drawing(name, unit=unit)
+    data = stdin(DRAWING, ToolpathError)
+    return drawing_from_bytes(data, f"stdin{'.svg' if data.lstrip(BEGINNING).startswith(b'<') else '.dxf'}", unit)
 
 
 def tools(name: str, unit: str) -> Any:

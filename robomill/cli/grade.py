@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any
 
 from robomill.cli.saying import Written, say
-from robomill.errors import LearnError
 
 
 def run_grade(arguments: Any) -> int:
@@ -15,11 +14,7 @@ def run_grade(arguments: Any) -> int:
     from robomill.learn.record import marks_lines, marks_record
 
     place = Path(arguments.out)
-    if place.is_dir():
-        raise LearnError(f"--out {place}: this is a folder; give the name of a file.")
     folder = find_sample("answers", arguments.folder) or Path(arguments.folder)
-    if place.suffix.lower() == ".toml":
-        raise LearnError(f"--out {place}: a table is written there; give a name that ends in .csv.")
     found = grade(folder, arguments.robot, but=place)
     files = Written.before([place])
     write_files(place.parent, {place.name: found.csv()})

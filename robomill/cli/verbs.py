@@ -7,6 +7,7 @@ from typing import Any
 from robomill.cli import given, options
 from robomill.cli.saying import Written, say
 from robomill.console import put
+from robomill.errors import RobomillError
 
 
 def run_robots(arguments: Any) -> int:
@@ -32,7 +33,6 @@ def run_ik(arguments: Any) -> int:
     import numpy as np
 
     from robomill.arrays import check_place
-    from robomill.errors import RobomillError
     from robomill.kinematics.asked import in_the_foot
     from robomill.kinematics.inverse import inverse_kinematics
     from robomill.kinematics.transforms import pose_from_world
@@ -58,10 +58,11 @@ def run_gcode(arguments: Any) -> int:
     from robomill.toolpath.apt import read_apt
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 
-    table = given.points(arguments.file, arguments.unit, arguments.feed)
+    data = given.come_in(arguments.file)
+    table = given.points(arguments.file, arguments.unit, arguments.feed, data)
     if not table:
-        given.check_points_options(arguments.file, arguments.unit, arguments.feed)
-    source = b"" if table else given.program(arguments.file)
+        given.check_points_options(given.CALLED if data else arguments.file, arguments.unit, arguments.feed)
+    source = b"" if table else data or given.program(arguments.file)
     files = Written.before([Path(arguments.moves)] if arguments.moves else [])
     if arguments.moves and (table or given.is_apt(source)):
         raise ToolpathError("--moves: these are the moves of a program of G-code; points and APT have none to write.")
@@ -84,18 +85,22 @@ def run_gcode(arguments: Any) -> int:
 
 
 def run_map(arguments: Any) -> int:
-    from robomill.io.maps import write_map
+    from robomill.io.maps import map_place, write_map
     from robomill.report.plain import map_lines
     from robomill.report.records import map_record
     from robomill.units import to_si
     from robomill.workspace.fields import compliance_map
     from robomill.workspace.grid import Grid
 
+    if arguments.out:
+        map_place(arguments.out)
     robot = _robot(arguments)
     grid = Grid(**{f"{axis}_mm": options.axis(getattr(arguments, axis), f"--{axis}") for axis in "xyz"})
     A, B = to_si(arguments.a_deg, "deg"), to_si(arguments.b_deg, "deg")
     everything = compliance_map(robot, grid, A, B)
-    names = dict.fromkeys(name.strip() for name in ",".join(arguments.quantity).split(","))
+    names = dict.fromkeys(filter(None, (name.strip() for name in ",".join(arguments.quantity).split(","))))
+    if not names:
+        raise RobomillError("--quantity: no quantity is named; give C_yy, det_J or another (docs: file formats, map).")
     fields = [everything.field(name) for name in names]
     files = Written.before([Path(arguments.out)] if arguments.out else [])
     if arguments.out:

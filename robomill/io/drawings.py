@@ -7,7 +7,7 @@ from robomill.arguments import asked
 from robomill.errors import ToolpathError, UnitAskedError
 from robomill.files import DRAWING, check_size, name_of, read_file
 from robomill.io.dxf import Dxf, Read, metres
-from robomill.io.samples import find_sample
+from robomill.io.samples import sample_or_file
 from robomill.io.svg import Svg
 from robomill.provenance import Finding
 from robomill.spelled import to_give
@@ -53,7 +53,7 @@ def read_drawing(path: str | Path, *, unit: str = "") -> Drawing:
     >>> rm.read_drawing("bracket")
     <Drawing bracket.dxf: 5 contours on outline, slots, holes, 120.00 x 80.00 mm>
     """
-    file = find_sample("drawing", path) or path
+    file = sample_or_file("drawing", path, ToolpathError)
     return drawing_from_bytes(read_file(file, DRAWING, ToolpathError), name_of(file), unit)
 
 

@@ -47,11 +47,10 @@ def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
     >>> file.read_text().splitlines()[0]
     'X_mm,Y_mm,Z_mm,C_yy_um/N'
     """
-    check_place(path, f"a file that ends in {', '.join(SUFFIXES)}", WorkspaceError)
-    path, fields = Path(path), (fields,) if isinstance(fields, Field) else fields
+    path = map_place(path)
+    fields = (fields,) if isinstance(fields, Field) else fields
     for field in fields if isinstance(fields, Sequence) else (fields,):
         of_kind(field, Field, "Map", 'a list of fields, [found.field("C_yy")]', WorkspaceError)
-    suffix = path.suffix.lower()
     if not fields:
         raise WorkspaceError("Map: there is no quantity to write.")
     if any(field.grid is not fields[0].grid for field in fields):
@@ -60,11 +59,8 @@ def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice:
         raise WorkspaceError(f"Map: {twice} is there {names.count(twice)} times; a file has one column of each.")
-    if path.is_dir():
-        raise WorkspaceError(f"Map: {str(path)!r} is a folder; give the name of a file.")
-    if suffix not in SUFFIXES:
-        raise WorkspaceError(f"Map: {path.name!r} ends in {suffix or 'nothing'!r}; expected {', '.join(SUFFIXES)}.")
     with written(path, WorkspaceError) as place:
+        suffix = path.suffix.lower()
         if suffix == ".vti":
             _write_vti(place, fields)
         elif suffix == ".parquet":
@@ -72,6 +68,18 @@ def write_map(path: str | Path, fields: Sequence[Field]) -> Path:
         else:
             place.write_text(map_csv(fields), encoding="utf-8")
     return path
+
+
+def map_place(path: str | Path) -> Path:
+    """Where a map is written. Raises WorkspaceError for a folder, and for a name that says no format."""
+    check_place(path, f"a file that ends in {', '.join(SUFFIXES)}", WorkspaceError)
+    place = Path(path)
+    if place.is_dir():
+        raise WorkspaceError(f"Map: {str(path)!r} is a folder; give the name of a file.")
+    suffix = place.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise WorkspaceError(f"Map: {place.name!r} ends in {suffix or 'nothing'!r}; expected {', '.join(SUFFIXES)}.")
+    return place
 
 
 def map_csv(fields: Sequence[Field]) -> str:

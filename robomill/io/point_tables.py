@@ -23,7 +23,7 @@ from robomill.files import POINTS, check_size, name_of, read_file
 from robomill.io.columns import Columns, Layout, frame_columns, read_columns
 from robomill.provenance import Finding
 from robomill.spelled import one_of, to_give
-from robomill.toolpath.path import FEED, Toolpath
+from robomill.toolpath.path import FEED, MOST_FEED, Toolpath
 from robomill.toolpath.source import PointsSource
 from robomill.units import format_count, format_many, format_short, from_si, to_si, unit_label
 
@@ -93,9 +93,12 @@ def read_points(
 def points_from_bytes(data: bytes, name: str, unit: str = "", v_f: float | None = None) -> PointsSource:
     """What a person dropped or named, as ``read_points``."""
     check_size(len(data), POINTS, ToolpathError, name)
-    if v_f is not None and not 0.0 < v_f < math.inf:
+    if v_f is not None and not 0.0 < v_f <= MOST_FEED:
         found = "no number" if math.isnan(v_f) else format_short(v_f, "mm/min")
-        raise ToolpathError(f"{name}: the feed of all moves is {found}; expected more than 0.", where="feed")
+        most = format_short(MOST_FEED, "mm/min")
+        raise ToolpathError(
+            f"{name}: the feed of all moves is {found}; expected more than 0, and at most {most}.", where="feed"
+        )
     parquet = data.startswith(b"PAR1") or PurePath(name).suffix.lower() == ".parquet"
     columns, _ = _of_parquet(data, name, _layout(unit)) if parquet else read_columns(data, _layout(unit), name)
     return PointsSource(_path(columns, name, unit, v_f), name)
@@ -176,6 +179,9 @@ def _from(columns: Columns, v_f: float | None, given: dict[str, Any]) -> Toolpat
     feed = columns.values["feed"] if "feed" in columns else np.full(len(p), v_f)
     for k in np.flatnonzero(feed < 0.0)[:1]:
         raise columns.refuse(int(k), "feed", "found a feed below 0; expected 0 (a rapid) or more.")
+    for k in np.flatnonzero(feed > MOST_FEED)[:1]:
+        most = format_short(MOST_FEED, "mm/min")
+        raise columns.refuse(int(k), "feed", f"found {format_short(feed[k], 'mm/min')}; expected at most {most}.")
     made = Toolpath.from_points(np.zeros((len(p), 3)), np.zeros(len(p)), **given)
     cutting = feed > 0.0
     cutting[:1] = False

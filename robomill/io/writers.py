@@ -20,6 +20,7 @@ from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.zmap import ZMap
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.text import check_program_name
 
 FEWEST_FACES = 12  # of a box
 WHOSE = {
@@ -127,7 +128,7 @@ def write_material(path: str | Path, material: Material) -> Path:
     >>> rm.load_material(rm.write_material(pathlib.Path(tempfile.mkdtemp()) / "row.toml", row)) == row
     True
     """
-    _check(path, material, Material, CuttingError)
+    _check(path, material, Material, CuttingError, (".toml",))
     return _write(path, material_to_toml(material), CuttingError)
 
 
@@ -154,7 +155,8 @@ def write_gcode(path: str | Path, toolpath: Toolpath, *, units: str = "mm", titl
     Raises
     ------
     ToolpathError
-        For a cut without feed, or a spindle speed that is not known.
+        For a cut without feed, or a spindle speed that is not known; GCodeError, one of them, for a name that ends as
+        another file's.
 
     Examples
     --------
@@ -166,6 +168,7 @@ def write_gcode(path: str | Path, toolpath: Toolpath, *, units: str = "mm", titl
     0.05
     """
     _check(path, toolpath, Toolpath, ToolpathError)
+    check_program_name(Path(path))
     return _write(path, toolpath_to_gcode(toolpath, units=units, title=title), ToolpathError)
 
 

@@ -27,6 +27,7 @@ from robomill.units import format_si
 from robomill.version import __version__
 
 MARK = '<!doctype html>\n<html lang="en" data-made-by="robomill report">'  # how a report begins
+ENDS = (".html", ".htm")
 STYLE = Path(__file__).with_name("report.css")
 ALONE = "default-src 'none'; style-src 'unsafe-inline'"  # nothing is fetched, whatever words a file brings
 KEY = (
@@ -108,6 +109,8 @@ def write_report(path: str | Path, run: SimulationSetup | SimulationResult, reme
 
 def check_place(place: Path) -> None:
     """Refuse a place where something stands that is no report. Raises ProjectError."""
+    if place.suffix.lower() not in ENDS:
+        raise ProjectError(f"{shown_place(place)}: a page is written there; give a name that ends in .html.")
     if place.is_dir():
         raise ProjectError(f"{shown_place(place)}: this is a folder; give the name of a file.")
     if not place.parent.is_dir():

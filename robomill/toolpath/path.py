@@ -40,8 +40,14 @@ PER_MOVE: dict[str, type] = {
 POINTS = Quantity("Points", "mm", "array", name="p", key="p_mm", slip=10.0)
 SLOWEST = to_si(1.0, "mm/min")  # hardly a tool is fed as slowly: was it meant in m/s?
 SMALLEST = 0.1e-3  # m: hardly a path is as small: was it meant in m?
-FEED = Quantity("Feed", "mm/min", "array", name="v_f", key="feed_mm_min", slip=1.0, tiny=SLOWEST)
-SPINDLE = Quantity("Spindle speed", "1/min", "array", name="n_s", key="spindle_1_min", slip=1000.0)
+MOST_FEED = to_si(600_000.0, "mm/min")  # no machine is fed as fast: was it meant in um/min?
+TURNING = to_si(1.0, "1/min")  # no mill turns as slowly: was it meant in 1/s?
+FEED = Quantity(
+    "Feed", "mm/min", "array", name="v_f", key="feed_mm_min", least=0.0, most=MOST_FEED, slip=1.0, tiny=SLOWEST
+)
+SPINDLE = Quantity(
+    "Spindle speed", "1/min", "array", name="n_s", key="spindle_1_min", least=0.0, slip=1000.0, tiny=TURNING
+)
 
 
 def far_off(p: FloatArray, block: IntArray) -> tuple[int, str] | None:
@@ -305,8 +311,9 @@ def _each(declared: Quantity, value: Any, m: int) -> FloatArray:
     """One number or one a point, as (m,)."""
     found = as_floats(value, declared.label, (), error=ToolpathError)
     _check_count(found.shape, declared.label, m)
-    if (found < 0.0).any():
-        raise ToolpathError(f"{declared.label}: found {declared.short(found.min())}; expected 0 or more.")
+    refused = found[~declared.allows(found)]
+    if refused.size:
+        raise ToolpathError(f"{declared.label}: found {declared.short(refused[0])}; expected {declared.expected}.")
     return np.array(np.broadcast_to(found, (m,)))
 
 

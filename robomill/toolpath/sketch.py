@@ -18,7 +18,7 @@ from robomill.arrays import FloatArray, Rows, frozen, of_kind
 from robomill.errors import ToolpathError
 from robomill.quantities import choice, quantities, quantity, settle
 from robomill.spelled import Replaceable, in_units
-from robomill.toolpath.path import SLOWEST, Toolpath
+from robomill.toolpath.path import MOST_FEED, SLOWEST, SPINDLE, Toolpath
 from robomill.units import format_count, format_short, format_si, from_si, to_si
 from robomill.values import Said
 
@@ -64,7 +64,7 @@ class Element(Replaceable, Said):
     shape: Shape = choice("Shape", {shape: shape for shape in SHAPES})
     points: FloatArray = quantity("Points", "mm", shape=(None, 2), slip=FARTHEST, tiny=0.1e-3)
     depth: float = quantity("Depth", "mm", above=0.0, slip=DEEPEST, tiny=SHALLOWEST)
-    v_f: float = quantity("Feed", "mm/min", above=0.0, key="feed_mm_min", slip=FASTEST, tiny=SLOWEST)
+    v_f: float = quantity("Feed", "mm/min", above=0.0, most=MOST_FEED, key="feed_mm_min", slip=FASTEST, tiny=SLOWEST)
 
     if TYPE_CHECKING:
 
@@ -125,10 +125,19 @@ class Sketch(Replaceable, Said):
 
     elements: tuple[Element, ...] = ()
     v_plunge: float = quantity(
-        "Plunge feed", "mm/min", default=5e-3, above=0.0, key="plunge_mm_min", slip=FASTEST, tiny=SLOWEST
+        "Plunge feed",
+        "mm/min",
+        default=5e-3,
+        above=0.0,
+        most=MOST_FEED,
+        key="plunge_mm_min",
+        slip=FASTEST,
+        tiny=SLOWEST,
     )
     clearance: float = quantity("Clearance", "mm", default=5e-3, least=APPROACH, digits=2, slip=DEEPEST)
-    n_s: float = quantity("Spindle", "1/min", default=0.0, least=0.0, key="spindle_1_min", slip=1000.0)
+    n_s: float = quantity(
+        "Spindle", "1/min", default=0.0, least=0.0, key=SPINDLE.key, slip=SPINDLE.slip, tiny=SPINDLE.tiny
+    )
     v_f: float = quantity("Feed", "mm/min", default=30e-3, above=0.0, key="feed_mm_min", compare=False, slip=FASTEST)
     depth: float = quantity("Depth", "mm", default=2e-3, above=0.0, digits=2, compare=False, slip=DEEPEST)
     grid: float = quantity("Snap", "mm", default=5e-3, least=0.0, key="snap_mm", compare=False)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asking
-from robomill.arrays import FloatArray, Rows, digest, frozen
+from robomill.arrays import FloatArray, Rows, digest, frozen, of_kind
 from robomill.errors import GCodeError, ToolpathError
 from robomill.provenance import Finding
 from robomill.quantities import quantity, settle
@@ -71,6 +71,7 @@ class GCodeSource(Said):
         least=0.0,
         key=SPINDLE.key,
         slip=SPINDLE.slip,
+        tiny=SPINDLE.tiny,
         hint="The program turns its spindle nowhere; how fast does it turn at the machine?",
     )
     table: str = ""
@@ -98,6 +99,9 @@ class GCodeSource(Said):
 
     def __post_init__(self) -> None:
         settle(self, ToolpathError, "Program")
+        of_kind(self.text, str, "Program, text", 'rm.read_program("part.nc"), or its text', ToolpathError)
+        for name in ("name", "dialect"):
+            of_kind(getattr(self, name), str, f"Program, {name}", "a text", ToolpathError)
         if isinstance(self.wanted, Toolpath):
             object.__setattr__(self, "wanted", PointsSource(self.wanted))
         if self.wanted is not None and not hasattr(self.wanted, "read"):
@@ -192,8 +196,12 @@ class LinesSource(Said):
 
     start: FloatArray = quantity("start", "mm", shape=(None, 3), slip=POINTS.slip)
     end: FloatArray = quantity("end", "mm", shape=(None, 3), slip=POINTS.slip)
-    v_f: FloatArray = quantity("feed", "mm/min", shape=(None,), key=FEED.key, slip=FEED.slip, tiny=FEED.tiny)
-    n_s: float = quantity("Spindle speed", "1/min", default=0.0, least=0.0, key=SPINDLE.key, slip=SPINDLE.slip)
+    v_f: FloatArray = quantity(
+        "feed", "mm/min", shape=(None,), most=FEED.most, key=FEED.key, slip=FEED.slip, tiny=FEED.tiny
+    )
+    n_s: float = quantity(
+        "Spindle speed", "1/min", default=0.0, least=0.0, key=SPINDLE.key, slip=SPINDLE.slip, tiny=SPINDLE.tiny
+    )
     name: str = field(default="table of lines", compare=False)
 
     if TYPE_CHECKING:
@@ -248,6 +256,9 @@ class SketchSource(Said):
     name: str = field(default="sketch", compare=False)
     kind: ClassVar[Literal["sketch"]] = "sketch"
     block_name: ClassVar[str] = "shape"
+
+    def __post_init__(self) -> None:
+        of_kind(self.sketch, Sketch, "SketchSource, sketch", "rm.Sketch((rm.Element(...),))", ToolpathError)
 
     def _said(self) -> str:
         return f"{self.name}, {format_count(len(self.sketch.elements), 'shape')}"

@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 
 from robomill.errors import GCodeError
-from robomill.files import PROGRAM, check_size, read_file
+from robomill.files import PROGRAM, check_size, read_file, shown_place
 
 Source = str | bytes | bytearray | Path
 SUFFIXES = (
@@ -13,6 +13,11 @@ SUFFIXES = (
     *(".apt", ".aptsource", ".cls", ".cl", ".ncl", ".ncf", ".ptp", ".iso", ".h"),
     *(".din", ".dnc", ".fnc", ".hnc", ".ncc", ".pgm", ".prg", ".sub"),
 )
+NO_PROGRAMS = (
+    *(".toml", ".urdf", ".csv", ".parquet", ".json", ".jsonl", ".xlsx", ".dxf", ".svg", ".html", ".htm"),
+    *(".pdf", ".png", ".stl", ".obj", ".ply", ".3mf", ".vti", ".py"),
+)
+"""Endings of other files: a program of such a name would be taken for one."""
 
 DOS_END, FILLING = b"\x1a", b"\x1a\0 \t\r\n"  # Ctrl-Z ends a program from DOS, whose last block is filled up
 
@@ -33,6 +38,12 @@ def read_source(source: Source) -> tuple[bytes, str]:
     if _is_path(source):
         return _read_file(Path(source)), os.path.basename(source)
     return as_plain_bytes(source.encode("utf-8", "surrogateescape")), "program"
+
+
+def check_program_name(place: Path) -> None:
+    """Refuse to write a program under the name of another file. Raises GCodeError."""
+    if place.suffix.lower() in NO_PROGRAMS:
+        raise GCodeError(f"{shown_place(place)}: a program is written there; give a name that ends in .nc.")
 
 
 def split_lines(text: str) -> list[str]:

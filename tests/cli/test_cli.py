@@ -289,6 +289,20 @@ def test_a_map_of_which_nothing_is_reached_is_not_green(capsys) -> None:
     assert "The arm reaches none of these points" in out
 
 
+@pytest.mark.parametrize("quantity", ["C_yy,det_J", " C_yy , det_J ", "C_yy,det_J,", ",C_yy,,det_J"])
+def test_blanks_and_spare_commas_in_a_list_of_quantities_mean_nothing(capsys, quantity: str) -> None:
+    r = record(capsys, "map", "slavkovic_5r", "--quantity", quantity, "--z", "0", "--x", "0", "--y", "-1300")
+    assert [each["name"] for each in r["quantities"]] == ["C_yy", "det_J"]
+
+
+@pytest.mark.parametrize("quantity", ["", " ", ","])
+def test_a_map_of_nothing_is_refused(capsys, quantity: str) -> None:
+    words = ("map", "slavkovic_5r", "--quantity", quantity, "--z", "0", "--x", "0", "--y", "-1300")
+    code, _, err = run(capsys, *words)
+    assert code == 2
+    assert "--quantity: no quantity is named; give C_yy, det_J or another" in err
+
+
 def test_a_map_says_where_its_last_point_is_and_each_quantity_once(capsys) -> None:
     """With steps of 50 mm from 0 no point falls on 120."""
     words = ("--quantity", "C_yy,C_yy", "--z", "0", "--x", "0:120:50", "--y", "-1300")

@@ -74,6 +74,28 @@ def test_a_program_comes_in(capsys, come_in) -> None:
     assert record(capsys, "simulate", "paper_flute", "--program", "-")["max_deviation_mm"] == pytest.approx(0.251, 1e-2)
 
 
+@pytest.mark.parametrize("start", [b"", b"\xef\xbb\xbf", b"# from the CAM\n\n"])
+def test_points_come_in_and_are_told_from_a_program(capsys, come_in, start: bytes) -> None:
+    table = start + b"X_mm;Y_mm;Z_mm\n-50;0;-2\n50;0;-2\n"
+    come_in(table)
+    assert record(capsys, "gcode", "-", "--feed", "1800")["length_mm"]["feed"] == pytest.approx(100.0)
+    come_in(table)
+    found = record(capsys, "simulate", "paper_flute", "--program", "-", "--feed", "1800")
+    assert found["max_deviation_mm"] == pytest.approx(0.251, 1e-2)
+    come_in(b"(x,y,z)\nG21 G90\nS9000 M3\nG1 X0 Y0 Z-2 F300\nX50\nM2\n")
+    assert "standard input is a program" in refusal(capsys, "gcode", "-", "--feed", "1800")
+
+
+@pytest.mark.parametrize("name", ["bracket.dxf", "bracket.svg"])
+def test_a_drawing_comes_in_as_either_file(name: str, capsys, come_in) -> None:
+    file = samples_dir() / "drawings" / name
+    come_in(file.read_bytes())
+    found, other = record(capsys, "drawing", "-"), record(capsys, "drawing", file)
+    assert found["layers"] == other["layers"]
+    come_in(b"G1 X0\n")
+    assert "stdin.dxf" in refusal(capsys, "drawing", "-")
+
+
 def test_a_setup_comes_in_with_files_of_the_folder_one_stands_in(capsys, come_in, monkeypatch) -> None:
     monkeypatch.chdir(FLUTE)
     come_in((FLUTE / "setup.toml").read_bytes())
@@ -158,3 +180,26 @@ def test_what_is_read_is_never_written_over(own: Path, words, sentence: str, cap
     assert main(words) == 2
     assert sentence in capsys.readouterr().err
     assert {file.name: file.read_bytes() for file in own.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("identify my.toml mine.csv --out arm.txt", "a robot is written there; give a name that ends in .toml"),
+        ("identify my.toml mine.csv --sheet s.toml", "a table is written there; give a name that ends in .csv"),
+        ("place paper_flute --out moved.nc", "a set-up is written there; give a name that ends in .toml"),
+        ("report paper_flute --out page.pdf", "a page is written there; give a name that ends in .html or .htm"),
+        ("grade . --out marks.toml", "a table is written there; give a name that ends in .csv"),
+        ("compensate paper_flute --out x.toml", "x.toml: a program is written there; give a name that ends in .nc"),
+        ("drawing bracket --out x.svg", "x.svg: a program is written there; give a name that ends in .nc"),
+        ("map my.toml --quantity C_yy --x 0 --y 0 --z 0 --out m.toml", "'m.toml' ends in '.toml'; expected .csv"),
+        ("compensate paper_flute --out .", "this is a folder; give the name of a file"),
+        ("place paper_flute --out .", "this is a folder; give the name of a file"),
+        ("grade . --out .", "this is a folder; give the name of a file"),
+    ],
+)
+def test_nothing_is_written_under_a_name_that_says_another_kind(own: Path, words: str, sentence: str, capsys) -> None:
+    """Told before anything is computed."""
+    before = {file.name for file in own.iterdir()}
+    assert sentence in refusal(capsys, *words.split())
+    assert {file.name for file in own.iterdir()} == before

@@ -306,3 +306,31 @@ def test_places_in_mm_under_a_name_of_m_are_refused() -> None:
     with pytest.raises(RobomillError, match="tool frame: found 0.16 mm.* If 0.16 m is meant, give tool_xyz"):
         rm.Robot.from_dh(a_mm=[500, 400], tool_xyz_mm=[0, 0, 0.16])
     assert rm.Robot.from_dh(a_mm=[500, 400], tool_xyz_mm=[0, 0, 1.6]).T_tool[2, 3] == 0.0016
+
+
+@pytest.mark.parametrize(
+    ("slip", "words"),
+    [
+        (lambda: rm.Stock(lower_mm=[-0.05, -0.02, -0.01], upper_mm=[0.05, 0.02, 0]), "was it meant in m"),
+        (lambda: rm.Cutter("flat", diameter_mm=8000), "expected 0.001 mm to 2000 mm"),
+        (lambda: rm.TableTool(1, length=80), "give length=0.08 or length_mm=80"),
+        (lambda: rm.TableTool(1, 8), "Tool 1, cutter: expected a Cutter, found 8"),
+        (lambda: rm.GCodeSource(1), "Program, text: expected a text, found 1"),
+        (lambda: rm.GCodeSource("G1 X1", name=5), r"Program, name: expected a text, found 5\.$"),
+        (lambda: rm.SketchSource([]), "sketch: expected a Sketch"),
+        (lambda: rm.LayerCut("slots", depth_mm=2, feed_mm_min=1e9), "mm/min"),
+        (lambda: rm.LinesSource([[0, 0, 0]], [[0.05, 0, 0]], feed_mm_min=[1e9]), "600.000 mm/min"),
+        (lambda: rm.Sketch(spindle_1_min=0.2), "n_s=0.2 or spindle_1_min=12"),
+    ],
+)
+def test_a_slip_of_unit_or_kind_is_told_where_it_is_given(slip, words: str) -> None:
+    with pytest.raises(rm.RobomillError, match=words):
+        slip()
+
+
+def test_a_spindle_as_soft_as_its_stiffness_is_a_doubt_beside_the_result() -> None:
+    """20 N/µm under um/N: a newton would move the tool by 20 µm."""
+    setup = rm.load_setup("paper_flute").replace(step=20e-3)
+    for value, doubts in ((20.0, 1), (0.05, 0)):
+        run = rm.simulate(setup.replace(springs=[rm.SpindleSpring(lateral_um_N=value)]))
+        assert sum("in N/µm" in note.sentence for note in run.notes) == doubts

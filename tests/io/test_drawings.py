@@ -107,3 +107,12 @@ def test_a_drawing_of_points_alone_has_no_lines() -> None:
     page = '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm" viewBox="0 0 9 1e400">'
     with pytest.raises(ToolpathError, match=r"a\.svg: found no lines"):
         drawing_from_bytes(f'{page}<circle r="3"/><line x2="5"/></svg>'.encode(), "a.svg")
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"), [("nope", "are bracket, bracket.svg."), ("brackett", "did you mean 'bracket'?")]
+)
+def test_a_name_that_is_no_drawing_is_told_with_those_that_there_are(name: str, meant: str) -> None:
+    with pytest.raises(ToolpathError, match="no drawing of this name") as caught:
+        rm.read_drawing(name)
+    assert str(caught.value).endswith(meant)

@@ -89,9 +89,18 @@ def test_a_solid_is_written_under_its_own_ending_and_never_uncut(tmp_path) -> No
 
 def test_a_name_that_would_not_be_read_back_is_refused(tmp_path: Path) -> None:
     setup = rm.load_setup("paper_flute")
-    for write, value, ends in ((rm.write_robot, setup.robot, ".toml or .urdf"), (rm.write_setup, setup, ".toml")):
-        with pytest.raises(RobomillError, match=f"expected a name that ends in {ends}"):
+    row = rm.load_material("al7075_t6_carbide_ref190")
+    for write, value, ends in (
+        (rm.write_robot, setup.robot, ".toml or .urdf"),
+        (rm.write_setup, setup, ".toml"),
+        (rm.write_material, row, ".toml"),
+        (rm.write_report, setup, ".html"),
+    ):
+        with pytest.raises(RobomillError, match=f"a name that ends in {ends}"):
             write(tmp_path / "arm.txt", value)
+    for name in ("arm.toml", "PART.STL", "p.csv"):
+        with pytest.raises(ToolpathError, match="a program is written there; give a name that ends in .nc"):
+            rm.write_gcode(tmp_path / name, setup.toolpath)
     assert not list(tmp_path.iterdir())
 
 
