@@ -6,11 +6,13 @@ import streamlit as st
 from streamlit.starlette import App
 
 from robomill import ui
-from robomill.ui import front
+from robomill.learn.worked import of_the_run
+from robomill.ui import front, other
 from robomill.ui.arm import arm_at
 from robomill.ui.start import carved, story
 from robomill.ui.toolpath.doors import take_file
-from robomill.ui.verdict import NOT_COUNTED, decides_at
+from robomill.ui.verdict import NOT_COUNTED, decides_at, tiles_of_b
+from robomill.ui.worked import mathematics
 from robomill.units import format_limit
 
 HEIGHT = 285
@@ -33,7 +35,8 @@ def start() -> None:
 
     ui.headline(f"Start · {setup.name}", ui.verdict_sentence(result, unit), story.cause(result, unit))
     ui.open_question(result)
-    ui.tiles(ui.verdict_tiles(result, unit))
+    other.tiles(ui.verdict_tiles(result, unit), tiles_of_b)
+    mathematics(lambda: of_the_run(result, decides_at(result)), "start")
 
     left, middle, right = ui.split([1, 1.2, 0.8], "finished", gap="small")
     with left, st.container(border=True, height="stretch"):

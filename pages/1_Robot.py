@@ -3,10 +3,12 @@
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import push
+from robomill.learn.worked import at_the_pose
+from robomill.ui import other, push
 from robomill.ui.arm import arm
 from robomill.ui.robot import editors, pose
-from robomill.units import format_many, format_si, format_times
+from robomill.ui.worked import mathematics
+from robomill.units import format_many, format_times
 from robomill.viz.arm import displacement_scale
 
 project = ui.begin("Robot")
@@ -17,29 +19,8 @@ now, old = pose.compared(project, theta)
 moved, before = pose.moved(project, now, old, cut)
 
 ui.headline(f"Robot · {robot.title or robot.name}", moved.sentence(view.length), pose.lead(project, moved, cut))
-ui.tiles(
-    [
-        pose.tip_tile(moved, before, view.length),
-        ui.Tile(
-            "C_yy at this pose",
-            format_si(now.component("yy"), view.of("um/N"), 3),
-            "direct compliance along Y",
-            format_si(old.component("yy"), view.of("um/N"), 3) if old else "",
-        ),
-        ui.Tile(
-            "Largest compliance",
-            format_si(now.principal[0][-1], view.of("um/N"), 3),
-            f"in direction ({format_many(now.principal[1][:, -1], '1', 2)}) of the robot frame",
-            format_si(old.principal[0][-1], view.of("um/N"), 3) if old else "",
-        ),
-        ui.Tile(
-            "Distance to singularity, det(J)",
-            pose.det_value(now, view.of),
-            pose.det_words(now),
-            pose.det_value(old, view.of),
-        ),
-    ]
-)
+other.tiles(pose.tiles(view, now, old, (moved, before)), pose.tiles_of_b)
+mathematics(lambda: at_the_pose(now, moved.push.F, moved.delta), "robot")
 
 left, right = ui.split([5, 9], "page", gap="medium")
 with left:
@@ -61,3 +42,4 @@ with right:
         pose.share_bars(moved, dark)
     with numbers:
         pose.compliance_matrix(now, old)
+        pose.compliance_of_b()

@@ -3,7 +3,7 @@
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import fields, session
+from robomill.ui import fields, other, session
 from robomill.ui.maps import workspace
 
 project = ui.begin("Workspace")
@@ -20,7 +20,7 @@ if known is not None:
 
 ui.headline(f"Workspace · {robot.title or robot.name}", workspace.sentence(robot, known))
 if known is not None and box is not None:
-    ui.tiles(workspace.tiles(robot, view, box, known, unit))
+    other.tiles(workspace.tiles(robot, view, box, known, unit), workspace.tiles_of_b)
 else:
     ui.tiles(
         [

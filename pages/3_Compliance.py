@@ -3,18 +3,18 @@
 import streamlit as st
 
 from robomill import ui
-from robomill.improve.sensitivity import stiffened
-from robomill.ui import fields, push, running, session
+from robomill.learn.worked import at_the_pose
+from robomill.ui import other, session
 from robomill.ui.maps import compliance, plane, point, sheets
+from robomill.ui.worked import mathematics
 
 project = ui.begin("Compliance")
 robot, unit = project.setup.robot, project.view.length
 view = session.maps()
 title = f"Compliance · {robot.title or robot.name}"
 
-box = ui.attempt(fields.region, robot, view)
-known = ui.attempt(fields.overview, robot, view, box) if box is not None else None
-if box is None or known is None:
+now = ui.attempt(compliance.looked, project)
+if now is None:
     ui.headline(title, "There is nothing to map yet: see above.")
     ui.tiles(
         [ui.Tile(label, "–") for label in ("At the point", "Largest compliance", "Largest in the region", "Best joint")]
@@ -24,20 +24,10 @@ if box is None or known is None:
         plane.controls(robot, view)
     st.stop()
 
-factors = view.stiffening(robot)
-now = fields.stiffer(known, factors)
-cut = push.decided(running.quiet(project.setup))
-here, at_cut = push.selected(view, box, known, cut)
-found, old = here.with_robot(stiffened(robot, factors)), here.pose
-pushed = push.in_force(project.view, cut)
-of_cut = cut is not None and not pushed.axis
-moved = push.Moved.at(found.pose, pushed)
-if cut is not None and of_cut and at_cut:
-    moved = cut.moved.stiffer(factors)
-
-ui.headline(title, point.headline(found, moved, unit), point.lead(found, moved, cut, at_cut, unit))
-saved = compliance.saved_by(cut.moved.stiffer(factors), cut.line) if cut and of_cut else compliance.saved_by(moved, 0)
-ui.tiles(compliance.tiles(found, old, now, known, saved, view))
+found, old, moved, saved = now.found, now.here.pose, now.moved, now.saved
+ui.headline(title, point.headline(found, moved, unit), point.lead(found, moved, now.cut, now.at_cut, unit))
+other.tiles(now.tiles(), lambda theirs: compliance.looked(theirs).tiles())
+mathematics(lambda: at_the_pose(found.pose, moved.push.F, moved.delta), "compliance")
 
 left, right = ui.split([1, 2.7], "page")
 with left, st.container(key="inputs-compliance"):

@@ -1,9 +1,12 @@
 """The toolpath: a program, lines, points, a drawing or a sketch; the part zero; whether the arm can follow."""
 
+from functools import partial
+
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import pieces, tools
+from robomill.learn.worked import of_the_run
+from robomill.ui import other, pieces, tools
 from robomill.ui.running import path_of
 from robomill.ui.toolpath import details, drawing, question, view
 from robomill.ui.toolpath.doors import file_inputs
@@ -15,6 +18,8 @@ from robomill.ui.toolpath.reach import board_reach, path_reach
 from robomill.ui.toolpath.sketch import sketch_inputs
 from robomill.ui.toolpath.sketch_pad import sketch_pad
 from robomill.ui.toolpath.sources import kind_switch
+from robomill.ui.verdict import decides_at
+from robomill.ui.worked import mathematics
 
 project = ui.begin("Toolpath")
 setup, dark, unit = project.setup, ui.dark(), project.view.length
@@ -26,7 +31,9 @@ reach = ui.attempt(path_reach, setup) if path is not None else None
 result = ui.attempt(ui.result, setup) if reach is not None else None
 
 view.headline(source, path, reach, result, unit)
-view.tiles(source, path, reach, result, unit)
+other.tiles(view.tiles(source, path, reach, result, unit), view.tiles_of_b)
+if result is not None:
+    mathematics(partial(of_the_run, result, decides_at(result)), "toolpath")
 question.panel(path, "" if result is None else result.verdict.premise)
 
 program = source.kind == "program" and not drawing.shown()

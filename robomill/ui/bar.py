@@ -11,7 +11,7 @@ from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.verdict_words import TIGHT_FROM, Verdict
-from robomill.ui import job, pieces, running, session, verdict
+from robomill.ui import inputs, job, other, pieces, running, session, verdict
 from robomill.ui.job import Underway
 from robomill.ui.markup import Html
 from robomill.ui.pieces import Tile
@@ -39,6 +39,35 @@ def show() -> None:
             running.take(found)
             st.html(words(setup, found, unit))
             _to_worst(found)
+    _of_b(unit)
+
+
+def _of_b(unit: str) -> None:
+    """The same of the project that this one is held against, and what can be done with it."""
+    found = other.other()
+    if found is None:
+        return
+    with st.container(key="bar-other", horizontal=True, vertical_alignment="center", gap="small"):
+        with other.in_force() as project:
+            if project is None:
+                st.html(Html('<div class="rm-top"><div class="rm-cell">B is the same set-up as A.</div></div>'))
+            else:
+                _row_of_b(project.setup, unit)
+        if project is not None:
+            inputs.button("Take B", "other.take", "swap_horiz", other.take, type="tertiary", width="content")
+        inputs.button("End", "other.end", "close", other.choose, "", type="tertiary", width="content")
+
+
+def _row_of_b(setup: SimulationSetup, unit: str) -> None:
+    try:
+        result = other.result(setup)
+    except Underway as now:
+        st.html(words(setup, None, unit, "not computed yet", "B"))
+        now.show()
+    except RobomillError as exc:
+        st.html(words(setup, None, unit, str(exc), "B"))
+    else:
+        st.html(words(setup, result, unit, mark="B"))
 
 
 def _to_worst(result: SimulationResult) -> None:
@@ -65,21 +94,23 @@ def stand_at(result: SimulationResult, i: int) -> None:
         session.look(station=min(max(float(result.path.s[i]) / total, 0.0), 1.0))
 
 
-def words(setup: SimulationSetup, result: SimulationResult | None, unit: str, why: str = "") -> Html:
-    """The bar as HTML; ``why`` says that ``result`` is not that of ``setup``: it is greyed, or left out."""
-    name = _cell(setup.source.name, setup.name, "rm-name")
+def words(setup: SimulationSetup, result: SimulationResult | None, unit: str, why: str = "", mark: str = "") -> Html:
+    """The bar as HTML; ``why`` says that ``result`` is not that of ``setup``: it is greyed, or left out. ``mark`` is
+    the letter of the project, where it is not the one in force."""
+    name = _cell(f"{mark} · {setup.source.name}" if mark else setup.source.name, setup.name, "rm-name")
     if result is None:
         parts = [name, _gauge(None, unit), _cell(why, "Not computed", "rm-said")]
-        return _bar(parts, "unjudged")
+        return _bar(parts, "unjudged", mark)
     tone = verdict.tone(result.verdict)
     tiles = verdict.plain_tiles(result, unit)
     shown = [name, _gauge(result.verdict, unit), _verdict(result, tiles["share"], why)]
     shown += [_tile(tiles[each], said) for each, said in (("wall", "Wall"), ("floor", "Floor"), ("tip", "Tip"))]
-    return _bar([*shown, _force(result)], f"{tone} rm-old" if why else tone)
+    return _bar([*shown, _force(result)], f"{tone} rm-old" if why else tone, mark)
 
 
-def _bar(parts: Sequence[Html], look: str) -> Html:
-    return Html(f'<div class="rm-top {look}" role="region" aria-label="Verdict of the cut">{"".join(parts)}</div>')
+def _bar(parts: Sequence[Html], look: str, mark: str) -> Html:
+    of = f"Verdict of {mark}" if mark else "Verdict of the cut"
+    return Html(f'<div class="rm-top {look}" role="region" aria-label="{of}">{"".join(parts)}</div>')
 
 
 def _cell(label: str | Html, value: str | Html, look: str = "") -> Html:

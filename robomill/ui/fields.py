@@ -164,16 +164,19 @@ def coded_maps(
 
 
 @shared(
-    lambda one, other, grid, normal, tilt, name: (
+    lambda one, other, grid, normal, tilt, names: (
         *(one.digest(), other.digest(), grid.x, grid.y, grid.z),
-        *(normal, tilt, name),
+        *(normal, tilt, names),
     ),
     "Differences",
 )
-def coded_difference(one: Robot, other: Robot, grid: Grid, normal: str, tilt: tuple[float, float], name: str) -> Codes:
-    """By how much the quantity ``name`` of the ``other`` robot is larger than that of ``one``, over all planes."""
-    first, second = (values_of(robot, grid, normal, *tilt, (name,))[name] for robot in (one, other))
-    return coded(second - first)
+def coded_differences(
+    one: Robot, other: Robot, grid: Grid, normal: str, tilt: tuple[float, float], names: tuple[str, ...]
+) -> Mapping[str, Codes]:
+    """By how much the quantities ``names`` of the ``other`` robot are larger than those of ``one``, over all planes;
+    none where either does not reach."""
+    first, second = (values_of(robot, grid, normal, *tilt, names) for robot in (one, other))
+    return {name: coded(second.pop(name) - first.pop(name)) for name in names}
 
 
 def values_of(

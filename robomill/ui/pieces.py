@@ -52,6 +52,7 @@ class Tile:
     ``change`` says by how much it moved; both take the place of ``note`` while they are there.
     ``tone`` is "", "ok", "tight", "out" or "unjudged" (an edge; the words carry the meaning), or "open" (hatched);
     ``kind`` is a provenance; ``ranges`` are lines that say between which ends the value may lie instead, and over what.
+    ``other`` is the value of the project that this one, A, is held against, B.
     """
 
     label: str
@@ -62,6 +63,7 @@ class Tile:
     tone: str = ""
     kind: str = ""
     ranges: Sequence[str] = ()
+    other: str = ""
 
 
 def tiles(items: Sequence[Tile]) -> None:
@@ -78,11 +80,16 @@ def _tile(tile: Tile) -> str:
         note = Html(f'was <span class="rm-was">{html.escape(tile.was)}</span>{moved}')
     mark = f"{badge(tile.kind)} " if tile.kind else ""
     look = " rm-long" if "×" in number else ""
+    value, beside = (f"<i>A</i>{value}", _of_b(tile.other)) if tile.other else (value, "")
     ranges = "".join(f'<div class="rm-range">{unparted(html.escape(words))}</div>' for words in tile.ranges)
     return (
         f'<div class="rm-tile {html.escape(tile.tone)}"><div class="rm-label">{subscripts(tile.label)}</div>'
-        f'<div class="rm-value{look}">{value}</div><div class="rm-sub">{mark}{note}</div>{ranges}</div>'
+        f'<div class="rm-value{look}">{value}</div>{beside}<div class="rm-sub">{mark}{note}</div>{ranges}</div>'
     )
+
+
+def _of_b(value: str) -> Html:
+    return Html(f'<div class="rm-other"><i>B</i>{unparted(html.escape(value))}</div>')
 
 
 def subscripts(text: str) -> Html:

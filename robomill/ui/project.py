@@ -62,6 +62,7 @@ class View:
         default="cut",
     )
     theta: FloatArray | None = number("Joint angles", shape=(None,), optional=True)
+    beside: str = ""  # what it is held against, as ``ui.other`` says it
 
     def __post_init__(self) -> None:
         settle(self, ProjectError, "View")

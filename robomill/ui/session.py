@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -183,6 +183,18 @@ def remembered(past: list[Project]) -> list[Project]:
         while len(past) > 1 and weight(past) > MAX_HISTORY_BYTES:
             past = past[1:]
     return past
+
+
+@contextlib.contextmanager
+def as_if(other: Project) -> Iterator[Project]:
+    """As if ``other`` were in force, with nothing before it: for what a page says of it then. It is not kept."""
+    held = store()
+    now = held.project, held.past
+    held.project, held.past = other, []
+    try:
+        yield other
+    finally:
+        held.project, held.past = now
 
 
 def look(**fields: Any) -> None:

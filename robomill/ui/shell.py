@@ -10,7 +10,7 @@ from robomill.io.texts import read_text
 from robomill.ui import arriving, bar, declared, handing, inputs, menu, pieces, preparing, rendered, session
 from robomill.ui.closing import settle
 from robomill.ui.commons import weight
-from robomill.ui.keeping import autosave, snapshots
+from robomill.ui.keeping import against, autosave, snapshots
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
 from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_to_toml
@@ -162,6 +162,8 @@ def _files(held: session.Store) -> None:
     handing.row(project)
     if st.button("Keep and compare", key="snapshots", icon=":material/bookmarks:", width="stretch", type="tertiary"):
         snapshots.show()
+    if st.button("Compare A and B", key="other.panel", icon=":material/compare:", width="stretch", type="tertiary"):
+        against.show()
     waiting = held.refused.get("project.file")  # here as well: the open popover lies over the sentence beneath the box
     if waiting:
         error(waiting[1])

@@ -13,8 +13,9 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import decides_at as decides_at
 from robomill.simulation.tooth import LEFT_OUT
 from robomill.simulation.verdict_words import TITLES, Reading, Verdict, said, way
-from robomill.ui import cached, pieces, session, uncertainty
+from robomill.ui import cached, other, pieces, session, uncertainty
 from robomill.ui.pieces import Tile
+from robomill.ui.project import Project
 from robomill.units import format_beside, format_count, format_limit, format_many, format_share, format_si
 
 WORDS = TITLES
@@ -56,6 +57,11 @@ def plain_tiles(result: SimulationResult, unit: str = "mm") -> dict[str, Tile]:
     if verdict.premise:  # what was stated for another path is not shown as if it were known
         made = {name: replace(tile, tone=tone(verdict)) for name, tile in made.items()}
     return made
+
+
+def tiles_of_b(project: Project) -> list[Tile]:
+    """The same of the project that the one in force is held against. Raises its refusal, and ``Underway``."""
+    return list(plain_tiles(other.result(project.setup), project.view.length).values())
 
 
 def ranges_of(result: SimulationResult) -> tuple[Range, ...]:

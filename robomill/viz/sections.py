@@ -71,8 +71,9 @@ class SectionDrawing:
         return bool(np.isfinite([getattr(self, name) for name in names]).all())
 
 
-def section_figure(drawing: SectionDrawing, *, dark: bool) -> Chart:
-    """The drawing, to one scale in both directions; the reader looks along the feed, left is left."""
+def section_figure(drawing: SectionDrawing, *, dark: bool, beside: SectionDrawing | None = None) -> Chart:
+    """The drawing, to one scale in both directions; the reader looks along the feed, left is left. With another drawing
+    ``beside`` it, both are to the same scale."""
     p, d = palette(dark), drawing
     fig = figure(dark=dark, height=HEIGHT, revision=f"section-{d.kind}", margin={"l": 8, "r": 8, "t": 26, "b": 8})
     good = np.isfinite(d.machined)
@@ -80,6 +81,9 @@ def section_figure(drawing: SectionDrawing, *, dark: bool) -> Chart:
     if len(u) == 0:
         return fig
     across, upwards = _ranges(d, u, z)
+    if beside is not None and (there := np.isfinite(beside.machined)).any():
+        others = _ranges(beside, beside.u[there], beside.machined[there])
+        across, upwards = (_as_long(*both) for both in zip((across, upwards), others, strict=True))
     bottom = float(np.min(z)) - 40.0 * abs(upwards[1] - upwards[0])
     if d.kind in ("groove", "step", "pocket") and not d.has("floor"):
         bottom = float(np.min(z))  # cut through: what lies below is no material
@@ -107,6 +111,12 @@ def _ranges(d: SectionDrawing, u: FloatArray, z: FloatArray) -> tuple[list[float
     low = d.floor if d.has("floor") else float(np.min(z))
     cut = max(d.top - low, 0.02 * float(np.ptp(u)))
     return [float(np.min(u)), float(np.max(u))], [low - cut * UNDER / CUT, d.top + cut * OVER / CUT]
+
+
+def _as_long(ends: list[float], other: list[float]) -> list[float]:
+    """``ends`` moved apart, about their middle, until they are as far from each other as those of the ``other``."""
+    grow = max(0.5 * ((other[1] - other[0]) - (ends[1] - ends[0])), 0.0)
+    return [ends[0] - grow, ends[1] + grow]
 
 
 def _dimensions(fig: Chart, d: SectionDrawing, dark: bool) -> None:

@@ -35,3 +35,33 @@ def test_the_step_of_a_plane_is_a_round_number() -> None:
     box = fields.region(robot, view)
     assert fields.plane_step(robot, view, box, "z") == 0.02
     assert fields.plane(robot, view, box, "z", 0.0).shape == (61, 31, 1)
+
+
+def test_a_difference_of_maps_is_that_of_two_arms_each_by_itself() -> None:
+    """Cell by cell: inverse kinematics and C of either arm alone; none where either does not reach."""
+    one = rm.load_robot("slavkovic_5r")
+    limits = one.limits.copy()
+    limits[0] = [-0.2, 0.2]  # it does not turn aside as far
+    other = stiffened(one, [1.0, 0.5, 1.0, 1.0, 2.0]).replace(limits=limits)
+    grid = box_grid(*PAPER_BOX, 0.3)
+    names = ("C_yy", "C_yz")
+    found = fields.coded_differences(one, other, grid, "z", (0.0, 0.0), names)
+    for name in names:
+        a, b = ("xyz".index(axis) for axis in name[2:])
+        low, high, mean = [], [], []
+        for z in grid.z:
+            apart = []
+            for x in grid.x:
+                for y in grid.y:
+                    T = rm.pose_from_world([x, y, z, 0.0, 0.0])
+                    both = [rm.inverse_kinematics(arm, T) for arm in (one, other)]
+                    if all(each.reached for each in both):
+                        C = [rm.cartesian_compliance(arm, ik.theta) for arm, ik in zip((one, other), both, strict=True)]
+                        apart.append(float(C[1][a, b] - C[0][a, b]))
+            assert 0 < len(apart) < len(grid.x) * len(grid.y), "some cells are reached by one arm only"
+            low.append(min(apart))
+            high.append(max(apart))
+            mean.append(float(np.mean(apart)))
+        np.testing.assert_allclose(found[name].least, low, rtol=1e-4, atol=1e-12)
+        np.testing.assert_allclose(found[name].most, high, rtol=1e-4, atol=1e-12)
+        np.testing.assert_allclose(found[name].mean, mean, rtol=1e-4, atol=1e-12)

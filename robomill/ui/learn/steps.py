@@ -22,14 +22,17 @@ from robomill.learn.handout import handout, notes
 from robomill.learn.lesson import COUNT, TITLES, Bars, Lesson
 from robomill.learn.lessons import lesson
 from robomill.learn.marking import check
+from robomill.learn.push import Push
 from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.arm import arm
+from robomill.ui.learn import arrow as arrow_board
 from robomill.ui.learn.lesson import ASPECT, BIG, HEIGHT
 from robomill.ui.markup import unparted
 from robomill.ui.point import InHand
 from robomill.units import format_si, format_times
 from robomill.viz.arm import ArmScene, displacement_scale
 
+DRAWN_IN = 1  # the lesson whose prediction is an arrow, too
 LONG = 60  # characters of a question that stands in smaller type
 STEPS = ("Predict", "See", "Why", "Break it")
 EXERCISES = "exercises"
@@ -138,9 +141,9 @@ def show(found: InHand, now: Place) -> None:
         left, right = pieces.split([55, 45], "steps", gap="medium")
         with right:
             if not (now.projector and now.step >= 3):  # the room is for the reason
-                _predict(given)
+                _predict(given, found.pose, now.step >= 2)
             if now.step >= 2:
-                _see(given)
+                _see(given, found.pose)
             if now.step >= 3:
                 st.html(f'<p class="rm-say">{unparted(pieces.subscripts(given.reason))}</p>')
                 st.latex(given.equation)
@@ -154,12 +157,22 @@ def show(found: InHand, now: Place) -> None:
                 st.html(_bars(given.bars))
 
 
-def _predict(given: Lesson) -> None:
+def _predict(given: Lesson, pose: PoseReport, revealed: bool) -> None:
     said = dict(session.kept(SAID, {}))
     key = str(given.number)
 
     def take(value: object) -> None:
         session.keep(SAID, {**session.kept(SAID, {}), key: value})
+        arrow_board.forget()
+
+    if given.number == DRAWN_IN:
+        push = Push.of(pose.C)
+        pieces.note("Draw where the tip goes: click or drag, or turn the arrow with the arrow keys; or choose below.")
+        arrow_board.board(push, given.moved if revealed else None)
+        drawn = session.kept(arrow_board.DRAWN)
+        if drawn is not None:
+            said[key] = list(push.answers).index(arrow_board.answer(push, drawn))
+            session.keep(SAID, said)
 
     with st.container(key=f"learn-said-{given.number}"):
         if given.typed is not None:
@@ -172,7 +185,7 @@ def _predict(given: Lesson) -> None:
         inputs.choice("Your prediction", f"learn.choice.{key}", names, at, take, look)
 
 
-def _see(given: Lesson) -> None:
+def _see(given: Lesson, pose: PoseReport) -> None:
     said = session.kept(SAID, {}).get(str(given.number))
     words = f"<b>{unparted(html.escape(given.answer))}</b>"
     judged = ""
@@ -182,6 +195,8 @@ def _see(given: Lesson) -> None:
         chosen = given.choices[said]
         told = "" if chosen.told == given.answer else chosen.told
         judged = "You are right." if said == given.right else f"Look again. You said: {chosen.text}. {told}"
+        if given.number == DRAWN_IN:
+            judged = f"{judged} {arrow_board.words(Push.of(pose.C), given.moved)}".rstrip()
     st.html(f'<p class="rm-say">{words}</p>' + (f'<p class="rm-say">{html.escape(judged)}</p>' if judged else ""))
 
 

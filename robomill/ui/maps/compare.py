@@ -135,7 +135,7 @@ def panels(planes: Planes, unit: str) -> Compared:
 
 def _apart(planes: Planes, first: Robot, other: Robot, name: str) -> Codes:
     view = planes.region.view
-    return fields.coded_difference(first, other, planes.grid, planes.normal, (view.A, view.B), name)
+    return fields.coded_differences(first, other, planes.grid, planes.normal, (view.A, view.B), (name,))[name]
 
 
 def _robot(key: str, robot: Robot, view: MapView) -> Robot:

@@ -11,11 +11,11 @@ from robomill.compliance.at_pose import PoseReport
 from robomill.improve.sensitivity import deflection_sensitivity, stiffened
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.ui import declared, inputs, pieces, push, session, shell
+from robomill.ui import declared, fields, inputs, pieces, push, running, session, shell
 from robomill.ui.maps import plane
 from robomill.ui.point import InHand, place
-from robomill.ui.project import MapView
-from robomill.ui.push import Moved
+from robomill.ui.project import MapView, Project
+from robomill.ui.push import Decided, Moved, Push
 from robomill.units import UNITS, format_many, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 from robomill.workspace.fields import ComplianceMap
@@ -50,6 +50,58 @@ def saved_by(moved: Moved, line: int) -> Saved | None:
     beside = moved.delta - moved.delta_joint.sum(axis=0)  # what springs give, which no joint takes away
     found = deflection_sensitivity(np.vstack([moved.delta_joint, beside]))
     return Saved(moved.size, found.gain[:-1], line)
+
+
+@dataclass(frozen=True, eq=False)
+class Looked:
+    """What the page looks at: the view of the maps, the region coarsely ``known``, the point in hand ``here``, whether
+    that is where the ``cut`` is decided, and what pushes there."""
+
+    view: MapView
+    known: ComplianceMap
+    here: InHand
+    at_cut: bool
+    cut: Decided | None
+    pushed: Push
+
+    @property
+    def factors(self) -> FloatArray:
+        """(n,) how much stiffer each joint is looked at."""
+        return self.view.stiffening(self.known.robot)
+
+    @property
+    def found(self) -> InHand:
+        """The point in hand with the joints so much stiffer."""
+        return self.here.with_robot(stiffened(self.known.robot, self.factors))
+
+    @property
+    def moved(self) -> Moved:
+        """What the push does there."""
+        if self.cut is not None and not self.pushed.axis and self.at_cut:
+            return self.cut.moved.stiffer(self.factors)
+        return Moved.at(self.found.pose, self.pushed)
+
+    @property
+    def saved(self) -> Saved | None:
+        """Which joint to stiffen: for the cut where its force pushes, else for what is pushed at the point."""
+        if self.cut is not None and not self.pushed.axis:
+            return saved_by(self.cut.moved.stiffer(self.factors), self.cut.line)
+        return saved_by(self.moved, 0)
+
+    def tiles(self) -> list[pieces.Tile]:
+        """The page's."""
+        now = fields.stiffer(self.known, self.factors)
+        return tiles(self.found, self.here.pose, now, self.known, self.saved, self.view)
+
+
+def looked(project: Project) -> Looked:
+    """What the page looks at in a project. Raises WorkspaceError, and ``Underway``."""
+    robot, view = project.setup.robot, session.maps()
+    box = fields.region(robot, view)
+    known = fields.overview(robot, view, box)
+    cut = push.decided(running.quiet(project.setup))
+    here, at_cut = push.selected(view, box, known, cut)
+    return Looked(view, known, here, at_cut, cut, push.in_force(project.view, cut))
 
 
 def tiles(

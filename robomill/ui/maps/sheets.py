@@ -10,11 +10,10 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.compliance.components import COMPONENTS, CROSS, DIRECT, symmetric
-from robomill.improve.sensitivity import stiffened
 from robomill.paper import Point
 from robomill.robot.model import Robot
 from robomill.ui import declared, inputs, pieces, session
-from robomill.ui.maps import board, compare, lines, plane
+from robomill.ui.maps import board, compare, lines, plane, sides
 from robomill.ui.maps.board import Planes
 from robomill.ui.maps.plane import Region
 from robomill.ui.point import InHand
@@ -57,8 +56,7 @@ def um() -> str:
 
 def stiffer(region: Region) -> Robot:
     """The robot with the what-if factors in force."""
-    changed = bool((region.factors != 1.0).any())
-    return stiffened(region.robot, region.factors) if changed else region.robot
+    return sides.looked_at(region.robot, region.factors)
 
 
 def draw(
@@ -94,26 +92,18 @@ def _columns(planes: Planes, robot: Robot, names: Sequence[str]) -> Mapping[str,
 
 def _nine(region: Region) -> None:
     view, planes, unit = region.view, Planes.of(region, len(NAMES)), um()
-    robot = stiffer(region)
-    known = planes.codes(NAMES)
-    now = planes.codes(NAMES, robot) if robot is not region.robot else known
-    direct, cross = ([known[f"C_{c}"] for c in ROWS[kind]] for kind in ("direct", "cross"))
-    label = unit_label(unit)
-    if view.common:
-        scales = {"main": Scale.signed(f"C, {label}", [ends([*direct, *cross], unit)])}
-    else:
-        scales = {
-            "main": Scale(f"direct terms, {label}", *span(ends(direct, unit))),
-            "cross": Scale.signed(f"cross terms, {label}", [ends(cross, unit)]),
-        }
+    which = sides.side(stiffer(region))
+    now = which.codes(planes, NAMES)
+    # What the factors change is said beside the maps of the project in force only.
+    before = planes.codes(NAMES) if which.name == "a" and which.a is not region.robot else now
     rows: list[list[PlaneMap | None]] = []
     for i, names in enumerate(MATRIX):
         row: list[PlaneMap | None] = []
         for j, c in enumerate(names):
             codes = now[f"C_{c}"]
             notes = extremes(codes, unit)
-            if now is not known:
-                change = from_si(codes.mean - known[f"C_{c}"].mean, unit)
+            if before is not now:
+                change = from_si(codes.mean - before[f"C_{c}"].mean, unit)
                 notes = [note + _moved(by) for note, by in zip(notes, change, strict=True)]
             scale = "main" if view.common or i == j else "cross"
             row.append(PlaneMap(f"C_{'xyz'[i]}{'xyz'[j]}", codes, unit, scale, notes))
@@ -121,16 +111,29 @@ def _nine(region: Region) -> None:
     about = (
         "One scale, centred on zero."
         if view.common
+        else "The middle of the colours is zero."
+        if which.name == "apart"
         else "Direct terms: dark is stiff. Cross terms: the middle of the colours is zero."
     )
     draw(
         planes,
         rows,
-        scales,
-        "nine",
-        f"{about} Click a cell to select it.",
-        lambda: _columns(planes, robot, NAMES),
+        _scales_of_nine(which, planes, view.common, unit),
+        which.file("nine"),
+        f"{which.about}{about} Click a cell to select it.",
+        lambda: which.columns(planes, NAMES),
     )
+
+
+def _scales_of_nine(which: sides.Side, planes: Planes, common: bool, unit: str) -> dict[str, Scale]:
+    """The scales of the direct and of the cross terms; one scale for both where it is ``common``."""
+    label, drawn = unit_label(unit), which.both(planes, NAMES)
+    direct, cross = (ends([each[f"C_{c}"] for each in drawn for c in ROWS[k]], unit) for k in ("direct", "cross"))
+    if common:
+        return {"main": Scale.signed(f"C, {label}", [direct, cross])}
+    title = f"direct terms, {label}"
+    main = Scale.signed(title, [direct]) if which.name == "apart" else Scale(title, *span(direct))
+    return {"main": main, "cross": Scale.signed(f"cross terms, {label}", [cross])}
 
 
 def span(values: FloatArray) -> tuple[float, float]:
@@ -204,19 +207,20 @@ def _one(region: Region) -> None:
     known = map_quantities(robot, "compliance")
     titles = {name: what.title for name, what in known.items()}
     chosen = declared.seen("maps.one", inputs.LISTED, titles, "Quantity")
-    what, now = known[chosen], stiffer(region)
+    what = known[chosen]
+    which = sides.of_quantity(what, stiffer(region))
     planes = Planes.of(region, 1)
     unit = session.project().view.of(what.unit)
-    scale = Scale.of(what, ends([planes.codes([chosen])[chosen]], unit), robot.joint_numbers, unit)
-    codes = planes.codes([chosen], now)[chosen]
+    scale = which.scale(what, planes, unit)
+    codes = which.codes(planes, [chosen])[chosen]
     notes = extremes(codes, unit) if scale.kind not in ("joints", "reach") else ()
     draw(
         planes,
         [[PlaneMap(what.title, codes, unit, notes=notes)]],
         {"main": scale},
-        "one",
-        what.meaning,
-        lambda: _columns(planes, now, [chosen]),
+        which.file("one"),
+        which.about + what.meaning,
+        lambda: which.columns(planes, [chosen]),
     )
 
 

@@ -11,14 +11,16 @@ import streamlit as st
 from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.at_pose import at_pose
 from robomill.kinematics.dexterity import near_singular
+from robomill.learn.worked import at_the_pose
 from robomill.robot.model import Robot
 from robomill.ui import declared, fields, inputs, pieces, running, session, shell
 from robomill.ui.cut import path_there
-from robomill.ui.maps import plane
+from robomill.ui.maps import plane, sides
 from robomill.ui.maps.board import Planes, beneath, board
 from robomill.ui.maps.plane import Region
 from robomill.ui.point import SLACK, in_hand, middle
-from robomill.ui.project import MapView
+from robomill.ui.project import MapView, Project
+from robomill.ui.worked import mathematics
 from robomill.units import (
     NOT_REACHED,
     UNITS,
@@ -33,7 +35,7 @@ from robomill.units import (
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.chart import Chart
 from robomill.viz.maps import Scale
-from robomill.viz.planes import PlaneMap, ends, extremes
+from robomill.viz.planes import PlaneMap, extremes
 from robomill.viz.theme import palette
 from robomill.viz.voxels import voxel_trace, widen, wire_box
 from robomill.workspace.fields import ComplianceMap
@@ -72,6 +74,15 @@ def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceMap, unit
         pieces.Tile("Room to joint limits", nearest, "at the worst cell; 100 % is mid-range"),
         pieces.Tile("Largest box in reach", size, note, kind="computed"),
     ]
+
+
+def tiles_of_b(project: Project) -> list[pieces.Tile]:
+    """The same of the project that the one in force is held against. Raises its refusal, and ``Underway``."""
+    robot, view = project.setup.robot, session.maps()
+    box = fields.region(robot, view)
+    fields.proposed(robot, "largest", view.A, view.B)
+    known = fields.field(robot, fields.solid(robot, box), view.A, view.B)
+    return tiles(robot, view, box, known, project.view.length)
 
 
 def box_size(size: FloatArray, unit: str) -> str:
@@ -202,26 +213,28 @@ def _pair(region: Region) -> None:
 def _board(planes: Planes, ats: list[float], settle: Callable[[list[float]], None]) -> None:
     """One or two planes of the quantity on a scale that stays while they move."""
     region = planes.region
-    robot, what = region.robot, map_quantity(region.robot, region.view.quantity)
+    what = map_quantity(region.robot, region.view.quantity)
+    which = sides.of_quantity(what, region.robot)
     unit = session.project().view.of(what.unit)
-    codes = planes.codes([what.name])[what.name]
+    codes = which.codes(planes, [what.name])[what.name]
     if not codes.reached:
         pieces.note("Nothing of this region is reached.")
         return
-    scale = Scale.of(what, ends([codes], unit), robot.joint_numbers, unit)
+    scale = which.scale(what, planes, unit)
     notes = extremes(codes, unit, UNITS[unit].digits) if scale.kind != "reach" else ()
     row: list[PlaneMap | None] = [
-        PlaneMap(what.title, codes, unit, notes=notes, slider=side, low=False) for side in range(len(ats))
+        PlaneMap(what.title, codes, unit, notes=notes, slider=k, low=False) for k in range(len(ats))
     ]
     sheet = planes.sheet([row], {"main": scale}, 735, 460 if len(ats) == 1 else 400)
     point = region.view.point
     selected = None if point is None else (float(point[0]), float(point[1]), float(point[2]))
-    board(planes, sheet, f"workspace-{what.name}" + "-pair" * (len(ats) > 1), ats, settle, selected)
+    file = which.file(f"workspace-{what.name}")
+    board(planes, sheet, file + "-pair" * (len(ats) > 1), ats, settle, selected)
     dark = "Dark: far from a limit of the arm. Bright: near one. " if scale.kind == "able" else ""
     beneath(
-        f"{dark}The colours stay while the plane moves.",
-        lambda: _columns(planes.known(at=ats[0]), what),
-        f"workspace-{what.name}",
+        f"{which.about}{dark}The colours stay while the plane moves.",
+        lambda: which.columns(planes, [what.name], ats[0]),
+        file,
     )
     _selected(region, what)
 
@@ -243,6 +256,8 @@ def _selected(region: Region, what: MapQuantity) -> None:
             f"{format_number(value, scale.digits)} {unit_label(unit)}".strip() if np.isfinite(value) else "not reached"
         )
     pieces.note(f"Selected point {where}: {what.title} {said}. The page Compliance shows what it gives there.")
+    x, y, z = point.tolist()
+    mathematics(lambda: at_the_pose(in_hand(region.robot, (x, y, z), view.A, view.B).pose), "workspace")
 
 
 def _columns(known: ComplianceMap, what: MapQuantity) -> dict[str, FloatArray]:

@@ -7,9 +7,10 @@ import numpy as np
 import streamlit as st
 
 from robomill.cutting.force import ForceSpread
+from robomill.learn.worked import of_the_run
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.spread import AlloySpread, alloy_spread, peak_force
-from robomill.ui import cached, inputs, pieces, running, session
+from robomill.ui import cached, inputs, other, pieces, running, session
 from robomill.ui import evidence as evidence_panel
 from robomill.ui import tools as tools_panel
 from robomill.ui.arm import arm_at
@@ -22,7 +23,8 @@ from robomill.ui.milling import scrubber as linked
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling import station as station_views
 from robomill.ui.pieces import Tile
-from robomill.ui.verdict import NOT_COUNTED, decides_at, verdict_tiles
+from robomill.ui.verdict import NOT_COUNTED, decides_at, tiles_of_b, verdict_tiles
+from robomill.ui.worked import mathematics
 from robomill.units import format_count, format_limit, format_many, format_si
 
 QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}
@@ -142,7 +144,8 @@ def _numbers(result: SimulationResult, i: int, spread: AlloySpread | None) -> No
     """What holds at the position, and the verdict's tiles."""
     linked.where(result, i, spread)
     pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
-    pieces.tiles(tiles(result, verdict_tiles(result, session.project().view.length)))
+    other.tiles(tiles(result, verdict_tiles(result, session.project().view.length)), tiles_of_b)
+    mathematics(lambda: of_the_run(result, decides_at(result)), "milling")
     if result.worst >= 0:
         st.page_link("pages/7_Improve.py", label="What would fix it?", icon=":material/build:")
 

@@ -11,7 +11,7 @@ from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components
 from robomill.simulation.tools import cutting_numbers
 from robomill.surface.groove import GrooveSection
-from robomill.ui import cached, declared, inputs, pieces, session, shell
+from robomill.ui import cached, declared, inputs, other, pieces, session, shell
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling.scrubber import station_m
 from robomill.units import format_si, from_si, unit_label
@@ -106,25 +106,37 @@ def dial(
 
 
 def section(result: SimulationResult, i: int, dark: bool) -> Any:
-    """The dimensioned section at the station; returns it."""
-    unit = session.project().view.length
+    """The dimensioned section at the station, and to the same scale that of the project beside; returns the first."""
     found = pieces.attempt(cached.groove, result.setup, station_m(result))
     if found is None:
         return None
+    theirs = other.held()
+    beside = None if theirs is None else pieces.attempt(cached.groove, theirs.setup, station_m(theirs))
+    _section(result, found, beside, dark)
+    if theirs is not None and beside is not None:
+        pieces.strong("B, to the same scale")
+        _section(theirs, beside, found, dark, "-of-b")
+    return found
+
+
+def _section(
+    result: SimulationResult, found: GrooveSection, beside: GrooveSection | None, dark: bool, key: str = ""
+) -> None:
+    unit = session.project().view.length
     if not len(found.w) or found.kind == "unknown":
         pieces.note(f"No section here: {found.note}.")
-        return found
+        return
+    scale = section_drawing(beside, unit) if beside is not None and len(beside.w) else None
     pieces.figure(
-        section_figure(section_drawing(found, unit), dark=dark),
-        "linked-section",
-        name="sections",
+        section_figure(section_drawing(found, unit), dark=dark, beside=scale),
+        f"linked-section{key}",
+        name=f"sections{key}",
         table=lambda: result.sections.columns(),
         caption=f"Section after {format_si(station_m(result), unit, 1)} of cut, looking along the feed, to scale, in "
         f"{unit_label(unit)}. Dashed: the ideal surface."
         + (f" {found.note[0].upper()}{found.note[1:]}." if found.kind == "nothing" else ""),
         alt=section_words(found, unit),
     )
-    return found
 
 
 def section_words(section: GrooveSection, unit: str) -> str:

@@ -9,13 +9,13 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport, at_pose
 from robomill.robot.model import Robot
-from robomill.ui import inputs, pieces, point, push, session
+from robomill.ui import cached, inputs, other, pieces, point, push, session
 from robomill.ui.box import NumberBox
-from robomill.ui.project import Project
+from robomill.ui.project import Project, View
 from robomill.ui.push import Decided, Moved
 from robomill.ui.typed import said_below
 from robomill.ui.verdict import previous
-from robomill.units import format_percent, format_si, from_si, to_si
+from robomill.units import format_many, format_percent, format_si, from_si, to_si
 from robomill.viz.arm import ArmScene
 from robomill.viz.theme import joint_colours
 
@@ -72,6 +72,47 @@ def tip_tile(now: Moved, before: Moved | None, unit: str) -> pieces.Tile:
     if before is not None and np.isfinite(before.size):
         was, change = format_si(before.size, unit), format_si(now.size - before.size, unit, sign=True)
     return pieces.Tile("Tip off its path here", value, note, was, change, kind="computed")
+
+
+def tiles(view: View, now: PoseReport, old: PoseReport | None, tip: tuple[Moved, Moved | None]) -> list[pieces.Tile]:
+    """What the push does to the tip here, C_yy, the largest compliance and det(J), now and before the last change."""
+    um = view.of("um/N")
+    return [
+        tip_tile(*tip, view.length),
+        pieces.Tile(
+            "C_yy at this pose",
+            format_si(now.component("yy"), um, 3),
+            "direct compliance along Y",
+            format_si(old.component("yy"), um, 3) if old else "",
+        ),
+        pieces.Tile(
+            "Largest compliance",
+            format_si(now.principal[0][-1], um, 3),
+            f"in direction ({format_many(now.principal[1][:, -1], '1', 2)}) of the robot frame",
+            format_si(old.principal[0][-1], um, 3) if old else "",
+        ),
+        pieces.Tile(
+            "Distance to singularity, det(J)", det_value(now, view.of), det_words(now), det_value(old, view.of)
+        ),
+    ]
+
+
+def tiles_of_b(project: Project) -> list[pieces.Tile]:
+    """The same of the project that the one in force is held against: at the joint angles chosen here, or where its own
+    cut is decided. Raises its refusal, and ``Underway``."""
+    cut = push.decided(other.result(project.setup))
+    now = at_pose(project.setup.robot, configuration(project, cut))
+    return tiles(project.view, now, None, moved(project, now, None, cut))
+
+
+def compliance_of_b() -> None:
+    """C of that project's arm, where its tile stands."""
+    with other.in_force() as project:
+        found = None if project is None else cached.held(project.setup)
+        if project is None or found is None:
+            return
+        st.markdown("**B**")
+        point.compliance_matrix(at_pose(project.setup.robot, configuration(project, push.decided(found))))
 
 
 def scene(now: PoseReport, old: PoseReport | None, moved: Moved, unit: str) -> ArmScene:

@@ -11,7 +11,9 @@ from robomill.simulation.tools import feed_notes
 from robomill.simulation.verdict_words import said
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
-from robomill.ui import pieces
+from robomill.ui import other, pieces
+from robomill.ui.project import Project
+from robomill.ui.toolpath.reach import path_reach
 from robomill.ui.toolpath.summary import (
     duration,
     finding_words,
@@ -66,11 +68,10 @@ def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str)
 
 def tiles(
     source: PathSource, path: Toolpath | None, reach: PathReach | None, result: SimulationResult | None, unit: str
-) -> None:
+) -> list[pieces.Tile]:
     """The error that decides the verdict, reach, length and time, findings."""
     if path is None:
-        pieces.tiles([pieces.Tile(label, "–") for label in ("Wall error", "Reach", "Length of the cut", "Shapes")])
-        return
+        return [pieces.Tile(label, "–") for label in ("Wall error", "Reach", "Length of the cut", "Shapes")]
     summary = path_summary(path)
     rapids = summary.moves - summary.cuts if path.counts is None else path.counts[0]
     found = [_error_tile(result, unit)]
@@ -102,8 +103,7 @@ def tiles(
                 words,
             )
         )
-        pieces.tiles(found)
-        return
+        return found
     noticed = findings(path, result)
     alarming = sum(f.count for f in noticed if f.level in ("error", "warning", "suspicious"))
     count = sum(f.count for f in noticed)
@@ -113,7 +113,14 @@ def tiles(
         count, words = count + len(crashes), f"a rapid runs through material (line {crashes[0]})"
     tone = "tight" if alarming or crashes else ""
     found.append(pieces.Tile("Program warnings", format_count(count), words, tone=tone))
-    pieces.tiles(found)
+    return found
+
+
+def tiles_of_b(project: Project) -> list[pieces.Tile]:
+    """The same of the project that the one in force is held against. Raises its refusal, and ``Underway``."""
+    result = other.result(project.setup)
+    reach = path_reach(project.setup)
+    return tiles(project.setup.source, project.setup.toolpath, reach, result, project.view.length)
 
 
 def findings(path: Toolpath, result: SimulationResult | None) -> tuple[Finding, ...]:
