@@ -35,6 +35,7 @@ _SILENT = frozenset(
     }
 )
 MAX_POINTS = 5_000_000
+_OTHER_RATES = ("IPT", "MMPT", "INVERS")
 
 
 @dataclass
@@ -277,6 +278,10 @@ def _feed(state: _State, values: list[str], line: int) -> None:
         return
     if len(numbers) != 1 or float(numbers[0]) < 0:
         raise GCodeError.at(line, f"FEDRAT has {','.join(values)!r}; expected one rate of 0 or more.")
+    if other := next((w for w in words if w in _OTHER_RATES), ""):
+        raise GCodeError.at(
+            line, f"FEDRAT counts by {other}, which is not read; write the feed per minute (MMPM, IPM)."
+        )
     unit = next((w for w in ("IPR", "MMPR", "PERREV", "IPM", "MMPM") if w in words), "PERMIN")
     state.feed = feed_of(float(numbers[0]), unit, state.unit, state.speed)
 
@@ -287,6 +292,9 @@ def _spindle(state: _State, values: list[str], line: int) -> None:
     if "OFF" in words:
         state.speed = 0.0
         return
+    if surface := [w for w in words if w in ("SFM", "SMM")]:
+        text = f"SPINDL/{surface[0]} says the speed of the surface; expected turns per minute, as SPINDL/RPM,900."
+        raise GCodeError.at(line, text)
     if "CLW" in words or "CCLW" in words:
         state.ccw = "CCLW" in words
     if numbers:

@@ -63,7 +63,7 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
         if (axes or polar) and machine.motion in (-1, 800):
             if machine.motion == -1 or not dialect.keeps_motion(machine):
                 raise block.refuse("axis words without a motion; give G0, G1, G2 or G3 first.")
-            machine.motion = machine.straight
+            machine.motion = machine.straight = dialect.first_motion(machine, "f" in words)
             text = f"axis words without a motion are read as {g_name(machine.straight)}, {dialect.kept(machine)}"
             machine.note("motion-kept", "info", text)
         block.motion = implied_motion(machine, axes or polar, any(letter in words for letter in "ijk"))

@@ -9,9 +9,12 @@ from robomill.toolpath.gcode.motion_rules import ARC, FEED, axes
 from robomill.toolpath.gcode.program import Move
 from robomill.units import format_si
 
-ROUND, LEGS, BEVEL = "round", "legs", "bevel"
-"""What the size of a corner is: its radius, its length along each cut, or the length of the bevel itself."""
+ROUND, LEGS, BEVEL, EACH = "round", "legs", "bevel", "each"
+"""What the size of a corner is: its radius, its length along each cut, the length of the bevel itself, or the radius of
+each corner of a contour (RNDM), where there is one: none beside a rapid, or a move that leaves the plane XY."""
 _STRAIGHT = 1e-9
+_SMOOTH = math.radians(0.01)
+"""Cuts whose directions differ by less than this meet in no corner."""
 
 
 def joined(first: Move, then: Move, corner: tuple[str, float]) -> list[Move]:
@@ -20,6 +23,10 @@ def joined(first: Move, then: Move, corner: tuple[str, float]) -> list[Move]:
     Raises GCodeError where the two are no straight cuts in one plane, or shorter than the corner.
     """
     kind, size = corner
+    if kind == EACH:
+        if not _is_corner(first, then):
+            return [first, then]
+        kind = ROUND
     if first.kind != FEED or then.kind != FEED or first.rotary != then.rotary:
         raise GCodeError.at(first.line, "a corner is rounded or chamfered between two straight cuts (G1) alone.")
     a, b, c = (np.array(point) for point in (first.start, first.end, then.end))
@@ -43,6 +50,29 @@ def joined(first: Move, then: Move, corner: tuple[str, float]) -> list[Move]:
     if kind == ROUND:
         _bend(middle, b + (back + on) / np.linalg.norm(back + on) * size / math.sin(half), np.cross(back, on), half)
     return [first, middle, then]
+
+
+def _is_corner(first: Move, then: Move) -> bool:
+    """Whether two moves meet in a corner of a contour in the plane XY. Raises GCodeError at one beside an arc."""
+    courses = []
+    for move, point in ((first, first.end), (then, then.start)):
+        along = [b - a for a, b in zip(move.start, move.end)]
+        if move.kind not in (FEED, ARC) or abs(along[2]) > _STRAIGHT or move.rotary != move.rotary0:
+            return False
+        if move.kind == ARC:
+            turn = 1.0 if move.sweep > 0.0 else -1.0
+            along = [-turn * (point[1] - move.centre[1]), turn * (point[0] - move.centre[0]), 0.0]
+            if move.plane != 17:
+                return False
+        courses.append((along[0], along[1]))
+    (a, b), (c, d) = courses
+    size = math.hypot(a, b) * math.hypot(c, d)
+    if size <= _STRAIGHT**2 or a * c + b * d >= size * math.cos(_SMOOTH):
+        return False
+    if ARC in (first.kind, then.kind):
+        text = "RNDM rounds the corner between a cut and an arc, which is not read; write that arc out, or RNDM=0."
+        raise GCodeError.at(first.line, text)
+    return True
 
 
 def _bend(row: Move, centre: np.ndarray, across: np.ndarray, half: float) -> None:

@@ -4,7 +4,8 @@
 of ``codes``: R, P, Q, I, J, K, and in the column of Z the bottom along whatever axis is drilled. ``m.keeps_heights``
 says that a control (Fanuc, Haas) keeps R and the bottom as the heights that they are: G91 behind a hole in G90 counts
 places from hole to hole, and not how deep they are. It also makes no hole for L0, and keeps its words.
-``m.is_fanuc`` says that it taps and bores (G89) out to R alone, and is at rapid from there.
+``m.is_fanuc`` says that it taps and bores (G89) out to R alone, and is at rapid from there, and that it goes to the
+next place at the height where it is.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
@@ -105,7 +106,7 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
         refusal = end_point(m, w, end)
         if refusal != 0:
             return refusal
-        above = current if repeat == 0 and current > clearance else clear
+        above = current if repeat == 0 and (current > clearance or m.is_fanuc) else clear
         _go(m, TRAVERSE, line, end, above, rows)
         if above > clearance:
             _go(m, TRAVERSE, line, end, clearance, rows)

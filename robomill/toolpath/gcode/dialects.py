@@ -9,8 +9,10 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.corners import LEGS, ROUND
+from robomill.toolpath.gcode.fanuc_cycles import bolt_holes
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.motion_rules import LINE
 from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
 from robomill.toolpath.gcode.scaling import scales
 from robomill.toolpath.gcode.sinumerik import translated
@@ -42,7 +44,7 @@ NAMED = {
     511: "G51.1 mirrors coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
     682: "G68.2 tilts the working plane, which is not read; post the program with the tool's direction.",
     **{
-        code: f"G{code // 10} sets the pole of polar coordinates (Sinumerik), which are not read; write X and Y."
+        code: f"G{code // 10} sets a pole, which is read for Sinumerik controls alone; choose that dialect."
         for code in (1100, 1110, 1120)
     },
     650: "G65 calls a macro with values, which is read for Fanuc-like controls alone; choose that dialect.",
@@ -70,14 +72,14 @@ _GRBL = (("$", r"\n[ \t]*\$(?:[a-z#$]{0,2}[ \t]*(?=\n)|h|\d+=|n\d*=|j=|rst=)"),)
 _SINUMERIK = (
     *_words("g710", "g700", "g500", "g601", "g641", "g642", "g643", "g644", "g645"),
     ("m17", r"\n[ \t]*(?:n\d+[ \t]*)?m17[ \t]*(?:\n\s*)*$"),
-    ("=", r"\b(?:(?:cr|ar|turn|rnd|chf|chr)|[xyzijkabcfsr]\d*|t(?=[ \t]*=[ \t]*\"))[ \t]*="),
+    ("=", r"\b(?:(?:cr|ar|ap|rp|turn|rndm?|chf|chr)|[xyzijkabcfsr]\d*|t(?=[ \t]*=[ \t]*\"))[ \t]*="),
     ("mcall", r"\bmcall\b"),
     ("trans", r"\n[ \t]*(?:n\d+[ \t]*)?a?trans[ \t]+[xyz]"),
     ("traori", r"\btraori\b"),
     ("supa", r"\bsupa\b"),
     ("%_n_", r"\n%_n_\w+_[ms]pf\b"),
     ("def", r"\bdef[ \t]+(?:real|int)"),
-    ("g7", r"\n[^\n]*\bg7[01]\b(?![^\n]*[qpuwrd][ \t]*[-.\d#\[])"),
+    ("g7", r"\n[^\n]*\bg7[01]\b(?![^\n]*[qpuwrdl][ \t]*[-.\d#\[])"),
 )
 _FANUC = (
     *_words("g65", "g54.1", "g05", "g43.4"),
@@ -123,6 +125,11 @@ class Dialect:
         Fanuc's and Haas's cycles are a modal group of their own (09), beside that of G0 to G3 (01); grbl begins in G0.
         """
         return self._is_fanuc_like or (not self.strict and not len(machine.recorder))
+
+    def first_motion(self, machine: Machine, fed: bool) -> int:
+        """The motion that outlasts G80, or that a program begins in: G0, on a Sinumerik G1 once there is a feed."""
+        begins = self.name == "sinumerik" and not len(machine.recorder) and (fed or machine.feed > 0.0)
+        return LINE if begins else machine.straight
 
     def kept(self, machine: Machine) -> str:
         """Why a motion is in force that the line does not say."""
@@ -191,7 +198,10 @@ class Dialect:
             harmless = HARMLESS["fanuc"] if self._is_fanuc_like else HARMLESS[self.name]
             if self.has_macros and (self._turns(machine, block, code) or _selects(machine, block, code)):
                 continue
-            if self.has_macros and scales(machine, block, code):
+            if self.has_macros and (scales(machine, block, code) or bolt_holes(machine, block, code)):
+                continue
+            if self.name == "sinumerik" and 5050 <= code <= 5990 and code % 10 == 0:
+                select_extended(machine, block, code / 10 - 500)
                 continue
             if code == 500 and not block.words.keys().isdisjoint("xyzabc"):
                 raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")

@@ -128,11 +128,11 @@ def _doubt_zero(machine: Machine, program: Program) -> None:
         if any(origin) or turned:
             shown = " ".join(f"{letter}{value:g}" for letter, value in zip("XYZ", origin))
             text = (
-                f"the program itself places {system_name(system)} at {shown} (mm): the path lies that far from "
-                "part zero; remove the G10 where part zero is meant to be there"
+                f"the program itself places {system_name(machine, system)} at {shown} (mm): the path lies that far "
+                "from part zero; remove the G10 where part zero is meant to be there"
             )
             machine.findings.add("zero-placed", "warning", machine.placed[system], text)
-    unset = [system_name(system) for system in sorted(set(used) - set(machine.placed))]
+    unset = [system_name(machine, system) for system in sorted(set(used) - set(machine.placed))]
     if len(set(used)) == 1 and unset and used[0] != 1:
         text = f"part zero is taken to be that of {unset[0]}, which the program does not place"
         machine.findings.add("zero-taken", "info", 0, text)

@@ -1,4 +1,7 @@
-"""Canned cycles as Fanuc and Haas count them: K or L times, no time at all, without a dwell, and fine boring (G76)."""
+"""Canned cycles as Fanuc and Haas count them: K or L times, no time at all, without a dwell, and fine boring (G76).
+
+Haas's G70 and G71 drill the cycle in force around a circle whose centre the tool stands at, or that their line says.
+"""
 
 import math
 
@@ -7,10 +10,12 @@ from robomill.toolpath.gcode.codes import P
 from robomill.toolpath.gcode.cycle_rules import is_cycle, pecks, takes_dwell
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.motion_rules import axes
+from robomill.toolpath.gcode.moves import drill
 from robomill.toolpath.gcode.words import Block
 
 _THOUSANDTHS = 100.0
 """Nobody pecks so deep: controls count a Q without a point in steps of 0.001 mm (0.0001 in)."""
+MOST_BOLTS = 10_000
 _FINE_BORING, _BORING, _BACK_BORING = 760, 860, 870
 
 
@@ -23,6 +28,25 @@ def as_bored(machine: Machine, block: Block) -> None:
         block.g[modal.MOTION] = _BORING
         words.pop("q", None)
         machine.note("fine-boring", "info", "G76 is read as boring (G86); its step aside in the hole is left out")
+
+
+def bolt_holes(machine: Machine, block: Block, code: int) -> bool:
+    """G70 I radius J angle L holes, G71 with K, the angle between them; False for other words, and without a cycle."""
+    words, needs = block.words, {700: {"i", "j", "l"}, 710: {"i", "j", "k", "l"}}.get(code)
+    if needs is None or not needs <= words.keys() or not is_cycle(machine.motion):
+        return False
+    count = round(words["l"])
+    absolute = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 900
+    if machine.plane != 17 or not absolute or not 1 <= count <= MOST_BOLTS:
+        raise block.refuse(f"G{code // 10} is read in G17 and G90, for 1 to {MOST_BOLTS} holes.")
+    u, v = words.pop("x", machine.p[0]), words.pop("y", machine.p[1])
+    radius, angle, between = words.pop("i"), words.pop("j"), words.pop("k", 360.0 / count)
+    del words["l"]
+    for k in range(count):
+        t = math.radians(angle + k * between)
+        place = {"x": u + radius * math.cos(t), "y": v + radius * math.sin(t)}
+        drill(machine, Block(block.line, place, motion=machine.motion))
+    return True
 
 
 def repeats(machine: Machine, block: Block) -> None:

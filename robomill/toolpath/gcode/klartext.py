@@ -124,7 +124,7 @@ class Klartext(KlartextApproach):
                 raise GCodeError.at(index, f"a block is over {MAX_CODE} characters or {MAX_LINES} lines; split it.")
             if not raw.rstrip().endswith("~"):
                 break
-        code = re.sub(r"(?<=\d),(?=\d)", ".", " ".join(parts).upper())
+        code = re.sub(r"(?<=[-+\dXYZABC]),(?=\d)", ".", " ".join(parts).upper())
         return " ".join(code.split()), index, skipped
 
     # --- moves

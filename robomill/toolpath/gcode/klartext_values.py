@@ -9,7 +9,7 @@ from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.machine import Scale
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.program import TRAVERSE
-from robomill.toolpath.gcode.sinumerik_flow import SinumerikFlow
+from robomill.toolpath.gcode.sinumerik_procs import SinumerikProcs
 from robomill.toolpath.gcode.sinumerik_words import Hole
 from robomill.toolpath.gcode.words import Block, normalise
 
@@ -31,7 +31,19 @@ _TWO = {
     13: r"(.+?) ANG ?(.+)",
 }
 _ONE = {5: "SQRT", 6: "SIN", 7: "COS"}
-_FUNCTION = re.compile(r"\b(SQRT|SIN|COS|TAN|ASIN|ACOS|ABS|INT) ?([-+]?(?:#\d+|[\d.]+)|(?=\[))")
+_FUNCTION = re.compile(
+    r"\b(SQRT|SQ|SIN|COS|TAN|ASIN|ACOS|ATAN|ABS|INT|FRAC|SGN|NEG|LN|LOG|EXP) ?([-+]?(?:#\d+|[\d.]+)|(?=\[))"
+)
+_WRITTEN_OUT = {
+    "SQ": "[{0}**2]",
+    "ATAN": "ATAN{0}/[1]",
+    "FRAC": "[{0}-FIX{0}]",
+    "SGN": "[[{0} GT 0]-[{0} LT 0]]",
+    "NEG": "[0-{0}]",
+    "LOG": "[LN{0}/LN[10]]",
+}
+"""Functions that LinuxCNC has by another name; {0} is their argument in its brackets."""
+_OWN = re.compile(rf"\b({'|'.join(_WRITTEN_OUT)})\[")
 _CYCLE = re.compile(r"CYCL DEF ?(\d+)(?: ?\.(\d+))?(.*)")
 _AXIS = re.compile(rf"(I?)([XYZ]) ?({NUMBER})")
 _DRILLS = {
@@ -47,11 +59,12 @@ _DRILLS = {
 _PATTERNS = (220, 221)
 
 
-class KlartextValues(SinumerikFlow):
+class KlartextValues(SinumerikProcs):
     """Reads what computes, shifts and drills; moves are those of ``klartext``."""
 
     drill: int = 0
     due = False
+    raised = 0.0
     pole: tuple[int, float, float] | None = None
     preset: float | None = None
 
@@ -70,7 +83,7 @@ class KlartextValues(SinumerikFlow):
         plain = _FUNCTION.sub(
             lambda found: ("FIX" if found[1] == "INT" else found[1]) + (f"[{found[2]}]" if found[2] else ""), plain
         )
-        plain = re.sub(r"(?<=[-+*/]) ?\+ ?", " ", re.sub(r"^ ?\+ ?", "", plain))
+        plain = _written_out(re.sub(r"(?<=[-+*/]) ?\+ ?", " ", re.sub(r"^ ?\+ ?", "", plain)))
         reader = Reader(normalise(f"[{plain}]", line), line, self.machine.store)
         value = reader.value()
         if reader.at < len(reader.text):
@@ -267,11 +280,23 @@ class KlartextValues(SinumerikFlow):
         if rest.startswith("PAT"):
             raise GCodeError.at(line, "CYCL CALL PAT calls at a pattern, which is not read; write CYCL CALL POS.")
         if rest.startswith("POS"):
-            text = self.straight(f"L {rest.removeprefix('POS').strip()}", line)
-            self.due = True
-            return text
+            return self._cycle_at(rest.removeprefix("POS").strip(), line)
         self.due = True
         return " ".join(f"M{m}" for m in re.findall(r"\bM(\d+)", rest) if m in ("3", "4", "5", "8", "9")) or "G17"
+
+    def _cycle_at(self, rest: str, line: int) -> str | None:
+        """CYCL CALL POS: in the plane first, where the tool is above; its Z shifts the cycle's heights."""
+        places = {letter: (step, self.number(value, line)) for step, letter, value in _AXIS.findall(rest)}
+        step, self.raised = places.get("Z", ("", 0.0))
+        if step:
+            raise GCodeError.at(line, "CYCL CALL POS has IZ, which is not read; its Z shifts the cycle: give Z.")
+        machine = self.machine
+        if self.drill and not machine.away[2] and machine.p[2] < (high := self._hole_of(line)).clear:
+            self._to(TRAVERSE, line, high.retract)
+        rest = re.sub(rf"Z ?{NUMBER}", "", rest)
+        text = self.straight(f"L {' '.join(rest.split())}".strip(), line) or "G17"
+        self.due = True
+        return text
 
     def straight(self, code: str, line: int) -> str | None:
         """A straight move in LinuxCNC's words."""
@@ -283,11 +308,12 @@ class KlartextValues(SinumerikFlow):
             self.due = False
             if self.drill == 0:
                 raise block.refuse("a cycle is called, but none is defined; write CYCL DEF 200 before.")
-            self.drill_here(self._hole_of(block.line), block.line)
+            hole, self.raised = self._hole_of(block.line), 0.0
+            self.drill_here(hole, block.line)
 
     def _hole_of(self, line: int) -> Hole:
         number, machine = self.drill, self.machine
-        surface, safety, depth = self.q(203), abs(self.q(200)), self.q(201)
+        surface, safety, depth = self.q(203) + self.raised, abs(self.q(200)), self.q(201)
         if number == 240 and self.q(343) != 0.0:
             raise GCodeError.at(line, "CYCL DEF 240 counts by its diameter (Q343=1), which is not read; give Q201.")
         if depth >= 0.0 or safety == 0.0:
@@ -314,6 +340,20 @@ class KlartextValues(SinumerikFlow):
         return Hole(top, surface + safety, bottom, max(self.q(211), 0.0), down, out, tuple(pecks), True, pitch)
 
 
+def _written_out(text: str) -> str:
+    """An expression without the functions that LinuxCNC does not know by that name."""
+    for found in reversed(list(_OWN.finditer(text))):
+        start, end, depth = found.end() - 1, found.end(), 1
+        while end < len(text) and depth:
+            depth += {"[": 1, "]": -1}.get(text[end], 0)
+            end += 1
+        text = text[: found.start()] + _WRITTEN_OUT[found[1]].format(text[start:end]) + text[end:]
+        if len(text) > MAX_EXPRESSION:
+            break
+    return text
+
+
+MAX_EXPRESSION = 10_000
 _TUNING = (332, 392)
 """Cycles of machine makers that suit the control to the weight of the part and move nothing."""
 _LET = "let the CAM system write its moves out"

@@ -13,12 +13,12 @@ from weakref import WeakMethod
 from robomill.errors import GCodeError
 from robomill.provenance import Level
 from robomill.toolpath.gcode.codes import LETTERS
-from robomill.toolpath.gcode.corners import joined
+from robomill.toolpath.gcode.corners import EACH, joined
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.mode_rules import system_code
 from robomill.toolpath.gcode.motion_rules import feed_speed, rotate, write_arc, write_straight
 from robomill.toolpath.gcode.parameters import Parameters
-from robomill.toolpath.gcode.program import TAP, TRAVERSE, Move, Recorder
+from robomill.toolpath.gcode.program import ARC, FEED, TAP, TRAVERSE, Move, Recorder
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool, Tools, own_copy
 from robomill.units import from_si, to_si
@@ -65,9 +65,11 @@ class Machine:
     ``aways`` are those, each with the first move for which it holds, and ``homes`` those that the program has stored
     itself (28, 30).
 
-    ``corner`` is what the line says of the corner at its end (size in program units), ``polar_words`` says that X
+    ``corner`` is what the line says of the corner at its end (size in program units), ``rounding`` what RNDM says of
+    all corners (a radius, 0: none), ``polar_words`` says that X
     and Y are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68, ``scale`` what
-    G51 does to words. ``extended`` are the origins and rotations of G54.1 P1 and on (program units), ``is_fanuc``
+    G51 does to words. ``extended`` are the origins and rotations of G54.1 P1 and on (program units), which are called
+    as ``further`` says, ``is_fanuc``
     says that G10 and variables mean what they mean there, ``other_control`` that it is neither LinuxCNC nor grbl,
     ``strict`` that LinuxCNC is stated, ``variable`` what those are that nobody has set, ``machine_word`` which word
     leads to a place in the machine, ``sides`` what it calls G41 and G42. ``keeps_heights`` and ``kept_steps`` are
@@ -81,6 +83,7 @@ class Machine:
         self.findings = Findings()
         self.recorder = Recorder(joined)
         self.corner: tuple[str, float] | None = None
+        self.rounding = 0.0
         self.polar_words = False
         self.modal: Any = None
         self.r_set: set[int] = set()
@@ -109,6 +112,7 @@ class Machine:
         self.is_fanuc, self.other_control, self.machine_word = False, False, "G53"
         self.variable: Callable[[Machine, int], float] | None = None
         self.extended: dict[int, tuple[list[float], float]] = {}
+        self.further = "G54.1 P{}"
         self.systems: list[tuple[int, int]] = [(0, 1)]
         self.placed: dict[int, int] = {}
         self.sides: dict[int, str] = {}
@@ -148,7 +152,7 @@ class Machine:
         """True while the rules of ``mode_rules`` alone say what plain lines do."""
         held = self.compensation is not None or self.recorder.held is not None
         other = self.diameter_mode or self.polar_words or self.modal is not None or self.scale is not None
-        return not (held or other or any(self.away))
+        return not (held or other or self.rounding or any(self.away))
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""
@@ -163,7 +167,7 @@ class Machine:
             values[:3] = [v * ratio for v in values[:3]]
         if self.scale is not None:
             self.scale = replace(self.scale, centre=tuple(v * ratio for v in self.scale.centre))  # type: ignore[arg-type]
-        self.feed *= ratio
+        self.feed, self.rounding = self.feed * ratio, self.rounding * ratio
         if self.compensation is not None:
             self.compensation.scale(ratio)
         self.unit_code, self.factor = code, to_si(1.0, unit)
@@ -236,6 +240,18 @@ class Machine:
             polar = "@" in words or "^" in words
             said = [letter in words or (polar and letter != "z") for letter in "xyz"]
             self.set_away(tuple(before and not now for before, now in zip(self.away, said)))
+
+    # --- corners
+    def set_rounding(self, radius: float) -> None:
+        """RNDM: every corner of the contour is rounded from here on; 0 ends it."""
+        self.rounding = radius
+
+    def corner_of(self, kind: int) -> tuple[str, float] | None:
+        """What becomes of the corner at the end of a move of a kind, its size in m; what the line said is taken."""
+        said, self.corner = self.corner, None
+        if said is None and self.rounding and kind in (FEED, ARC):
+            said = EACH, self.rounding
+        return None if said is None else (said[0], said[1] * self.factor)
 
     # --- coordinates as lines say them
     def set_scale(self, scale: Scale | None) -> None:

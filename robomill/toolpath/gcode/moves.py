@@ -147,6 +147,8 @@ def move(machine: Machine, block: Block) -> None:
     compensation = machine.compensation
     is_arc = rules.is_arc(block.motion)
     if compensation is not None and compensation.radius > 0 and not (is_arc and machine.plane == 19):
+        if machine.rounding:
+            machine.need_compensation_off(block, "RNDM")
         machine.arc_not_allowed = False
         rules.keep_motion(machine, block.motion)
         if is_arc and (machine.corner is not None or compensation.due is not None):
@@ -162,10 +164,9 @@ def move(machine: Machine, block: Block) -> None:
         return
     row = Move(block.line)
     demand(machine, block, rules.make_move(machine, words, block.motion, end, row))
-    corner, machine.corner = machine.corner, None
-    if corner is not None and row.kind != FEED:
+    if machine.corner is not None and row.kind != FEED:
         raise block.refuse("a corner is rounded or chamfered at the end of a straight cut (G1) alone.")
-    machine.recorder.add(row, None if corner is None else (corner[0], corner[1] * machine.factor))
+    machine.recorder.add(row, machine.corner_of(row.kind))
 
 
 def drill(machine: Machine, block: Block) -> None:

@@ -4,7 +4,7 @@ from robomill.toolpath.gcode.codes import COMPENSATION, g_name
 from robomill.toolpath.gcode.compensation import Compensation
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.mode_rules import system_code
-from robomill.toolpath.gcode.motion_rules import rotate
+from robomill.toolpath.gcode.motion_rules import rotate, to_frame
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool
 from robomill.units import from_si, to_si
@@ -46,14 +46,14 @@ def _in_system(machine: Machine, absolute: list[float], origin: list[float], rot
     return point
 
 
-def system_name(system: int) -> str:
-    """``1`` -> ``"G54"``, ``12`` -> ``"G54.1 P3"``."""
-    return g_name(system_code(system)) if system <= LAST_SYSTEM else f"G54.1 P{system - LAST_SYSTEM}"
+def system_name(machine: Machine, system: int) -> str:
+    """``1`` -> ``"G54"``, ``12`` -> ``"G54.1 P3"``, of a Sinumerik ``14`` -> ``"G505"``."""
+    return g_name(system_code(system)) if system <= LAST_SYSTEM else machine.further.format(system - LAST_SYSTEM)
 
 
 def select_system(machine: Machine, block: Block, system: int) -> None:
     """G54 to G59.3, G54.1 P1 and on."""
-    name = system_name(system)
+    name = system_name(machine, system)
     machine.need_compensation_off(block, name)
     if system == machine.system:
         return
@@ -83,6 +83,8 @@ def turn_about(machine: Machine, block: Block) -> None:
     if machine.plane != 17 or "r" not in words or not machine.absolute:
         raise block.refuse("G68 is read in G17 and G90, with R, its angle; write the moves out.")
     turn_back(machine)
+    if words.keys() & {"a", "b"}:  # Mach3's names of the centre
+        words["x"], words["y"] = words.pop("a", 0.0), words.pop("b", 0.0)
     centre = [words.pop(letter, at) + o for letter, at, o in zip("xy", machine.p, machine.g92)]
     machine.before_turn = machine.g5x, machine.rotation
     rotation = machine.rotation + words.pop("r")
@@ -127,6 +129,12 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
     """G52 and the G92 family."""
     machine.need_compensation_off(block, g_name(code))
     numbered = machine.store.numbered
+    if code == 920 and _begins(machine):
+        if machine.other_control:
+            _stand(machine, block)
+            return
+        text = "G92 before the first move shifts part zero, as LinuxCNC takes the tool to stand at its own zero then"
+        machine.note("zero-shifted", "warning", f"{text}; remove the line where it says where the tool stands")
     if code in (520, 920):
         numbered[5210] = 1.0
         for axis, letter in enumerate(XYZABC):
@@ -150,6 +158,23 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
     machine.g92 = new
     if code == 921:
         machine.store.put(5211, [0.0] * 6)
+
+
+def _begins(machine: Machine) -> bool:
+    """Whether nobody knows yet where the machine stands."""
+    return not (machine.strict or len(machine.recorder) or machine.recorder.held or any(machine.g92) or any(machine.p))
+
+
+def _stand(machine: Machine, block: Block) -> None:
+    """G92 before the first move says where the tool stands: part zero is where it counts from."""
+    for axis, letter in enumerate(XYZABC):
+        machine.p[axis] = block.words.get(letter, machine.p[axis])
+        if axis >= 3:
+            machine.turned[axis - 3] = to_si(machine.p[axis], "deg")
+    machine.sent = list(machine.p)
+    x, y, z = machine.p[:3]
+    to_frame(machine, x, y, z, machine.at)
+    machine.note("begins-at", "info", "G92 before the first move is read as where the tool stands, from part zero")
 
 
 def set_data(machine: Machine, block: Block) -> None:
@@ -352,14 +377,9 @@ def compensation_on(machine: Machine, block: Block) -> None:
                 raise block.refuse(f"{name} has D{number:g}; expected the number of a tool.")
             tool = known_tool(machine, block, round(number))
         if machine.tools is None:
-            which = (
-                f"tool {tool.number}"
-                if tool.number
-                else f'tool "{machine.tool_name[:40]}"'
-                if machine.tool_name
-                else ""
-            )
-            raise block.refuse(f"{name} needs the diameter of {which or 'the tool in the spindle'}; give a tool table.")
+            named = f'tool "{machine.tool_name[:40]}"' if machine.tool_name else "the tool in the spindle"
+            which = f"tool {tool.number}" if tool.number else named
+            raise block.refuse(f"{name} needs the diameter of {which}; give a tool table.")
         if tool.number and tool.number not in machine.tools:
             raise block.refuse(f"tool {tool.number} is not in the tool table; add it.")
         if not tool.number and machine.tool_name:

@@ -71,8 +71,9 @@ def combined(s, operator: int, a: float, b: float):
         return (BY_ZERO, 0.0) if b == 0.0 else (0, a / b)
     if operator == POWER:
         return _power(a, b)
-    if operator == MOD:  # never negative
-        rest = a % abs(b) if b != 0.0 else math.nan
+    if operator == MOD:  # LinuxCNC's is never negative, other controls' has the sign of what is divided
+        rest = (abs(a) if s.towards_zero else a) % abs(b) if b != 0.0 else math.nan
+        rest = -rest if s.towards_zero and a < 0.0 else rest
         return (0 if math.isfinite(rest) else NO_VALUE), rest
     return 0, 1.0 if _holds(operator, a, b) else 0.0
 
@@ -112,6 +113,8 @@ def applied(s, function: int, x: float):
         near = whole(x)
         return (NOT_WHOLE if math.isnan(near) else 0), 1.0 if 1.0 <= near < len(s.numbered) else 0.0
     value = _function(function, x)
+    if s.towards_zero and x < 0.0 and function in (FIX, FUP):  # the whole number nearer to 0, or farther from it
+        value = -_function(function, -x)
     return (0 if math.isfinite(value) else NO_FUNCTION_VALUE), value
 
 

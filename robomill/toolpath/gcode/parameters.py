@@ -69,6 +69,8 @@ class Store(NamedTuple):
     """Columns of ``named``."""
     provided: int
     """So many columns are names that the machine provides; the next one is ``n_args``."""
+    towards_zero: int
+    """1 where FIX and MOD cut towards 0, as Fanuc, Sinumerik and Heidenhain do; LinuxCNC's cut downwards."""
 
 
 class Parameters:
@@ -86,6 +88,7 @@ class Parameters:
         values, settings = array("d", [0.0]) * STACK, array("d", [0.0]) * MAX_SETTINGS
         self._scratch = (values, marks, figures, keys, settings, array("d", [0.0]) * WIDTH, array("d", [0.0]) * 6)
         self._room, self._provided, self._level = 0, 0, array("q", [0])
+        self._towards_zero = 0
         self._views: Store | None = None
         names = (*RETURNED, *names)
         self._make_room(max(64, 2 * len(names)))
@@ -98,10 +101,23 @@ class Parameters:
         self._provided = len(names)
         self.arrays = self._store()
 
+    def cut_towards_zero(self) -> None:
+        """FIX and MOD cut towards 0 from here on."""
+        self._towards_zero = 1
+        self.arrays = self._store()
+
     # --- memory
     def _store(self) -> Store:
         names: Any = (self._named, self._slots, self._letters, self._ends)
-        fields: Any = (self.numbered, *names, *self._scratch, self._level, self._room, self._provided)
+        fields: Any = (
+            self.numbered,
+            *names,
+            *self._scratch,
+            self._level,
+            self._room,
+            self._provided,
+            self._towards_zero,
+        )
         self._views = None
         return Store(*fields)
 
@@ -109,8 +125,8 @@ class Parameters:
         """The same memory, as arrays for compiled code; what holds them has to let go before a name is added."""
         if self._views is None:
             fields: Any = self.arrays
-            views: Any = (np.frombuffer(values, values.typecode) for values in fields[:-2])
-            self._views = Store(*views, *fields[-2:])
+            views: Any = (np.frombuffer(values, values.typecode) for values in fields[:-3])
+            self._views = Store(*views, *fields[-3:])
         return self._views
 
     def _make_room(self, room: int) -> None:

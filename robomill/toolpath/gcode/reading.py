@@ -123,6 +123,10 @@ def _machine(tools: Tools | None, dialect: Dialect, lines: int) -> Machine:
     machine.strict = dialect.strict
     machine.keeps_heights = dialect.keeps_heights
     machine.other_control = dialect.name in ("fanuc", "sinumerik", "heidenhain")
+    if machine.other_control:
+        machine.store.cut_towards_zero()
+    if dialect.name == "sinumerik":
+        machine.further = "G5{:02}"
     if dialect.name == "fanuc":
         begin_empty(machine)
         machine.retract_r = False  # these controls begin in G98

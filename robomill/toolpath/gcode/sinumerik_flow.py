@@ -8,8 +8,8 @@ import re
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode.sinumerik_shapes import SinumerikShapes
-from robomill.toolpath.gcode.sinumerik_words import value_end
+from robomill.toolpath.gcode.sinumerik_polar import SinumerikPolar
+from robomill.toolpath.gcode.sinumerik_words import parts, value_end
 from robomill.toolpath.gcode.words import Block
 
 FIRST_VARIABLE, MOST_VARIABLES = 2000, 1000
@@ -21,14 +21,14 @@ _WORD = re.compile(
 _LIKELY = re.compile(rb"\b(?:IF|ELSE|WHILE|FOR|UNTIL|ENDIF|ENDWHILE|ENDFOR|LOOP|ENDLOOP|REPEAT)\b", re.IGNORECASE)
 _CLOSES = {"ENDIF": "IF", "ENDWHILE": "WHILE", "ENDFOR": "FOR", "UNTIL": "REPEAT", "ENDLOOP": "LOOP"}
 _COUNTS = re.compile(r"[ \t]*(R\d+|[A-Z_]\w*)[ \t]*=(.+?)\bTO\b(.+)")
-_DEF = re.compile(r"DEF[ \t]+(?:REAL|INT|BOOL)[ \t]+(.+)")
+_DEF = re.compile(r"DEF[ \t]+(REAL|INT|BOOL)[ \t]+(.+)")
 _NAME = re.compile(r"([A-Z_]{1,2}\w+)[ \t]*(?:=[ \t]*(.+))?")
 _SETS = re.compile(r"[ \t]*([A-Z_]{2}\w*)[ \t]*=(?!=)")
 _MODAL = re.compile(r"MCALL[ \t]+(L\d{1,7}|[A-Z_]{2}\w*)[ \t]*(?:\([ \t]*\))?")
 
 
-class SinumerikFlow(SinumerikShapes):
-    """Follows the structure of a program; ``SinumerikShapes`` reads what else its lines say."""
+class SinumerikFlow(SinumerikPolar):
+    """Follows the structure of a program; ``SinumerikPolar`` reads what else its lines say."""
 
     modal_sub: tuple[str, int, int] | None = None
 
@@ -42,15 +42,15 @@ class SinumerikFlow(SinumerikShapes):
         if plain[:4] == "DEF ":
             self._define(plain, line)
             return True
-        if plain[:6] == "MCALL ":
-            return self._modal_call(plain, line)
+        if plain[:6] == "MCALL " and self._modal_call(plain, line):
+            return True
         if plain == "MCALL":
             self.modal_sub = None
         found = _SETS.match(plain) if "=" in plain else None
         if found is not None and found[1] in self.variables:
             self._set_variables(plain, line)
             return True
-        return plain[:1] in "AMSHC" and self.sinumerik_shape(plain, line)
+        return plain[:1] in "AMSHCPL" and self.sinumerik_shape(plain, line)
 
     def _set_variables(self, plain: str, line: int) -> None:
         """One or several on a line."""
@@ -60,7 +60,7 @@ class SinumerikFlow(SinumerikShapes):
             if found is None or found[1] not in self.variables:
                 raise GCodeError.at(line, f"found {plain[at:].strip()[:20]!r} where a variable is set; expected ABC=1.")
             at = value_end(plain, found.end())
-            self.machine.store.set(self.variables[found[1]], self.value(plain[found.end() : at], line))
+            self.keep(self.variables[found[1]], self.value(plain[found.end() : at], line))
 
     def _branch(self, found: re.Match[str], index: int) -> None:
         word, line = found[1] or found[3] or found[4], index + 1
@@ -94,7 +94,7 @@ class SinumerikFlow(SinumerikShapes):
             raise GCodeError.at(start + 1, "FOR is not read as it stands; expected FOR R1=1 TO 5.")
         at = self.slot(found[1], line)
         value = self.value(found[2], line) if first else self.machine.store.get(at) + 1.0
-        self.machine.store.set(at, value)
+        self.keep(at, value)
         self.pc = start + 1 if value <= self.value(found[3], line) else end + 1
 
     def _repeat_from(self, label: str, times: int, index: int) -> None:
@@ -137,14 +137,23 @@ class SinumerikFlow(SinumerikShapes):
         found = _DEF.fullmatch(plain)
         if found is None:
             raise GCodeError.at(line, f"{plain[:20]} is not read; expected DEF REAL, DEF INT or DEF BOOL and names.")
-        for part in found[1].split(","):
+        for part in parts(found[2]):
             each = _NAME.fullmatch(part.strip())
             if each is None:
                 raise GCodeError.at(line, f"found {part.strip()[:20]!r} where DEF has a name; fields are not read.")
-            if len(self.variables) >= MOST_VARIABLES:
+            value = self.value(each[2], line) if each[2] else 0.0
+            self.keep(self.define(found[1], each[1], line), value)
+
+    def define(self, kind: str, name: str, line: int) -> int:
+        """The place of a variable of this program or subprogram, new where it has none of that name."""
+        if name not in self.own:
+            if self.used >= MOST_VARIABLES:
                 raise GCodeError.at(line, f"more than {MOST_VARIABLES} variables are defined.")
-            at = self.variables.setdefault(each[1], FIRST_VARIABLE + len(self.variables))
-            self.machine.store.set(at, self.value(each[2], line) if each[2] else 0.0)
+            self.variables[name] = FIRST_VARIABLE + self.used
+            self.used += 1
+            self.own.add(name)
+        self.kinds[self.variables[name]] = kind
+        return self.variables[name]
 
     # --- modal subprograms
     def _modal_call(self, plain: str, line: int) -> bool:
@@ -163,4 +172,8 @@ class SinumerikFlow(SinumerikShapes):
             return
         name, start, level = self.modal_sub
         if self.machine.store.level == level:
-            self._enter(block, name, start, 1)
+            self.enter_modal(block, name, start)
+
+    def enter_modal(self, block: Block, name: str, start: int) -> None:
+        """Call the subprogram that MCALL holds."""
+        self._enter(block, name, start, 1)

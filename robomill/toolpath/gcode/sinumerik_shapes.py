@@ -1,6 +1,7 @@
-"""Sinumerik words that say a shape: rows and circles of holes, arcs by a point or a tangent, MIRROR, SCALE and CASE.
+"""Sinumerik words that say a shape: patterns of holes, arcs by a point or a tangent, MIRROR, SCALE and CASE.
 
-(840D sl, Programming Manual, Fundamentals: CIP, CT, MIRROR, SCALE; Cycles: HOLES1, HOLES2.)
+(840D sl, Programming Manual, Fundamentals: CIP, CT, MIRROR, SCALE; Job Planning, Programming cycles externally: HOLES1,
+HOLES2, CYCLE801, CYCLE802.)
 """
 
 import math
@@ -11,14 +12,28 @@ from robomill.toolpath.gcode.machine import Scale
 from robomill.toolpath.gcode.motion_rules import rotate
 from robomill.toolpath.gcode.offsets import turn_back
 from robomill.toolpath.gcode.program import ARC, TRAVERSE
-from robomill.toolpath.gcode.sinumerik_words import Hole, SinumerikWords
+from robomill.toolpath.gcode.sinumerik_words import Hole, SinumerikWords, parts
 from robomill.toolpath.gcode.words import Block
 
 MOST_HOLES = 10_000
 _START = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?(?:[A-Z_]{2}\w*[ \t]*:(?!=)[ \t]*)?")
 _SCALED = re.compile(r"(A?)(MIRROR|SCALE)\b(.*)")
 _AXIS = re.compile(r"\b([XYZ])[ \t]*=?[ \t]*([-+]?(?:\d+\.?\d*|\.\d+)|(?<==)[^\s]+)")
-_HOLES = re.compile(r"HOLES([12])[ \t]*\(([^()]*)\)")
+_HOLES = re.compile(r"(HOLES[12]|CYCLE80[12])[ \t]*\((.*)\)[ \t]*")
+_HIDDEN = {"HOLES1": 8, "HOLES2": 8, "CYCLE801": 11, "CYCLE802": 21}
+"""Where a pattern says which of its holes are left out."""
+_PLANNED = re.compile(r"(?:MCALL[ \t]+)?((?:POCKET|SLOT)[1-4]|LONGHOLE|CYCLE(?:[67]\d|90|840|899|9[2-5]\d?))[ \t]*\(.*")
+_MILLS = {
+    **dict.fromkeys(("POCKET1", "POCKET3"), "mills a rectangular pocket"),
+    **dict.fromkeys(("POCKET2", "POCKET4"), "mills a circular pocket"),
+    **dict.fromkeys(("SLOT1", "SLOT2", "LONGHOLE", "CYCLE899"), "mills slots"),
+    **dict.fromkeys(("CYCLE61", "CYCLE71"), "mills a face"),
+    **dict.fromkeys(("CYCLE62", "CYCLE63", "CYCLE64", "CYCLE72", "CYCLE73", "CYCLE74", "CYCLE75"), "mills a contour"),
+    **dict.fromkeys(("CYCLE76", "CYCLE77", "CYCLE79"), "mills a spigot"),
+    **dict.fromkeys(("CYCLE70", "CYCLE78", "CYCLE90"), "mills a thread"),
+    "CYCLE60": "engraves text",
+    "CYCLE840": "taps with a compensating chuck",
+}
 _CASE = re.compile(r"CASE[ \t]*\(?(.+?)\)?[ \t]+OF\b(.*)")
 _BRANCH = re.compile(r"([-+]?\d+|DEFAULT)[ \t]+(GOTO[FBC]?)[ \t]+(\w+)")
 _BENT = re.compile(r"\b(CIP|CT)\b")
@@ -43,6 +58,11 @@ class SinumerikShapes(SinumerikWords):
         if holes is not None:
             self._holes(holes[1], holes[2], line)
             return True
+        planned = _PLANNED.fullmatch(plain)
+        if planned is not None:
+            does = _MILLS.get(planned[1], "turns")
+            text = f"{planned[1]} (Sinumerik) {does} in passes that the control plans, which is not read"
+            raise GCodeError.at(line, f"{text}; let the CAM system write its moves out (G0, G1, G2, G3).")
         case = _CASE.fullmatch(plain)
         if case is not None:
             self._case(case[1], case[2], line)
@@ -81,16 +101,36 @@ class SinumerikShapes(SinumerikWords):
         super()._frame(name, text, line)
 
     # --- holes
-    def _holes(self, kind: str, text: str, line: int) -> None:
-        """A row (HOLES1) or a circle (HOLES2) of the holes that MCALL has said."""
+    def _holes(self, name: str, text: str, line: int) -> None:
+        """A row (HOLES1), a circle (HOLES2), a grid or frame (CYCLE801) or places (CYCLE802) of what MCALL has said."""
         if self.modal_hole is None:
-            raise GCodeError.at(line, f"HOLES{kind} has nothing to repeat; give MCALL CYCLE81(...) before.")
-        given = [self.value(each, line) if each.strip() else 0.0 for each in text.split(",")][:6]
-        u, v, third, fourth, fifth, count = [*given, *[0.0] * (6 - len(given))]
+            raise GCodeError.at(line, f"{name} has nothing to repeat; give MCALL CYCLE81(...) before.")
+        said = [each.strip() for each in parts(text)] + [""] * 22
+        if said[_HIDDEN[name]].strip('" '):
+            raise GCodeError.at(line, f"{name} leaves holes out (_HIDE), which is not read; write their places out.")
+        if name == "CYCLE802":
+            points = self._places_of(said, line)
+        else:
+            count = 11 if name == "CYCLE801" else 6
+            given = [self.value(each, line) if each else 0.0 for each in said[:count]]
+            points = _grid(given, line) if count == 11 else self._row_or_circle(name, given, line)
+        self.drill_at(points, self.modal_hole, line)
+
+    def _places_of(self, said: list[str], line: int) -> list[tuple[float, float]]:
+        """CYCLE802: up to nine places; its first two numbers say of each X and Y whether it is one (1) or a step."""
+        if not all(re.fullmatch("1{1,9}", each) for each in said[:2]):
+            raise GCodeError.at(line, "CYCLE802 counts some of its places as steps, which is not read; give places.")
+        pairs = [pair for pair in zip(said[2:20:2], said[3:20:2]) if any(pair)]
+        if not pairs or not all(map(all, pairs)):
+            raise GCodeError.at(line, "CYCLE802 needs X and Y of every place, as in CYCLE802(11,11,10,20,30,20).")
+        return [(self.value(x, line), self.value(y, line)) for x, y in pairs]
+
+    def _row_or_circle(self, name: str, given: list[float], line: int) -> list[tuple[float, float]]:
+        u, v, third, fourth, fifth, count = given
         number = round(count)
-        if not 1 <= number <= MOST_HOLES or (kind == "2" and third <= 0.0):
-            raise GCodeError.at(line, f"HOLES{kind} has {count:g} holes; expected 1 to {MOST_HOLES}, and a radius.")
-        if kind == "1":
+        if not 1 <= number <= MOST_HOLES or (name == "HOLES2" and third <= 0.0):
+            raise GCodeError.at(line, f"{name} has {count:g} holes; expected 1 to {MOST_HOLES}, and a radius.")
+        if name == "HOLES1":
             angle, first, step = math.radians(third), abs(fourth), abs(fifth)
             along = [first + k * step for k in range(number)]
             points = [(u + a * math.cos(angle), v + a * math.sin(angle)) for a in along]
@@ -101,7 +141,7 @@ class SinumerikShapes(SinumerikWords):
             between = fifth if fifth != 0.0 else 360.0 / number
             angles = [math.radians(fourth + k * between) for k in range(number)]
             points = [(u + third * math.cos(t), v + third * math.sin(t)) for t in angles]
-        self.drill_at(points, self.modal_hole, line)
+        return points
 
     def drill_at(self, points: list[tuple[float, float]], hole: Hole, line: int) -> None:
         """Drill at each of the points (program units, as a line would say them)."""
@@ -173,6 +213,26 @@ class SinumerikShapes(SinumerikWords):
         dx, dy = rotate(dx, dy, -self.machine.rotation)
         factors = (1.0, 1.0) if self.machine.scale is None else self.machine.scale.factors[:2]
         return dx / factors[0], dy / factors[1]
+
+
+def _grid(given: list[float], line: int) -> list[tuple[float, float]]:
+    """CYCLE801: columns along the first axis, to and fro from row to row; or the frame of such a grid, around."""
+    u, v, angle, across, along, *more = given
+    columns, rows, frame = round(more[0]), round(more[1]), more[2] % 10.0
+    if not (columns >= 1 and rows >= 1 and columns * rows <= MOST_HOLES):
+        text = f"CYCLE801 has {more[0]:g} by {more[1]:g} holes; expected 1 to {MOST_HOLES} in all."
+        raise GCodeError.at(line, text)
+    if frame not in (0.0, 1.0) or more[4] or more[5]:
+        raise GCodeError.at(line, "CYCLE801 has a slanting grid, which is not read; write the places of its holes out.")
+    cells = [(i, k) for k in range(rows) for i in (range(columns) if k % 2 == 0 else reversed(range(columns)))]
+    if frame:
+        cells = [(i, 0) for i in range(columns)]
+        cells += [(columns - 1, k) for k in range(1, rows)]
+        cells += [(i, rows - 1) for i in reversed(range(columns - 1))] if rows > 1 else []
+        cells += [(0, k) for k in reversed(range(1, rows - 1))] if columns > 1 else []
+    t = math.radians(angle)
+    steps = [(i * abs(across), k * abs(along)) for i, k in cells]
+    return [(u + a * math.cos(t) - b * math.sin(t), v + a * math.sin(t) + b * math.cos(t)) for a, b in steps]
 
 
 def _through(start: list[float], middle: list[float], end: list[float], line: int) -> tuple[float, tuple[float, float]]:

@@ -34,7 +34,7 @@ _FRAME = re.compile(r"(A?TRANS|A?ROT)\b(.*)")
 _ALONE = re.compile(r"\bA?(?:TRANS|ROT)\b")
 _FRAME_WORD = re.compile(r"\b(X|Y|Z|RPL)[ \t]*(?:=|(?=[-+.\d]))")
 _CYCLE = re.compile(r"(MCALL\b[ \t]*)?(?:CYCLE(8[1-9])[ \t]*\(([^()]*)\))?[ \t]*")
-_CORNER = re.compile(r"\b(RND|CHF|CHR)[ \t]*=[ \t]*(\d+(?:\.\d*)?|\.\d+)")
+_CORNER = re.compile(r"\b(RNDM?|CHF|CHR)[ \t]*=[ \t]*(\d+(?:\.\d*)?|\.\d+)")
 _KINDS = {"RND": ROUND, "CHF": BEVEL, "CHR": LEGS}
 _IDENTIFIER = re.compile(r"\b[A-Z_]{1,2}\w+\b")
 _TRUTH = re.compile(r"\b(?:TRUE|FALSE|TRUNC)\b")
@@ -92,9 +92,11 @@ class SinumerikWords(MacroCalls):
         if alone is not None:
             raise GCodeError.at(line, f"{alone[0]} stands on a line of its own, and not as it is here.")
         code = self._values(code, line)
-        corner = _CORNER.search(code)
-        if corner is not None:
-            self.machine.corner = _KINDS[corner[1]], float(corner[2])
+        for corner in reversed(list(_CORNER.finditer(code))):
+            if corner[1] == "RNDM":
+                self.machine.set_rounding(float(corner[2]))
+            else:
+                self.machine.corner = _KINDS[corner[1]], float(corner[2])
             code = code[: corner.start()] + code[corner.end() :]
         return code if code.strip() else None
 
@@ -107,6 +109,9 @@ class SinumerikWords(MacroCalls):
     def __init__(self, *given: Any) -> None:
         super().__init__(*given)
         self.variables: dict[str, int] = {}
+        self.own: set[str] = set()
+        self.used = 0
+        self.kinds: dict[int, str] = {}
         self.rounds: dict[tuple[int, int], int] = {}
 
     def slot(self, name: str, line: int) -> int:
@@ -117,6 +122,12 @@ class SinumerikWords(MacroCalls):
             raise GCodeError.at(line, f"{name} is no variable; define it (DEF REAL {name}) or take R1.")
         self.machine.r_set.add(int(name[1:10]))
         return FIRST_R + int(name[1:10])
+
+    def keep(self, at: int, value: float) -> None:
+        """Set a parameter or variable: an INT keeps the next whole number, a BOOL 0 or 1."""
+        kind = self.kinds.get(at)
+        whole = float(math.floor(value + 0.5)) if kind == "INT" else float(value != 0.0) if kind == "BOOL" else value
+        self.machine.store.set(at, whole)
 
     def value(self, text: str, line: int) -> float:
         """The value of an expression."""
@@ -326,6 +337,19 @@ class SinumerikWords(MacroCalls):
         machine.place({"z": height})
         machine.go(kind, line, end, v_f)
         machine.p = end
+
+
+def parts(text: str) -> list[str]:
+    """What stands between commas, but for those in brackets and quotes."""
+    out, depth, quoted = [""], 0, False
+    for sign in text:
+        quoted ^= sign == '"'
+        depth += 0 if quoted else (sign in "([") - (sign in ")]")
+        if sign == "," and depth == 0 and not quoted:
+            out.append("")
+        else:
+            out[-1] += sign
+    return out
 
 
 def value_end(code: str, at: int) -> int:

@@ -161,7 +161,7 @@ class Subprograms(OWords):
             raise GCodeError.at(line, f"{text}%_N_{name}_SPF, or let the CAM system write its moves out.")
         if "(" in plain and re.search(r"\([^()]*\w[^()]*\)", plain):
             raise GCodeError.at(
-                line, f"{name} is called with values, which is not read; let the CAM system write its moves out."
+                line, f"{name} is called with values, but no line PROC {name}(REAL A, ...) says what they are; add it."
             )
         self._enter(Block(line), name, start, repeats)
         return None

@@ -41,6 +41,11 @@ def test_a_program_begins_with_g0_in_force(dialect: str) -> None:
     assert ends("G21 G90\nX5 Z20.\nM30\n", dialect) == [(2, "R", 5, 0, 20)]
 
 
+def test_a_sinumerik_begins_with_g1_in_force_once_it_has_a_feed() -> None:
+    assert ends("G71 G90\nX5 F9\nM30\n", "sinumerik") == [(2, "F", 5, 0, 0)]
+    assert ends("G71 G90 F9\nX5\nG0 X6\nM30\n", "sinumerik") == [(2, "F", 5, 0, 0), (3, "R", 6, 0, 0)]
+
+
 STRICT = [
     ("G21\nG0 X1\nG80\nZ15.\nM30\n", "Line 4: axis words without a motion"),
     ("G21\nZ15.\nM30\n", "Line 2: axis words without a motion"),

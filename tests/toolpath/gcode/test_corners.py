@@ -74,6 +74,12 @@ def test_g68_turns_what_follows_about_its_centre_until_g69() -> None:
     np.testing.assert_allclose(arc.centre[-1, :2] * 1e3, [0, 5], atol=1e-9)
 
 
+def test_g68_of_mach3_calls_its_centre_a_and_b() -> None:
+    assert ends("G1 X1 Y1 F9\nG68 A10 B0 R90\nX20 Y0\nG69\nX0\n") == [[1, 1], [10, 10], [0, 10]]
+    program = interpret(f"{HEAD}G1 X1 F9\nG68 A10 B5 R90\nG69\nM30\n%\n", dialect="fanuc")
+    assert not program.rotary.any()
+
+
 def test_g16_makes_x_a_radius_and_y_an_angle_until_g15() -> None:
     root = round(20 / np.sqrt(2), 6)
     assert ends("G16\nG1 X20 Y45 F100\nY90\nX10\nG15\nX5 Y6\n") == [[root, root], [0, 20], [0, 10], [5, 6]]

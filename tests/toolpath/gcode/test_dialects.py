@@ -241,8 +241,8 @@ def test_seconds_of_a_dwell_stand_behind_x_u_or_p(dialect: str, word: str) -> No
 
 @pytest.mark.parametrize("code", ["G110", "G111", "G112"])
 def test_poles_of_a_sinumerik_are_named(code: str) -> None:
-    with pytest.raises(GCodeError, match=f"Line 2: {code} sets the pole of polar coordinates"):
-        interpret(f"G71 F9\n{code} X1 Y1\nM30\n")
+    with pytest.raises(GCodeError, match=f"Line 2: {code} sets a pole, which is read for Sinumerik controls alone"):
+        interpret(f"G21 F9\n{code} X1 Y1\nM30\n", dialect="grbl")
 
 
 @pytest.mark.parametrize(

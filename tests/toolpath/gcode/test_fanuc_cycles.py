@@ -118,3 +118,24 @@ def test_a_depth_per_peck_without_a_point_counts_in_steps_of_the_control(dialect
         program = interpret(f"{unit} G90 S9 M3\nG0 Z9.\n{hole}G80\nM30\n", dialect=dialect)
         np.testing.assert_allclose(program.end[program.kind == 1, 2] * 1e3 / mm, [-1, -3, -5], atol=1e-9)
         assert "peck-thousandths" in {f.code for f in program.findings}
+
+
+def test_holes_on_a_circle_about_where_the_tool_is_or_the_line_says() -> None:
+    """Haas Mill Operator's Manual, G70 and G71: radius, first angle, holes and, of an arc, the angle between them."""
+    around = [(60, 0, -5), (50, 10, -5), (40, 0, -5), (50, -10, -5)]
+    assert holes("G99 G81 Z-5 R2 L0\nG70 X50 Y0 I10 J0 L4\n") == around
+    assert holes("G0 X50\nG99 G81 Z-5 R2 L0\nG70 I10 J0 L4\n") == around
+    assert holes("G99 G81 Z-5 R2 L0\nG71 X5 Y5 I10 J90 K-90 L2\n") == [(5, 15, -5), (15, 5, -5)]
+    auto = interpret("G21 G90 F100\nM97 P5\nG0 X9. Z9.\nG99 G81 Z-5. R2. L0\nG70 I1. J0. L2\nM30\nN5 M99\n")
+    assert (auto.end[auto.kind == 1, 0] * 1e3).round(9).tolist() == [10, 8]
+    for line, says in (("G91 G70 I1 J0 L2", "G70 is read in G17 and G90"), ("G70 I1 J0 L0", "for 1 to 10000 holes")):
+        with pytest.raises(GCodeError, match=f"Line 4: .*{says}"):
+            read(f"G99 G81 Z-5 R2 L0\n{line}\n")
+    with pytest.raises(GCodeError, match="Line 3: G70 is not known"):
+        read("G70 I1 J0 L2\n")
+
+
+def test_the_next_place_is_gone_to_at_the_height_where_the_tool_is() -> None:
+    program = read("G99 G81 X1 Z-5 R2\nG98 X3\n")
+    heights = [(round(x * 1e3, 9), round(z * 1e3, 9)) for x, _, z in program.end.tolist()]
+    assert heights[-3:] == [(3, 2), (3, -5), (3, 10)]

@@ -70,7 +70,7 @@ def test_drilling_where_m99_leads() -> None:
     [
         f"{DRILL}L X+5 Y+5 FMAX\nCYCL CALL M3\nL X+15 FMAX\nCYCL CALL\n",
         f"L X+5 Y+5 FMAX\n{DRILL}L FMAX M99\nL X+15 FMAX M99\n",
-        f"{DRILL}CYCL CALL POS X+5 Y+5 Z+10 FMAX\nCYCL CALL POS X+15 Y+5 Z+10 FMAX\n",
+        f"{DRILL}CYCL CALL POS X+5 Y+5 Z+0 FMAX\nCYCL CALL POS X+15 Y+5 Z+0 FMAX\n",
         f"{DRILL}L X+5 Y+5 FMAX M89\nL X+15 FMAX M99\nL X+50 FMAX\n",
         DRILL.replace("~", "") + "L X+5 Y+5 FMAX M99\nL X+15 FMAX M99\n",
     ],
@@ -79,6 +79,39 @@ def test_a_cycle_is_called_in_many_ways(body: str) -> None:
     program = read(body)
     drilled = program.end[(program.kind == 1) & (program.end[:, 2] < -4.9e-3), :2] * 1e3
     np.testing.assert_allclose(drilled, [[5, 5], [15, 5]])
+
+
+def test_a_called_position_shifts_the_cycle_by_its_z_and_is_gone_to_in_the_plane_first() -> None:
+    """TNC 640, Cycle Programming, CYCL CALL POS: the coordinate in the tool axis is an additional datum shift."""
+    program = read(f"{DRILL}CYCL CALL POS X+5 Y+0 Z-2 FMAX\nCYCL CALL POS X+15 Y+0 Z+0 FMAX M3\nL X+9 FMAX M99\n")
+    moves = np.column_stack([program.kind, np.round(program.end * 1e3, 6)[:, [0, 2]]]).tolist()
+    first = [[0, 5, 10], [0, 5, 1], [1, 5, -5], [0, 5, 1], [0, 5, -5], [1, 5, -7], [0, 5, 7]]
+    assert moves[1:8] == first
+    assert moves[8:10] == [[0, 15, 7], [0, 15, 3]]
+    assert moves[12] == [0, 15, -3]
+    assert min(z for _, x, z in moves if x == 9) == -5
+    with pytest.raises(GCodeError, match="Line [0-9]+: CYCL CALL POS has IZ"):
+        read(f"{DRILL}CYCL CALL POS X+5 Y+0 IZ-2 FMAX\n")
+
+
+@pytest.mark.parametrize(
+    ("formula", "value"),
+    [
+        ("SQ 3 + SQ ( 1 + 1 )", 13),
+        ("NEG 2 + ATAN 1", 43),
+        ("FRAC -2.5", -0.5),
+        ("INT -2.5", -2),
+        ("SGN -7 * 3", -3),
+        ("LOG 1000 + LN ( EXP 2 )", 5),
+        ("SQ NEG 2", None),
+    ],
+)
+def test_functions_of_formulas(formula: str, value: float | None) -> None:
+    if value is None:
+        with pytest.raises(GCodeError):
+            read(f"Q1 = {formula}\nL X+Q1\n")
+    else:
+        assert read(f"Q1 = {formula}\nL X+Q1\n").end[-1, 0] * 1e3 == pytest.approx(value)
 
 
 def test_tapping_goes_by_its_pitch() -> None:

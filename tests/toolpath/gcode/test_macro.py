@@ -34,6 +34,15 @@ def test_branches_and_loops_are_followed(body: str, places: list[float], dialect
     assert xs(body, dialect) == places
 
 
+def test_controls_cut_towards_zero_and_linuxcnc_downwards() -> None:
+    """Fanuc, Custom Macro B: FIX[-1.2] is -1, FUP[-1.2] is -2, and a remainder has the sign of what is divided."""
+    body = "#1=FIX[-1.2]\nX#1\n#1=FUP[-1.2]\nX#1\n#1=[-7] MOD 3\nX#1\n#1=FIX[1.8]+FUP[1.2]+[7 MOD 3]\nX#1\n"
+    assert xs(body, "fanuc") == [-1, -2, -1, 4]
+    linuxcnc = "G21\n#1=FIX[-1.2]\nG0 X#1\n#1=FUP[-1.2]\nX#1\n#1=[[-7] MOD 3]\nX#1\nM2\n"
+    assert (interpret(linuxcnc, dialect="linuxcnc").end[:, 0] * 1e3).tolist() == pytest.approx([-2, -1, 2])
+    assert (interpret("G71\nG0 X=TRUNC(-1.7)\nM30\n", dialect="sinumerik").end[:, 0] * 1e3).tolist() == [-1]
+
+
 @pytest.mark.parametrize(
     ("body", "says"),
     [

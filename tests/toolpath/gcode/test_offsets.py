@@ -235,3 +235,21 @@ def test_a_tool_change_behind_a_shift_loses_the_height_on_linuxcnc_alone(dialect
     """LinuxCNC goes on from the words of the last straight move, as if G52 had not been; others know where they are."""
     text = "G21 G90\nG0 Z30.\nG52 Z-20.\nT1 M6\nG0 X1.\nM30\n"
     assert interpret(text, dialect=dialect).end[-1, 2] * 1e3 == pytest.approx(z)
+
+
+def test_g92_before_the_first_move_says_where_the_tool_stands() -> None:
+    body = "G21 G90 F9\nG92 X0 Y0 Z50.\nG0 Z2.\nG1 Z-5.\nG92 X5.\nX6.\nM30\n"
+    program = interpret(body, dialect="fanuc")
+    assert (program.end * 1e3).round(9).tolist() == [[0, 0, 2], [0, 0, -5], [1, 0, -5]]
+    assert program.start[0].tolist() == [0, 0, 0.05]
+    assert "begins-at" in {f.code for f in program.findings}
+    other = interpret(body)
+    assert other.end[0, 2] * 1e3 == pytest.approx(-48), "as LinuxCNC, and a warning says so"
+    assert [f.level for f in other.findings if f.code == "zero-shifted"] == ["warning"]
+    assert "zero-shifted" not in {f.code for f in interpret(body, dialect="linuxcnc").findings}
+
+
+def test_further_systems_of_a_sinumerik_are_called_as_there() -> None:
+    program = interpret("G71 G90 F9\nG505\nG1 X1\nM30\n", dialect="sinumerik")
+    (said,) = (f.message for f in program.findings if f.code == "zero-taken")
+    assert said.startswith("part zero is taken to be that of G505")

@@ -44,6 +44,32 @@ def test_a_row_begins_at_the_end_that_is_nearer_and_a_circle_at_its_angle() -> N
     assert holes(f"TRANS X100\n{drill}AMIRROR X0\nHOLES2(0,0,10,,30,2)\nMCALL\n") == [[90, 0], [91.339746, 5]]
 
 
+def test_grids_frames_and_places() -> None:
+    drill = "MCALL CYCLE81(20,0,2,-10)\n"
+    grid = [[1, 2], [11, 2], [21, 2], [21, 7], [11, 7], [1, 7]]
+    assert holes(f"{drill}CYCLE801(1,2,0,10,5,3,2,0,0,0,0,,0,1)\n") == grid
+    assert holes(f"{drill}CYCLE801(0,0,90,10,5,2,2)\n") == [[0, 0], [0, 10], [-5, 10], [-5, 0]]
+    around = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]]
+    assert holes(f"{drill}N5 CYCLE801(0,0,0,1,1,3,3,1)\n") == around
+    assert holes(f"{drill}CYCLE801(0,0,0,1,0,3,1,1)\n") == [[0, 0], [1, 0], [2, 0]]
+    assert holes(f"{drill}CYCLE801(0,0,0,0,4,1,3,1)\n") == [[0, 0], [0, 4], [0, 8]]
+    assert holes(f"{drill}CYCLE802(111,111,1,2,3,4,5,6)\n") == [[1, 2], [3, 4], [5, 6]]
+    assert holes(f"{drill}R1=7\nCYCLE802(111111111,111111111,R1,R1*2,,,)\n") == [[7, 14]]
+
+
+def test_every_corner_of_a_contour_is_rounded_until_told_otherwise() -> None:
+    program = read("RNDM=2\nG1 X20\nY20\nX0\nG0 Y0\nG1 X5\nZ-1\nRNDM=0\nX9\nY9\n")
+    ends = [[18, 0], [20, 2], [20, 18], [18, 20], [0, 20], [0, 0], [5, 0], [5, 0], [9, 0], [9, 9]]
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, ends, atol=1e-9)
+    np.testing.assert_allclose(program.centre[[2, 4], :2] * 1e3, [[18, 2], [18, 18]], atol=1e-9)
+    own = read("RNDM=2\nG1 X20 RND=5\nY20 CHR=1\nX0\nX-5\n")
+    np.testing.assert_allclose(
+        own.end[1:, :2] * 1e3, [[15, 0], [20, 5], [20, 19], [19, 20], [0, 20], [-5, 20]], atol=1e-9
+    )
+    smooth = read("RNDM=2\nG1 X10\nG3 X10 Y10 CR=5\nG1 X0\n")
+    np.testing.assert_allclose(smooth.end[1:, :2] * 1e3, [[10, 0], [10, 10], [0, 10]], atol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("body", "places"),
     [
@@ -81,6 +107,24 @@ def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
     [
         ("HOLES1(0,0,0,5,10,3)\n", "HOLES1 has nothing to repeat; give MCALL"),
         ("MCALL CYCLE81(20,0,2,-10)\nHOLES2(0,0,10,0,0,0)\n", "HOLES2 has 0 holes; expected 1 to"),
+        ("CYCLE801(0,0,0,1,1,2,2)\n", "CYCLE801 has nothing to repeat"),
+        ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,0,2)\n", "CYCLE801 has 0 by 2 holes"),
+        ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,2,2,0,0,5)\n", "CYCLE801 has a slanting grid"),
+        ('MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,2,2,,,,,"2,3")\n', "CYCLE801 leaves holes out"),
+        ("MCALL CYCLE81(20,0,2,-10)\nCYCLE802(112,111,1,2,3,4,5,6)\n", "CYCLE802 counts some of its places as steps"),
+        ("MCALL CYCLE81(20,0,2,-10)\nCYCLE802(11,11,1,2,3)\n", "CYCLE802 needs X and Y of every place"),
+        (
+            "POCKET3(50,0,1,-5,40,30,8,60,40,0,5,,,500,200,,2)\n",
+            r"POCKET3 .Sinumerik. mills a rectangular pocket in passes that",
+        ),
+        ("N9 POCKET4(50,0,1,-5,20,0,0)\n", r"POCKET4 .Sinumerik. mills a circular pocket"),
+        ("MCALL SLOT1(50,0,1,-5,,1,20,10,0,0)\n", r"SLOT1 .Sinumerik. mills slots"),
+        ("LONGHOLE(50,0,1,-5,,4,30,40,45,20,45,90)\n", r"LONGHOLE .Sinumerik. mills slots"),
+        ('CYCLE72("CONTOUR",50,0,1,-5)\n', r"CYCLE72 .Sinumerik. mills a contour"),
+        ("CYCLE71(50,0,1,0,0,0,40,30)\n", r"CYCLE71 .Sinumerik. mills a face"),
+        ("MCALL CYCLE840(50,0,1,-5)\n", r"CYCLE840 .Sinumerik. taps with a compensating chuck"),
+        ("RNDM=2\nG1 X10\nG3 X20 Y0 CR=5\nG1 Y5\n", "RNDM rounds the corner between a cut and an arc"),
+        ("RNDM=2\nG1 X10\nX10 Y1\nX0\n", "a corner takes 2.000 mm of both cuts"),
         ("CIP X10 Y0 I1=5 J1=0\n", "CIP has three points on one line"),
         ("CIP X10 Y0\n", "CIP needs I1 and J1"),
         ("CIP X10 Y0 Z5 I1=5 J1=5\n", "CIP that also climbs is not read"),
@@ -95,5 +139,5 @@ def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
     ],
 )
 def test_what_cannot_be_read_is_refused(body: str, says: str) -> None:
-    with pytest.raises(GCodeError, match=rf"Line [34]: .*{says}"):
+    with pytest.raises(GCodeError, match=rf"Line [3-6]: .*{says}"):
         read(body)

@@ -16,6 +16,7 @@ SAYS = {
     "G70 to G72": "may move",
     "U V W, G17.1": "no U axis",
     "G68.2": "tilts the working plane",
+    "POCKET SLOT LONGHOLE CYCLE60 to 79, 90, 840": "mills a circular pocket in passes that the control plans",
     "FL, PLANE, other cycles": "FL X.1 LEN5 is of Heidenhain's",
     "$H $J": "moves the machine",
 }

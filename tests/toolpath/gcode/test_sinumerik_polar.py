@@ -1,0 +1,70 @@
+"""Polar places and arcs by their angle of Sinumerik programs: places reckoned by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import Program, interpret
+
+
+def read(body: str) -> Program:
+    return interpret(f"G71 G90 G17 F100\nG0 X0 Y0\n{body}M30\n", dialect="sinumerik")
+
+
+def ends(body: str) -> list[list[float]]:
+    return (np.round(read(body).end[1:, :2] * 1e3, 6) + 0.0).tolist()
+
+
+@pytest.mark.parametrize(
+    ("body", "places"),
+    [
+        ("G111 X10 Y20\nG1 AP=90 RP=5\nAP=180\n", [[10, 25], [5, 20]]),
+        ("G0 X3 Y4\nG110 X1 Y1\nG1 AP=0 RP=2\nG112 X10 Y0\nAP=0 RP=1\n", [[3, 4], [6, 5], [15, 5]]),
+        ("G111 X0 Y0\nG1 AP=30 RP=10\nAP=IC(60)\n", [[8.660254, 5], [0, 10]]),
+        ("R1=2\nG111 X=R1 Y0\nG1 RP=R1*2 AP=R1*90 Z-1\n", [[-2, 0]]),
+        ("TRANS X100\nG111 X0 Y0\nG1 AP=90 RP=5\n", [[100, 5]]),
+        ("G111 X0 Y0\nG0 AP=0 RP=10\nG3 AP=90 RP=10\nG2 AP=0\n", [[10, 0], [0, 10], [10, 0]]),
+    ],
+)
+def test_places_about_a_pole(body: str, places: list[list[float]]) -> None:
+    assert ends(body) == places
+
+
+def test_a_polar_arc_turns_about_its_pole_or_as_it_says() -> None:
+    program = read("G111 X5 Y0\nG0 AP=0 RP=10\nG3 AP=270 RP=10\nG2 CR=-10 AP=0\n")
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, [[15, 0], [5, -10], [15, 0]], atol=1e-9)
+    np.testing.assert_allclose(program.centre[2:, :2] * 1e3, [[5, 0], [5, 0]], atol=1e-9)
+    np.testing.assert_allclose(np.degrees(program.sweep[2:]), [270, -270], atol=1e-6)
+
+
+def test_arcs_by_their_angle_beside_end_or_centre() -> None:
+    program = read(
+        "G0 X10\nG3 X0 Y10 AR=90\nG2 X10 Y0 AR=270\nG3 I-10 J0 AR=90\nG2 I=AC(0) J=AC(0) AR=180\nG91 G3 J10 AR=90\n"
+    )
+    places = [[10, 0], [0, 10], [10, 0], [0, 10], [0, -10], [10, 0]]
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, places, atol=1e-9)
+    np.testing.assert_allclose(np.degrees(program.sweep[2:]), [90, -270, 90, -180, 90], atol=1e-6)
+    centres = [[0, 0], [10, 10], [0, 0], [0, 0], [0, 0]]
+    np.testing.assert_allclose(program.centre[2:, :2] * 1e3, centres, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("G1 AP=0 RP=1\n", "Line 3: AP and RP count from a pole; give G111"),
+        ("G111 X5\n", "Line 3: G111 needs X and Y"),
+        ("G112 X5 Y5\n", "Line 3: G112 needs X and Y, and G112 a pole before it"),
+        ("G111 X0 Y0\nG91 G1 AP=0 RP=1\n", "Line 4: AP and RP in G91 are not read"),
+        ("G111 X0 Y0\nG1 AP=0\n", "Line 4: a polar place needs its angle AP and radius RP"),
+        ("G111 X0 Y0\nG1 AP=IC(5) RP=1\n", r"Line 4: a polar place needs .* AP=IC\( \) needs an AP before it"),
+        ("G18\nG111 X0 Y0\n", "Line 4: G111 is read in G17"),
+        ("G1 X5 AR=90\n", "Line 3: AR is the angle of G2 or G3"),
+        ("G2 X5 I2 AR=90\n", "Line 3: AR is the angle of G2 or G3"),
+        ("G2 X5 AR=360\n", "Line 3: AR is the angle of G2 or G3"),
+    ],
+)
+def test_what_cannot_be_reckoned_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=says):
+        read(body)
