@@ -50,9 +50,19 @@ export default function (component) {
       item.parentElement.setAttribute('role', 'list');
     }
   };
+  // An equation wider than its place is scrolled; by keyboard, too.
+  const equations = () => {
+    for (const each of document.querySelectorAll('.katex-display:not([tabindex])')) {
+      if (each.scrollWidth <= each.clientWidth) continue;
+      each.setAttribute('tabindex', '0');
+      each.setAttribute('role', 'group');
+      each.setAttribute('aria-label', 'Equation, to be scrolled sideways');
+    }
+  };
   lists();
   const timer = setInterval(() => {
     lists();
+    equations();
     const now = look();
     if (now !== seen) { seen = now; setTriggerValue('changed', now); }
   }, 400);

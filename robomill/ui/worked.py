@@ -31,4 +31,4 @@ def mathematics(make: Callable[[], Sequence[Worked]], name: str) -> None:
             st.latex(each.numbers)
         pieces.note(f"In the paper: {each.paper}. {each.units}")
         pieces.note("As LaTeX; the symbol at the right copies it.")
-        st.code(each.tex, language="latex", wrap_lines=True)
+        st.code(each.tex, language=None, wrap_lines=True)
