@@ -17,6 +17,7 @@ from robomill.toolpath.gcode.macro import with_brackets
 from robomill.toolpath.gcode.motion_rules import keep_motion
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.scaling import scale_words
+from robomill.toolpath.gcode.sinumerik import spaced
 from robomill.toolpath.gcode.stretches import Stretches
 from robomill.toolpath.gcode.subprograms import CALLS
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
@@ -77,7 +78,8 @@ class Interpreter(Klartext):
             code, mark, comment = raw.partition(";")
             if len(code) > MAX_CODE:
                 raise GCodeError.at(line, f"{len(code)} characters long; at most {MAX_CODE} can be read.")
-            left = None if self.sinumerik_flow(code.upper(), line) else self.sinumerik_call(code.upper(), line)
+            plain = spaced(code.upper())
+            left = None if self.sinumerik_flow(plain, line) else self.sinumerik_call(plain, line)
             left = None if left is None else self.sinumerik_line(left, line)
             if left is None:
                 return

@@ -9,7 +9,8 @@ from robomill.toolpath.gcode.tool_axis import angles_of
 _SILENT = re.compile(
     r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|COMPCURV|COMPSURF|STOPRE|CFTCP|CFIN|CFC|ORIWKS|"
     r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|KONT|DIAMOF|FNORM|FLIN|FGROUP|SETMS|CUT2D|CDOF|WALIMOF|WALIMON|"
-    r"STOPFIFO|STARTFIFO)\b(?:[ \t]*\([^()]*\))?|"
+    r"STOPFIFO|STARTFIFO|CPRECON|CPRECOF|ORISON|ORISOF|SBLON|SBLOF|DISPLON|DISPLOF)\b(?:[ \t]*\([^()]*\))?|"
+    r"\b(?:ADIS|ADISPOS|CTOL|OTOL|ATOL|(?:ACC|JERKLIM|VELOLIM)\[\w+\])[ \t]*=[ \t]*[.\d]+|"
     r"\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|\bGROUP_(?:BEGIN|END)[ \t]*\([^()]*\)|"
     r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)|\bCYCLE800[ \t]*\([ \t]*\)",
     re.IGNORECASE,
@@ -25,6 +26,16 @@ _SWIVEL = re.compile(r"\bCYCLE800[ \t]*\(([^()]*)\)", re.IGNORECASE)
 _TURNS = re.compile(r"\b(G0?4)[ \t]+S[ \t]*=?[ \t]*([.\d]+)", re.IGNORECASE)
 _TOOL = re.compile(r"\bT[ \t]*=?[ \t]*\"([^\"]*)\"", re.IGNORECASE)
 _MODES = re.compile(r"\bG9[01]\b(?!\.)", re.IGNORECASE)
+_ADDRESS = r"[A-DF-Z][-+]?(?:\d+(?:\.\d*)?|\.\d+)"
+_TIGHT = re.compile(rf"(?<![\w.+\-])(?:{_ADDRESS})+[A-DF-Z]?(?![\w.(+\-])")
+_EACH = re.compile(rf"({_ADDRESS})(?=[A-Z])")
+
+
+def spaced(code: str) -> str:
+    """A line (capitals, no comment) with blanks between its words; names, of two letters or more, stay whole."""
+    if '"' in code:
+        return code
+    return _TIGHT.sub(lambda found: _EACH.sub(r"\1 ", found[0]), code)
 
 
 def translated(raw: str, number: int, machine: Machine) -> str:

@@ -37,6 +37,7 @@ _CYCLE = re.compile(r"(MCALL\b[ \t]*)?(?:CYCLE(8[1-9])[ \t]*\(([^()]*)\))?[ \t]*
 _CORNER = re.compile(r"\b(RNDM?|CHF|CHR)[ \t]*=[ \t]*(\d+(?:\.\d*)?|\.\d+)")
 _KINDS = {"RND": ROUND, "CHF": BEVEL, "CHR": LEGS}
 _IDENTIFIER = re.compile(r"\b[A-Z_]{1,2}\w+\b")
+_TWO = re.compile(r"\b(?:POT[ \t]*\(((?:[^()]|\([^()]*\))*)\)|ATAN2[ \t]*\(((?:[^()]|\([^()]*\))*)\))")
 _TRUTH = re.compile(r"\b(?:TRUE|FALSE|TRUNC)\b")
 _IN_PLACE = re.compile(r"\b([XYZABCIJK])[ \t]*=[ \t]*(AC|IC|DC|ACP|ACN)[ \t]*\(((?:[^()]|\([^()]*\))*)\)")
 _COMPARES = (("==", " EQ "), ("<>", " NE "), (">=", " GE "), ("<=", " LE "), (">", " GT "), ("<", " LT "))
@@ -146,7 +147,7 @@ class SinumerikWords(MacroCalls):
                 raise GCodeError.at(line, f"R{number} is read before the program sets it; set it at the start.")
             return f"#{FIRST_R + number}"
 
-        text = _R.sub(known, text)
+        text = _TWO.sub(lambda found: _of_two(found, line), _R.sub(known, text))
         text = _IDENTIFIER.sub(self._known_name, text)
         text = _TRUTH.sub(lambda found: {"TRUE": "1", "FALSE": "0", "TRUNC": "FIX"}[found[0]], text)
         for sign, word in _COMPARES:
@@ -337,6 +338,16 @@ class SinumerikWords(MacroCalls):
         machine.place({"z": height})
         machine.go(kind, line, end, v_f)
         machine.p = end
+
+
+def _of_two(found: re.Match[str], line: int) -> str:
+    """POT, the square, and ATAN2 of two values, in the words of ``value_rules``."""
+    if found[1] is not None:
+        return f"(({found[1]})**2)"
+    values = parts(found[2])
+    if len(values) != 2:
+        raise GCodeError.at(line, "ATAN2 needs two values, as in ATAN2(R1,R2).")
+    return f"(ATAN({values[0]})/({values[1]}))"
 
 
 def parts(text: str) -> list[str]:

@@ -39,6 +39,20 @@ VALUES = [
 ]
 
 
+VALUES += [
+    ("R1=POT(3)\nG1 X=R1+POT(1+(1))\n", 13),
+    ("R1=ATAN2(1,1)\nG1 X=R1+ATAN2(2*(1),-2)\n", 180),
+    # words need no blanks between them
+    ("N10G1X5Y1\nN20X=IC(2)\n", 7),
+    ("G91G1X5\nG90X=IC(2)\n", 7),
+    ("G1X4\nG91X=AC(9)\n", 9),
+    ("R1=2\nN5G1X=R1*3 F50\n", 6),
+    ("G1X-1.776E-15Y1\nG4F1\n", 0),
+    ("G1 X3\nL7P2\nM30\n%_N_L7_SPF\nG91X1\nG90\nM17\n", 5),
+    ("G641 ADIS=0.5 ADISPOS=.2\nCTOL=0.01 ACC[X]=50\nG1 X8\n", 8),
+]
+
+
 @pytest.mark.parametrize(("body", "x"), VALUES)
 def test_r_parameters_labels_and_jumps(body: str, x: float) -> None:
     assert places(body)[-1][0] == pytest.approx(x)
