@@ -21,6 +21,7 @@ WRITTEN = {
     ("report", "out"): ("a page", (".html", ".htm")),
     ("grade", "out"): ("a table", (".csv",)),
 }
+MAKING = ("simulate", "study", "compensate", "grade")  # which make the folder that they write to
 PROGRAMS = ("compensate", "drawing")  # whose names end as a control likes it, but as no other file
 
 
@@ -52,6 +53,8 @@ def check_kept(arguments: Any) -> None:
         if any(place.resolve() == each.resolve() for each in written):
             raise RobomillError(f"--{name} {place}: another option writes there already; give another.")
         _check_name(said["verb"], name, place)
+        if said["verb"] not in MAKING and not place.parent.is_dir():
+            raise RobomillError(f"--{name} {place}: the folder {place.parent} is not there; make it first.")
         written.append(place)
 
 

@@ -65,7 +65,7 @@ class Stock(Value):
             if not b - a > 1e-9:
                 found = f"{format_si(a, 'mm')} to {format_si(b, 'mm')}"
                 raise SurfaceError(f"Stock in {name}: found {found}; the upper end must lie above the lower end.")
-        if self.size.max() < LEAST:
+        if self.triangles is None and self.size.max() < LEAST:
             size = format_many(self.size, "mm", 3, between=" × ")
             raise SurfaceError(
                 f"Stock: the block is {size}, less than any part: was it meant in m? Then give lower and upper.",

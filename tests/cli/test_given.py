@@ -193,6 +193,8 @@ def test_what_is_read_is_never_written_over(own: Path, words, sentence: str, cap
         ("compensate paper_flute --out x.toml", "x.toml: a program is written there; give a name that ends in .nc"),
         ("drawing bracket --out x.svg", "x.svg: a program is written there; give a name that ends in .nc"),
         ("map my.toml --quantity C_yy --x 0 --y 0 --z 0 --out m.toml", "'m.toml' ends in '.toml'; expected .csv"),
+        ("place paper_flute --out no/moved.toml", "--out no/moved.toml: the folder no is not there; make it first"),
+        ("gcode h.nc --moves no/m.jsonl", "the folder no is not there; make it first"),
         ("compensate paper_flute --out .", "this is a folder; give the name of a file"),
         ("place paper_flute --out .", "this is a folder; give the name of a file"),
         ("grade . --out .", "this is a folder; give the name of a file"),
