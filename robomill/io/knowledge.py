@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from robomill.arrays import FloatArray
 from robomill.compliance.spring import Spring
 from robomill.errors import LoadTestError
 from robomill.identification.knowledge import Knowledge
@@ -13,6 +14,8 @@ from robomill.identification.models import MODELS, Model
 from robomill.io.tables import Table
 from robomill.robot.model import Robot
 
+ROUNDING, LARGEST = 1e-6, 1e4  # of correlations; in SI, beyond anything that is measured here
+NOTHING = 1e-30  # what is known exactly varies with nothing
 SAME = 0.01  # as a share: compliances that differ by more are others
 
 
@@ -48,17 +51,39 @@ def knowledge_from_table(table: Table, robot: Robot, springs: Sequence[Spring]) 
         p = len(model.parameters(robot))
     except LoadTestError as refused:
         raise table.refuse("bending_joints", str(refused)) from None
-    error = table.numbers("model_error", 3, "1", None)
+    error = _sizes(table, "model_error", 3)
     known = Knowledge(
         model,
         table.numbers("parameters", p, "1"),
-        table.rows("covariance", p, "1", p),
+        _covariance(table, "covariance", p),
         table.whole("dof") if table.has("dof") else None,
-        table.rows("force_covariance", 3, "1", 3) if table.has("force_covariance") else None,
-        table.numbers("lengths", 2 * robot.rows, "1", None),
+        _covariance(table, "force_covariance", 3) if table.has("force_covariance") else None,
+        _sizes(table, "lengths", 2 * robot.rows),
         table.text("words", "from load tests"),
         error=None if error is None else ModelError(*error),
     )
+    if known.dof is not None and known.dof < 1:
+        raise table.refuse("dof", f"found {known.dof}, expected 1 or more.")
     table.finish()
     of_these = not model.has("joint") or np.allclose(known.parameters[: robot.n], robot.C_theta, rtol=SAME, atol=0.0)
     return known.held_by(robot, springs) if of_these else known
+
+
+def _covariance(table: Table, key: str, p: int) -> FloatArray:
+    """(p, p) numbers that are a covariance: symmetric, and no combination of what they are of has one below zero."""
+    found = table.rows(key, p, "1", p)
+    size = np.sqrt(np.maximum(np.diag(found), 0.0))
+    scale = np.where(size > 0.0, size, NOTHING)
+    alike = found / np.outer(scale, scale)
+    whole = np.diag(found).min() >= 0.0 and size.max() <= LARGEST and np.abs(alike).max() <= 1.0 + ROUNDING
+    if not whole or np.abs(alike - alike.T).max() > ROUNDING or np.linalg.eigvalsh(alike).min() < -ROUNDING:
+        raise table.refuse(key, "these numbers are no covariance; expected a symmetric matrix with nothing below zero.")
+    return found
+
+
+def _sizes(table: Table, key: str, count: int) -> FloatArray | None:
+    """Standard deviations, or what a model misses: none below zero."""
+    found = table.numbers(key, count, "1", None)
+    if found is not None and not ((np.asarray(found) >= 0.0) & (np.asarray(found) <= LARGEST)).all():
+        raise table.refuse(key, f"found {np.asarray(found).tolist()!r:.60}, expected numbers from 0 to {LARGEST:g}.")
+    return found

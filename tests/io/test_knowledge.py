@@ -52,3 +52,23 @@ def test_what_is_of_the_wrong_shape_is_refused():
     for bad in (*broken, {**table, "force_covariance": 3.0}, {**table, "dof": "many"}, {**table, "parameters": [1.0]}):
         with pytest.raises(ProjectError, match=r"\[uncertainty\]"):
             read(bad)
+
+
+@pytest.mark.parametrize(
+    ("key", "wrong"),
+    [
+        ("dof", 0),
+        ("covariance", -np.eye(9) * 1e-16),
+        ("covariance", np.triu(np.full((9, 9), 1e-16))),
+        ("covariance", np.eye(9) * 1e300),
+        ("covariance", np.full((9, 9), 1e-16) * (2.0 * np.eye(9) - 1.0)),  # each pair opposed: there is no such thing
+        ("force_covariance", np.diag([1.0, -1.0, 1.0])),
+        ("model_error", [-0.1, 0.0, 0.0]),
+        ("model_error", [1e200, 0.0, 0.0]),
+        ("lengths", [-1e-3] * 10),
+    ],
+)
+def test_numbers_that_say_nothing_of_how_sure_one_is_are_refused(key: str, wrong):
+    table = knowledge_to_table(Knowledge.of(FIT, ROBOT)) | {key: np.asarray(wrong).tolist()}
+    with pytest.raises(ProjectError, match=rf"\[uncertainty\], {key}: "):
+        read(table)
