@@ -19,16 +19,20 @@ MOST_Q = {"Q": 1999, "QL": 499, "QR": 499}
 MAX_PECKS = 10_000
 _Q = re.compile(r"(Q[LR]?)(\d+)")
 _SET = re.compile(r"(?:FN ?(\d+) ?: ?)?(Q[LR]?\d+) ?= ?(.+)")
-_JUMP = re.compile(r"FN ?(9|10|11|12) ?: ?IF (.+?) (EQU|NEQU|NEQ|GT|LT) (.+?) GOTO LBL ?(\"[^\"]+\"|\d+)")
+_JUMP = re.compile(
+    r"FN ?(9|10|11|12) ?: ?IF ?(.+?) ?(?<![A-Z])(EQU|NEQU|NEQ(?!\d)|NE|GT|LT)(?![A-PR-Z]) ?(.+?) ?"
+    r"GOTO ?LBL ?(\"[^\"]+\"|\d+)"
+)
+_COMPARES = {"9": ("EQU",), "10": ("NE", "NEQ", "NEQU"), "11": ("GT",), "12": ("LT",)}
 _SIGNS = {0: "", 1: "+", 2: "-", 3: "*", 4: "/"}
 _TWO = {
     0: r"(.+)",
-    1: r"(.+?) ?\+ (.+)",
-    2: r"(.+?) ?- (.+)",
+    1: r"(.+?) ?\+ ?(.+)",
+    2: r"(.+?) ?- ?(.+)",
     3: r"(.+?) ?\* ?(.+)",
-    4: r"(.+?) (?:DIV|/) ?(.+)",
-    8: r"(.+?) LEN ?(.+)",
-    13: r"(.+?) ANG ?(.+)",
+    4: r"(.+?) ?(?:DIV|/) ?(.+)",
+    8: r"(.+?) ?LEN ?(.+)",
+    13: r"(.+?) ?ANG ?(.+)",
 }
 _ONE = {5: "SQRT", 6: "SIN", 7: "COS"}
 _FUNCTION = re.compile(
@@ -116,6 +120,10 @@ class KlartextValues(SinumerikProcs):
         """Set Q parameters, or jump; False for other lines."""
         jump = _JUMP.fullmatch(code)
         if jump is not None:
+            if jump[3] not in (said := _COMPARES[jump[1]]):
+                raise GCodeError.at(
+                    line, f"FN {jump[1]} compares by {said[0]}, found {jump[3]}; mend the one or other."
+                )
             a, b = self.number(jump[2], line), self.number(jump[4], line)
             same = abs(a - b) <= 1e-9
             if {"9": same, "10": not same, "11": a > b and not same, "12": a < b and not same}[jump[1]]:
@@ -129,7 +137,7 @@ class KlartextValues(SinumerikProcs):
             return True
         kind = int(found[1])
         if kind in _ONE:
-            self.set_q(found[2], self.number(f"{_ONE[kind]}({found[3]})", line), line)
+            self.set_q(found[2], self.number(self._of_one(kind, found[3], line), line), line)
             return True
         terms = re.fullmatch(_TWO[kind], found[3]) if kind in _TWO else None
         if terms is None:
@@ -141,6 +149,14 @@ class KlartextValues(SinumerikProcs):
         text = _SIGNS[kind].join(f"({each})" for each in terms.groups())
         self.set_q(found[2], self.number(text, line), line)
         return True
+
+    def _of_one(self, kind: int, said: str, line: int) -> str:
+        """The expression of FN 5 to 7, which write their function out themselves, as in SQRT +16."""
+        name = _ONE[kind]
+        value = said.removeprefix(name).strip()
+        if re.match("[A-Z]{2}", value) and not _Q.match(value):
+            raise GCodeError.at(line, f"FN {kind} is {name}, found {said[:20]}; expected {name} and a value.")
+        return f"{name}({value})"
 
     # --- cycles
     def cycle_words(self, code: str, line: int) -> str | None:
