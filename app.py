@@ -15,7 +15,7 @@ from robomill.ui.verdict import NOT_COUNTED, decides_at, tiles_of_b
 from robomill.ui.worked import mathematics
 from robomill.units import format_limit
 
-HEIGHT = 285
+HEIGHT, ASPECT = 285, 1.1  # of the pictures; of the arm's frame: it is whole in the narrowest column
 
 
 def start() -> None:
@@ -42,7 +42,7 @@ def start() -> None:
     with left, st.container(border=True, height="stretch"):
         index = decides_at(result)
         if index >= 0:
-            arm_at(result, index, "start-arm", HEIGHT, zoom=0.9)
+            arm_at(result, index, "start-arm", HEIGHT, aspect=ASPECT)
         else:
             ui.note("The arm is drawn where the verdict is decided: nothing of this cut is judged yet.")
     with middle, st.container(border=True, height="stretch"):

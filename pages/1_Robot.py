@@ -18,7 +18,8 @@ theta = pose.configuration(project, cut)
 now, old = pose.compared(project, theta)
 moved, before = pose.moved(project, now, old, cut)
 
-ui.headline(f"Robot · {robot.title or robot.name}", moved.sentence(view.length), pose.lead(project, moved, cut))
+lead = pose.lead(project, moved, cut, view.length)
+ui.headline(f"Robot · {robot.title or robot.name}", moved.sentence(view.length), lead)
 other.tiles(pose.tiles(view, now, old, (moved, before)), pose.tiles_of_b)
 mathematics(lambda: at_the_pose(now, moved.push.F, moved.delta), "robot")
 

@@ -37,7 +37,7 @@ if result is not None:
 question.panel(path, "" if result is None else result.verdict.premise)
 
 program = source.kind == "program" and not drawing.shown()
-left, right = ui.split([1, 2] if program else [1.2, 1.75] if not drawing.shown() else [1, 1.2], "steps", gap="large")
+left, right = ui.split([1, 2] if program else [1.2, 1.75] if not drawing.shown() else [1, 1.2], "steps")
 with left:
     kind_switch()
     file_inputs(dark)

@@ -42,9 +42,11 @@ def arm(
     pieces.figure(cached.kept_figure(key, kept, draw), key, caption=words[0], alt=words[1])
 
 
-def arm_at(result: SimulationResult, i: int, key: str, height: int, zoom: float = 1.0) -> None:
-    """The arm as it stands at sample ``i`` of a run, with force and displacement."""
-    scene = arm_scene(result, i, session.project().view.length)
+def arm_at(
+    result: SimulationResult, i: int, key: str, height: int, zoom: float = 1.0, aspect: float | None = None
+) -> None:
+    """The arm as it stands at sample ``i`` of a run, with force and displacement; it fills a frame of an ``aspect``."""
+    scene = replace(arm_scene(result, i, session.project().view.length), aspect=aspect)
     drawn = format_times(displacement_scale(result.delta[i], scene.frames))
     lost = "" if result.reached.all() else " Grey dots: out of reach."
     caption = f"Blue: force on the tool. Orange: displacement, shown {drawn}.{lost}"

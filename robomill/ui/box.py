@@ -41,8 +41,9 @@ class NumberBox:
         """The label with its unit."""
         return f"{self.label}, {unit_label(self.unit)}" if unit_label(self.unit) else self.label
 
-    def written(self, value: float | None, cell: bool = False) -> str:
-        """A value in SI as a line of text: with the digits of the box, or in a ``cell`` with those it has.
+    def written(self, value: float | None, cell: bool = False, decimals: int | None = None) -> str:
+        """A value in SI as a line of text: with the digits of the box, or in a ``cell`` with those it has, or with so
+        many ``decimals``.
 
         "" is None.
         """
@@ -51,8 +52,12 @@ class NumberBox:
         if self.whole:
             return str(int(value))
         shown = float(self.said(float(value), self.unit))
-        digits = UNITS[self.unit].digits if self.digits is None else self.digits
-        return write_number(shown, None if cell else digits) if math.isfinite(shown) else ENDLESS
+        return write_number(shown, decimals if cell else self.decimals) if math.isfinite(shown) else ENDLESS
+
+    @property
+    def decimals(self) -> int:
+        """Those that a number of the box is shown with."""
+        return UNITS[self.unit].digits if self.digits is None else self.digits
 
     def named(self, value: float | None, cell: bool = False) -> str:
         """A value in SI with its unit, as a sentence says it."""

@@ -54,8 +54,17 @@ class Sheet:
         return self._each(frame, lambda column, row, cell: None if empty(cell) else cell)
 
     def shown(self, frame: pd.DataFrame) -> pd.DataFrame:
-        """A plain ``frame`` with its numbers as lines of text."""
-        return self._each(frame, lambda column, row, cell: self.box(column, row).written(cell, cell=True))
+        """A plain ``frame`` with its numbers as lines of text; those of a column have equally many decimals, where none
+        has more than its unit."""
+        texts = self._each(frame, lambda column, row, cell: self.box(column, row).written(cell, cell=True))
+        most = {name: max(map(_decimals, texts[name]), default=0) for name in self.numbers}
+
+        def level(column: str, row: int, cell: Any) -> str:
+            box = self.box(column, row)
+            alike = cell and not box.whole and most[column] <= box.decimals  # a zero is exact, and stays a plain one
+            return box.written(cell, True, most[column]) if alike else texts.loc[row, column]
+
+        return self._each(frame, level)
 
     def configured(self) -> dict[str, Any]:
         """The columns as Streamlit is told of them."""
@@ -211,6 +220,11 @@ def _take(name: str, key: str, write: Callable[[pd.DataFrame], None], sheet: She
     held.read_as[name] = name, _few(now.understood)
     if now.refused or now.converted or sheet.linked:
         session.keep(_turn(name), session.kept(_turn(name), 0) + 1)
+
+
+def _decimals(text: str) -> int:
+    """How many a number has as it is written."""
+    return len(text.partition(".")[2])
 
 
 def _few(sentences: Sequence[str]) -> str:

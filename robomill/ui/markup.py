@@ -26,8 +26,11 @@ def as_html(*parts: str) -> Html:
     return Html(" ".join(part if isinstance(part, Html) else html.escape(part) for part in parts))
 
 
-# A number and what follows it as its unit, how many times, which line of a program: a line never ends between the two.
-_UNIT = re.compile(r"(?<=\d) (?=(?:%|mm|µm|in|thou|N|m|s)(?!\w))|(?<=×) (?=\d)|(?<=\bline) (?=\d)")
+# A number and what follows it as its unit, how many times, which line or joint: a line never ends between the two.
+_UNIT = re.compile(
+    r"(?<=\d) (?=(?:%|mm|µm|in|thou|N|m|s)(?!\w))|(?<=\bN) (?=m\b)|"
+    r"(?<=[×±]) (?=\d)|(?<=\bline) (?=\d)|(?<=\bjoint) (?=\d)"
+)
 
 
 def unparted(text: str) -> str:

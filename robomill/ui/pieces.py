@@ -191,7 +191,7 @@ def strong(words: str) -> None:
 
 def thirds() -> tuple[Any, Any]:
     """The two columns of a page: inputs in the left third, the picture in the right two thirds."""
-    left, right = split([1, 2], "page", gap="large")
+    left, right = split([1, 2], "page")
     return left, right
 
 

@@ -98,17 +98,18 @@ class Moved:
             return f"{self.push.words} does not move the tip."
         return f"{self.push.words} moves the tip by {self.components(unit)}."
 
-    def blame(self) -> str:
-        """Which joints give, with their shares; "" where nothing moves."""
+    def blame(self, unit: str) -> str:
+        """Which joints give, with their shares of the displacement; "" where nothing moves."""
         share = self.shares
         main = [j for j in np.argsort(-share, kind="stable") if share[j] > NAMED][:3]
         if not main:
             return ""
-        most = "It" if sum(share[j] for j in main) > 0.98 else "Most of it"
         per_cent = whole([float(share[j]) for j in main])
-        *first, last = [f"joint {self.joints[j]} ({each} %)" for j, each in zip(main, per_cent, strict=True)]
-        named = " and ".join([", ".join(first), last] if first else [last])
-        return f"{most} comes from {named}."
+        named = [f"from joint {self.joints[j]}" for j in main]
+        (most, *others), (first, *rest) = per_cent, named
+        told = [f"{most} % come {first}", *(f"{each} % {where}" for each, where in zip(others, rest, strict=True))]
+        last = told.pop()
+        return f"Of these {format_si(self.size, unit)}, {' and '.join([', '.join(told), last] if told else [last])}."
 
 
 @dataclass(frozen=True, eq=False)

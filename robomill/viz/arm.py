@@ -74,7 +74,7 @@ def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str 
         opaque += solids.arrow(tip, vector, p.warm, width)
         said.append((tip + far[1] * vector, scene.displacement_label, p.warm))
     if scene.aspect is not None:
-        fig.add_traces([solids.painted(opaque), _joint_hover(scene, p.text)])
+        fig.add_traces([solids.painted(opaque), _joint_hover(scene, p.text), *_part_traces(scene, reach, dark)])
         across = [i for i in (0, 1) if abs(scene.eye[i]) < 0.9 * np.linalg.norm(scene.eye)]
         said += [(0.19 * reach * np.eye(3)[i], "XYZ"[i], axis_colours(dark)["xyz"[i]]) for i in across]
         return _filling(fig, scene, said, dark)

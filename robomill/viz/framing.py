@@ -48,7 +48,7 @@ def signs(said: list[Said], background: str) -> list[dict[str, Any]]:
             **dict(zip("xyz", np.asarray(at, dtype=float).tolist(), strict=True)),
             "text": word,
             "showarrow": False,
-            "font": {"color": colour, "size": 14},
+            "font": {"color": colour, "size": 16},  # some are shown smaller, in a narrow column
             "bgcolor": background,
             "borderpad": 2,
         }

@@ -213,3 +213,14 @@ def test_a_step_of_the_slider_is_on_the_screen_at_once(page: Any) -> None:
     found = times(page, 30, lambda k: "ArrowLeft" if k % 10 < 5 else "ArrowRight")
     print(f"a step of the slider: median {statistics.median(found):.0f} ms, longest {max(found):.0f} ms")
     assert statistics.median(found) < 60
+
+
+def test_no_value_of_a_contour_stands_under_the_selected_point(page: Any) -> None:
+    open_page(page, "Compliance")
+    drawn_at = """root => root.board.shown.map((made) => ({ words: made.words,
+        at: [made.x(root.board.data.point[0]), made.y(root.board.data.point[1])] }))"""
+    panels = page.locator(".maps").first.evaluate(drawn_at)
+    assert sum(len(each["words"]) for each in panels) > 5
+    for each in panels:
+        x, y = each["at"]
+        assert all(abs(at[0] - x) > 18 or abs(at[1] - y) > 9 for at in (label["at"] for label in each["words"]))

@@ -166,3 +166,21 @@ def test_each_group_of_inputs_says_its_value_beside_its_title(milling: Any) -> N
     assert said("force") == "100 N"
     assert said("cutter") == "8 mm, 3 flutes"
     assert said("accuracy") == "0.30 mm"
+
+
+def test_what_does_not_hang_on_the_inputs_stands_below_them_in_the_whole_width(milling: Any) -> None:
+    """The column of inputs was empty below them for three screens; it stays in sight beside what answers them."""
+    milling.set_viewport_size({"width": 1440, "height": 900})
+    inputs = milling.locator("[data-testid=stColumn]:has(.st-key-milling-open-force) > [data-testid=stVerticalBlock]")
+    wide, more = milling.locator(".st-key-milling-wide"), milling.locator(".st-key-milling-more")
+    wide.get_by_text("Over the whole surface").wait_for()
+    wide.get_by_text("Over the whole surface").scroll_into_view_if_needed()
+    milling.wait_for_timeout(500)
+    left, below, beside = (each.bounding_box() for each in (inputs, wide, more))
+    assert abs(below["x"] - left["x"]) < 2
+    assert below["width"] > left["width"] + beside["width"]
+    assert beside["x"] > left["x"] + left["width"]
+    assert left["y"] + left["height"] <= below["y"] + 1, "nothing lies over another"
+    more.get_by_text("Section at the position").scroll_into_view_if_needed()
+    milling.wait_for_timeout(300)
+    assert 0 < inputs.bounding_box()["y"] < 100, "the inputs stay beside what answers them"

@@ -163,3 +163,14 @@ def test_a_feed_that_no_cutter_takes_is_a_warning_with_its_line(app: AppTest) ->
     said = words(app)
     assert "line 4: a feed of 4\u202f500\u202f000 mm/min, 375.0 mm a revolution" in said
     assert "every word understood" not in said
+
+
+def test_a_note_is_no_warning_and_what_is_not_judged_has_no_colour_of_its_deviation(app: AppTest) -> None:
+    """Holes alone, pushed by a force along the path: they were drawn as if the tip were off by nothing."""
+    go(app, "5_Toolpath")
+    assert "Coloured by deviation" in app.selectbox(key="toolpath.colour").options
+    type_program(app, "G21 G90\nG0 X0 Y0 Z5\nG81 X10 Y10 Z-5 R2 F100\nX30\nG80\nG0 Z20\nM2\n")
+    assert not app.exception
+    assert 'Program warnings</div><div class="rm-value">0</div><div class="rm-sub">1 note: ' in words(app)
+    assert "Coloured by deviation" not in app.selectbox(key="toolpath.colour").options
+    assert app.selectbox(key="toolpath.colour").value == "reach"

@@ -233,6 +233,7 @@ def test_a_program_that_is_refused_is_shown_at_its_line(app: AppTest) -> None:
 
 def test_a_line_is_pointed_at_by_its_number(app: AppTest) -> None:
     go(app, "5_Toolpath")
+    assert app.text_input(key="toolpath.go-to").value == "", "no line is pointed at, and none is called 0"
     number(app, "toolpath.go-to").set_value(7).run()
     assert not app.exception
     assert any("Line 7: N50 G1 X50 F1800 — 1 move, 100.00 mm at 1800 mm/min (30.0 mm/s)" in i.value for i in app.info)

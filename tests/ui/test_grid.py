@@ -103,7 +103,19 @@ def test_a_whole_number_may_be_emptied_or_be_larger_than_any(typed: str) -> None
 
 
 def test_a_column_may_have_a_box_a_row() -> None:
-    mixed = Sheet({"a": [NumberBox("a", unit) for unit in ("mm", "deg", "in")]})
+    mixed = Sheet({"a": [NumberBox("a", unit) for unit in ("mm", "deg", "in")]})  # too many digits to be alike
     start = begun(mixed)
     assert start.shown["a"].tolist() == ["1", "0.0190986", "0.11811"]
     assert start.after(edited(row2={"a": "1"}), mixed).now["a"][2] == pytest.approx(25.4e-3)
+
+
+def test_the_numbers_of_a_column_have_equally_many_decimals_and_what_is_shown_is_what_is_held() -> None:
+    """12.3 stood beside 7.14. One with more digits than its unit shows has them all, and takes no others along."""
+    sheet = Sheet({name: NumberBox(name, "mm", optional=True) for name in "abc"})
+    lengths = {"a": [7.14, 12.3, 0.0], "b": [1220.5, 1.5875, 300.0], "c": [1220.0, None, -300.0]}
+    frame = pd.DataFrame({name: pd.Series(column, dtype=object) for name, column in lengths.items()}) * 1e-3
+    start = Edited.start(frame, sheet)
+    assert start.shown["a"].tolist() == ["7.14", "12.30", "0"]
+    assert start.shown["b"].tolist() == ["1220.5", "1.5875", "300"]
+    assert start.shown["c"].tolist() == ["1220", "", "-300"]
+    assert start.after(edited(row1={"a": "12.30"}), sheet).now["a"].tolist() == start.began["a"].tolist()

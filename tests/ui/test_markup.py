@@ -129,5 +129,6 @@ def test_a_number_and_its_unit_stand_on_one_line() -> None:
         unparted("77 % of 0.30 mm, × 1800, line 7 of 9") == "77\u00a0% of 0.30\u00a0mm, ×\u00a01800, line\u00a07 of 9"
     )
     assert unparted("3 sides, 5 m long, 2 in a row, 4 inputs") == "3 sides, 5\u00a0m long, 2\u00a0in a row, 4 inputs"
+    assert unparted("± 53 rad/(N m) of joint 4") == "±\u00a053 rad/(N\u00a0m) of joint\u00a04"
     assert isinstance(unparted(Html("5 mm")), Html)
     assert not isinstance(unparted("5 mm"), Html)

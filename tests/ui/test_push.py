@@ -52,10 +52,12 @@ def test_the_place_is_that_of_the_verdict(flute: rm.SimulationResult) -> None:
     assert (cut.line, cut.in_hand().point) == (7, pytest.approx((cut.in_hand().point[0], -1.3, 0.0)))
     np.testing.assert_allclose(rm.tool_pose(ROBOT, cut.theta)[:3, 3], cut.in_hand().point, atol=1e-5)
     assert cut.moved.sentence("mm") == "100 N on the tool moves the tip by +0.230 mm in Y, −0.102 mm in Z."
-    assert cut.moved.blame() == "It comes from joint 3 (70 %) and joint 5 (30 %)."
+    assert cut.moved.blame("mm") == "Of these 0.251 mm, 70 % come from joint 3 and 30 % from joint 5."
     along_y = np.outer([0.5, 0.15, 0.3, 0.05, 0.0], [0.0, 1.0, 0.0])
     three = dataclasses.replace(cut.moved, delta=along_y.sum(axis=0), delta_joint=along_y)
-    assert three.blame() == "Most of it comes from joint 1 (50 %), joint 3 (30 %) and joint 2 (15 %)."
+    assert three.blame("mm") == (
+        "Of these 1000.000 mm, 50 % come from joint 1, 30 % from joint 3 and 15 % from joint 2."
+    )
     assert decided(None) is None
 
 
@@ -71,4 +73,4 @@ def test_a_rigid_arm_is_not_moved() -> None:
     rigid = at_pose(ROBOT.replace(C_theta=np.zeros(5)), ROBOT.home)
     moved = Moved.at(rigid, Push.along("x"))
     assert moved.sentence("mm") == "100 N along X does not move the tip."
-    assert moved.blame() == ""
+    assert moved.blame("mm") == ""

@@ -92,3 +92,17 @@ def test_the_words_of_force_and_displacement_never_cross_each_other(force: tuple
         boxes[word] = np.array([point @ right, point @ up]) + 0.5 * size * [beside[side], above[level]]
     apart = np.abs(boxes["1429 N"] - boxes["3.73 mm"])
     assert (apart >= 0.999 * size).any()
+
+
+@pytest.mark.parametrize("dark", [True, False])
+def test_an_arm_that_fills_its_frame_shows_the_part_too_and_has_no_axes_that_could_be_cut(
+    result: SimulationResult, dark: bool
+) -> None:
+    fig = arm_figure(replace(arm_scene(result, result.worst), aspect=1.1), dark=dark).figure
+    (part,) = [t for t in fig.data if t.name == "part"]
+    corners = np.stack([part.x, part.y, part.z], axis=1)
+    tip = (result.setup.T_MW @ np.append(result.path.p[result.worst], 1.0))[:3]
+    assert (corners.min(axis=0) - 1e-3 <= tip).all()
+    assert (tip <= corners.max(axis=0) + 1e-3).all()
+    assert not any(fig.layout.scene[f"{axis}axis"].visible for axis in "xyz")
+    assert {"100 N", "0.25 mm", "{W}", "{M}"} <= {each.text for each in fig.layout.scene.annotations}

@@ -107,7 +107,7 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
     with top:
         pieces.headline("Virtual laboratory", title(lab, result, now.handed_in), "" if done else task)
     pieces.tiles(tiles(lab, result, now.handed_in))
-    left, right = pieces.split([1, 1.9], "laboratory", gap="large")
+    left, right = pieces.split([1, 1.9], "laboratory")
     with left:
         _rules(now, robot)
         _measure(now)

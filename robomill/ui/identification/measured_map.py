@@ -63,7 +63,7 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
 
 def _inputs(bench: Bench, field: MeasuredField | None, unit: str) -> tuple[str, float]:
     samples = {**MAP_SAMPLES, OWN: bench.map_name} if bench.map_sample == OWN else MAP_SAMPLES
-    first, second, third = pieces.split([1, 1.1, 1], "map-inputs", gap="large")
+    first, second, third = pieces.split([1, 1.1, 1], "map-inputs")
     with first:
         inputs.choice(
             "Measured compliances",

@@ -385,10 +385,10 @@ class Board {
     c.beginPath();
     c.rect(0, 0, w, h);
     c.clip();
-    this.contours(made, c, values);
     const [u0, u1] = data.u.span, [v0, v1] = data.v.span;
     made.x = (u) => (u - u0) / (u1 - u0) * w;
     made.y = (v) => h - (v - v0) / (v1 - v0) * h;
+    this.contours(made, c, values);
     for (const { kind, points } of data.outlines) this.stroke(c, kind, () => {
       points.forEach(([u, v], n) => (n ? c.lineTo(made.x(u), made.y(v)) : c.moveTo(made.x(u), made.y(v))));
     });
@@ -407,9 +407,11 @@ class Board {
     c.restore();
   }
 
-  contours({ panel }, c, values) {
-    const { data, w, h } = this, nu = data.u.at.length, nv = data.v.at.length, scale = data.scales[panel.scale];
+  contours(made, c, values) {
+    const { data, w, h } = this, { panel } = made, nu = data.u.at.length, nv = data.v.at.length, scale = data.scales[panel.scale];
     const taken = [], levels = panel.contours;
+    const at = data.point && [made.x(data.point[0]), made.y(data.point[1])];
+    made.words = [];
     levels.forEach(([level, words], n) => {
       const pieces = contour(values, nu, nv, level);
       if (!pieces.length) return;
@@ -429,10 +431,12 @@ class Board {
         const px = x(i0), py = y(j0);
         let free = Math.min(px - 8, w - px - 8, (py) * 1.6, (h - py) * 1.6, 60);
         for (const [tx, ty] of taken) free = Math.min(free, Math.hypot((px - tx) * 0.6, (py - ty) * 1.4));
+        if (at) free = Math.min(free, Math.hypot((px - at[0]) * 0.36, (py - at[1]) * 0.75));  // nor under the point
         if (free > room) { room = free; best = [px, py]; }
       }
       if (!best) return;
       taken.push(best);
+      made.words.push({ words, at: best });
       this.font(c, w < 260 ? 10 : 11.5, ink);
       c.textAlign = "center";
       c.textBaseline = "middle";

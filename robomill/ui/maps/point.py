@@ -43,7 +43,7 @@ def lead(found: InHand, moved: Moved, cut: Decided | None, at_cut: bool, unit: s
         where = f"line {cut.line} of the cut, which decides its verdict: {place(found.point, unit)}"
     elif cut is not None and not moved.push.axis:
         where += f", with the force of the cut at line {cut.line}"
-    blame = moved.blame() if found.pose.reached else ""
+    blame = moved.blame(unit) if found.pose.reached else ""
     return f"{blame} At {where}.".lstrip()
 
 

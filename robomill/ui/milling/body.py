@@ -178,31 +178,36 @@ def _looks(digest: str, dark: bool) -> None:
             picture_panel.rendered_picture(result, i, dark)
     if known is None:
         return
-    with st.container(key="milling-more"):
-        _answers(result, i, known, dark)
-
-
-def _answers(
-    result: SimulationResult, i: int, known: tuple[AlloySpread | None, ForceSpread | None], dark: bool
-) -> None:
-    """One of three questions, which share the position along the cut."""
     spread, peak = known
-    question = inputs.pick("Question", QUESTION, QUESTIONS, "part", inputs.HIDDEN)
+    with st.container(key="milling-more"):
+        question = _answer(result, i, spread, peak, dark)
+    with st.container(key="milling-wide"):
+        if question == "force":
+            st.header("How sure is the force?")
+            force_view.alloy_table(result, i, spread)
+            force_view.worth_knowing(result)
+        elif question == "tip":
+            _tip(result, i, spread, peak, dark)
+        else:
+            _surface(result, i, dark)
+
+
+def _answer(result: SimulationResult, i: int, spread: AlloySpread | None, peak: ForceSpread | None, dark: bool) -> str:
+    """One of three questions, which share the position along the cut, and what answers it beside the inputs; what is
+    wider, or only asks what does not hang on them, stands below both."""
+    question: str = inputs.pick("Question", QUESTION, QUESTIONS, "part", inputs.HIDDEN)
     if question == "force":
         with st.container(border=True):
             force_view.force_plot(result, i, spread, peak, dark)
             force_view.facts(result, i, peak)
         _engaged(result, i, spread, peak, dark)
-        st.header("How sure is the force?")
-        force_view.alloy_table(result, i, spread)
-        force_view.worth_knowing(result)
     elif question == "tip":
         with st.container(border=True):
             linked.deviation_plot(result, i, spread, dark)
         _code_and_arm(result, i)
-        _tip(result, i, spread, peak, dark)
     else:
         _part(result, i, spread, dark)
+    return question
 
 
 def _code_and_arm(result: SimulationResult, i: int) -> None:
@@ -212,7 +217,7 @@ def _code_and_arm(result: SimulationResult, i: int) -> None:
         station_views.code(result, i)
     with arm, st.container(border=True, height="stretch"):
         if i >= 0:
-            arm_at(result, i, "linked-arm", 330, zoom=0.86)
+            arm_at(result, i, "linked-arm", 330, aspect=1.0)
 
 
 def _engaged(
@@ -248,6 +253,10 @@ def _part(result: SimulationResult, i: int, spread: AlloySpread | None, dark: bo
     with along, st.container(border=True, height="stretch"):
         st.markdown("**Along the cut**")
         metrology_panel.profile_panel(result, spread, dark)
+
+
+def _surface(result: SimulationResult, i: int, dark: bool) -> None:
+    """The error over the whole surface, the paper's test beside it, and what is taken away."""
     with st.container(border=True):
         st.markdown("**Over the whole surface**")
         metrology_panel.spread_panel(result, dark)

@@ -255,22 +255,25 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
     area = {"walls": gauge.walls.histogram(edges), "floors": gauge.floors.histogram(edges)}
     total = max(float(sum(each.sum() for each in area.values())), 1e-300)
     share = {name: 100.0 * each / total for name, each in area.items()}
-    pieces.figure(
-        histogram_figure(from_si(edges, unit), share, from_si(np.array([walls, floors]), unit), unit, dark=dark),
-        "histogram",
-        name="error-histogram",
-        table=lambda: {
-            "from_mm": from_si(edges[:-1], "mm"),
-            "to_mm": from_si(edges[1:], "mm"),
-            **{f"{name}_mm2": from_si(each, "mm2") for name, each in area.items()},
-        },
-        caption="Walls and floors as a gauge reads them, each by its own area: what the verdict rests on. "
-        "Walls: + to the left of the feed. Floors: + material left.",
-        alt="Histogram of the errors of walls and floors by their area; "
-        + "; ".join(remark for _, _, remark in _out_of_tolerance(result))
-        + ".",
-    )
-    pieces.facts([*_out_of_tolerance(result), *_volumes(error), *_rms(gauge, total)])
+    drawn, told = pieces.split([1.4, 1], "surface")
+    with drawn:
+        pieces.figure(
+            histogram_figure(from_si(edges, unit), share, from_si(np.array([walls, floors]), unit), unit, dark=dark),
+            "histogram",
+            name="error-histogram",
+            table=lambda: {
+                "from_mm": from_si(edges[:-1], "mm"),
+                "to_mm": from_si(edges[1:], "mm"),
+                **{f"{name}_mm2": from_si(each, "mm2") for name, each in area.items()},
+            },
+            caption="Walls and floors as a gauge reads them, each by its own area: what the verdict rests on. "
+            "Walls: + to the left of the feed. Floors: + material left.",
+            alt="Histogram of the errors of walls and floors by their area; "
+            + "; ".join(remark for _, _, remark in _out_of_tolerance(result))
+            + ".",
+        )
+    with told:
+        pieces.facts([*_out_of_tolerance(result), *_volumes(error), *_rms(gauge, total)])
     for finding in result.surface_notes:
         pieces.said("warning", finding.sentence, "layers")
 

@@ -19,7 +19,7 @@ from robomill.units import format_many, format_percent, format_si, from_si, to_s
 from robomill.viz.arm import ArmScene
 from robomill.viz.theme import joint_colours
 
-ASPECT = 1.0  # of the arm's frame: it is whole in the narrowest column
+ASPECT = 1.3  # of the arm's frame; a narrower column shows it smaller
 
 
 def configuration(project: Project, cut: Decided | None) -> FloatArray:
@@ -49,7 +49,7 @@ def moved(project: Project, now: PoseReport, old: PoseReport | None, cut: Decide
     return cut.moved, Decided(before, cut.i).moved
 
 
-def lead(project: Project, now: Moved, cut: Decided | None) -> str:
+def lead(project: Project, now: Moved, cut: Decided | None, unit: str) -> str:
     """Which joints give, and where and by whose force that is."""
     chosen = _chosen(project) is not None
     if cut is None:
@@ -59,7 +59,7 @@ def lead(project: Project, now: Moved, cut: Decided | None) -> str:
         where = f"At these joint angles{force}."
     else:
         where = f"The arm stands at line {cut.line} of the cut, which decides its verdict."
-    return f"{now.blame()} {where}".lstrip()
+    return f"{now.blame(unit)} {where}".lstrip()
 
 
 def tip_tile(now: Moved, before: Moved | None, unit: str) -> pieces.Tile:

@@ -48,7 +48,7 @@ def cause(result: SimulationResult, unit: str) -> str:
     rests = result.verdict.deciding
     elsewhere = rests is not None and cut.moved.components(unit) != replace(cut, i=result.worst).moved.components(unit)
     where = f"Where the {OF[rests[0]]} is farthest off, " if elsewhere and rests is not None else ""
-    return f"{where}{cut.moved.sentence(unit)} {cut.moved.blame()}".rstrip()
+    return f"{where}{cut.moved.sentence(unit)} {cut.moved.blame(unit)}".rstrip()
 
 
 def groove_picture(result: SimulationResult, view: View, height: int, dark: bool) -> None:

@@ -13,7 +13,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces
 from robomill.ui.toolpath.program_view import LEVELS, select_line, selected_line
 from robomill.ui.toolpath.summary import duration, move_words, path_summary, worst_first, written_in
-from robomill.units import format_count, format_many, format_si, in_lengths, unit_label
+from robomill.units import format_count, format_many, format_si, in_lengths
 
 DIALECTS = {
     "auto": "Guess",
@@ -76,8 +76,7 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
     rows: list[tuple[str, str, str]] = [
         (
             pieces.subscripts(f"{axis}_W"),
-            f"{_plain(low[i], unit)} … {_plain(high[i], unit)} {unit_label(unit)}",
-            f"{_plain(high[i] - low[i], unit)} {unit_label(unit)}",
+            *_extent(float(low[i]), float(high[i]), unit),
         )
         for i, axis in enumerate("xyz")
     ]
@@ -98,8 +97,11 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
     pieces.table(rows, "qv ")
 
 
-def _plain(value: float, unit: str) -> str:
-    return format_si(value, unit, 2, with_unit=False)
+def _extent(low: float, high: float, unit: str) -> tuple[str, str]:
+    """From where to where the path goes along an axis, and how long that is."""
+    if format_si(low, unit, 2) == format_si(high, unit, 2):
+        return format_si(low, unit, 2), "all along"
+    return format_many((low, high), unit, 2, between=" … "), f"{format_si(high - low, unit, 2)} from end to end"
 
 
 def _range(values: tuple[float, float], unit: str) -> str:

@@ -31,7 +31,8 @@ def part_zero() -> None:
 
 def _by_numbers() -> None:
     T_MW = session.project().setup.T_MW
-    declared.draw(PART_ZERO, "toolpath.zero", T_MW[:3, 3], _put)
+    with st.container(key="toolpath-zero"):
+        declared.draw(PART_ZERO, "toolpath.zero", T_MW[:3, 3], _put)
     declared.draw(PART_TURN, "toolpath.turn", float(np.round(np.arctan2(T_MW[1, 0], T_MW[0, 0]), 12)), _turn)
     tilt = tilt_of(T_MW)
     if tilt > 1e-6:

@@ -35,7 +35,8 @@ SHAPES = {"plan": "From above", "turn": "Turnable", "arm": "With the arm"}
 def path_figure(setup: SimulationSetup, reach: PathReach, result: SimulationResult | None, dark: bool) -> None:
     """The choices and the picture; beside the drawing board a lower one."""
     unit, height = session.project().view.length, 300 if setup.source.kind == "sketch" else 380
-    colour, seen = _choices(result is not None, len(cutting_numbers(reach.path)) > 1)
+    judged = result is not None and bool(result.judged.any())  # else there is no deviation that could be coloured
+    colour, seen = _choices(result is not None, judged, len(cutting_numbers(reach.path)) > 1)
     key = f"toolpath.{seen}"
     if seen == "arm" and result is not None:
         index = result.worst if result.worst >= 0 else nearest_judged(result, 0.0)
@@ -62,9 +63,10 @@ def path_figure(setup: SimulationSetup, reach: PathReach, result: SimulationResu
     )
 
 
-def _choices(simulated: bool, several: bool) -> tuple[str, str]:
-    """What the path is coloured by (by tool where there are ``several``), and from where it is seen."""
-    left_out = {"deviation": not simulated, "tool": not several}
+def _choices(simulated: bool, judged: bool, several: bool) -> tuple[str, str]:
+    """What the path is coloured by (by its deviation where some of it is ``judged``, by tool where there are
+    ``several``), and from where it is seen."""
+    left_out = {"deviation": not judged, "tool": not several}
     colours = {k: f"Coloured by {v.lower()}" for k, v in COLOURS.items() if not left_out.get(k, False)}
     shapes = {k: v for k, v in SHAPES.items() if simulated or k != "arm"}
     with st.container(horizontal=True, horizontal_alignment="distribute", vertical_alignment="center", gap="small"):
@@ -72,7 +74,7 @@ def _choices(simulated: bool, several: bool) -> tuple[str, str]:
             seen = inputs.pick("Seen", "toolpath.seen", shapes, look=inputs.HIDDEN)
         with st.container(width=210):
             look = inputs.Look(listed=True, hidden=True)
-            usual = "deviation" if simulated else "reach"
+            usual = "deviation" if judged else "reach"
             colour = inputs.pick("Coloured by", "toolpath.colour", colours, usual, look)
     return str(colour), str(seen)
 

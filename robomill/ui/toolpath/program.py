@@ -102,9 +102,10 @@ def _text(source: GCodeSource, path: Toolpath | None, dark: bool) -> None:
         with st.container(width=114):
             mode = inputs.pick("Program", MODE, MODES, look=inputs.HIDDEN)
         if mode == "code":
-            box = NumberBox("Go to line", hint="0 points at none.", low=0, high=count, whole=True)
+            box = NumberBox("Go to line", low=1, high=count, whole=True, optional=True, placeholder="none")
             with st.container(width=130):
-                inputs.value("toolpath.go-to", box, min(selected_line(), count), select_line)
+                line = min(selected_line(), count) or None
+                inputs.value("toolpath.go-to", box, line, lambda new: select_line(new or 0))
             st.caption(f"of {format_count(count)} lines")
     if mode == "code":
         height = min(max(22 * count + 24, 130), 420)

@@ -106,13 +106,13 @@ def tiles(
         return found
     noticed = findings(path, result)
     alarming = sum(f.count for f in noticed if f.level in ("error", "warning", "suspicious"))
-    count = sum(f.count for f in noticed)
-    words = finding_words(worst_first(noticed)[0]) if count else "every word understood"
+    words = finding_words(worst_first(noticed)[0]) if noticed else "every word understood"
     crashes = () if result is None else (*result.rapids, *result.early_rapids)
     if crashes:
-        count, words = count + len(crashes), f"a rapid runs through material (line {crashes[0]})"
-    tone = "tight" if alarming or crashes else ""
-    found.append(pieces.Tile("Program warnings", format_count(count), words, tone=tone))
+        alarming, words = alarming + len(crashes), f"a rapid runs through material (line {crashes[0]})"
+    elif noticed and not alarming:
+        words = f"{format_count(sum(f.count for f in noticed), 'note')}: {words}"
+    found.append(pieces.Tile("Program warnings", format_count(alarming), words, tone="tight" if alarming else ""))
     return found
 
 
