@@ -13,7 +13,7 @@ from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import deflection, displacement, shares_along, soft_direction
 from robomill.errors import LearnError
 from robomill.learn.compared import neighbours, side_cut
-from robomill.learn.equations import component, product
+from robomill.learn.equations import component, product, settled
 from robomill.learn.exercise import Exercise, Slip
 from robomill.learn.lesson import COUNT, Bars, Choice, Lesson
 from robomill.learn.push import ASIDE, FORCE, Push, side
@@ -164,6 +164,8 @@ def _lever(pose: PoseReport) -> Lesson:
         ),
         Slip("That is as soft as before: the lever arms have changed.", 1.0),
     )
+    near_um, far_um = from_si(softest, "um/N")
+    (far_C,), (near_C,), (shown,) = settled(np.divide, 2, (far_um, 3), (near_um, 3))
     typed = _numbered("lever", question, "1", times, slips, 0.15)
     dets = [format_si(float(way.det[i]), pose.det_J_unit, 2) for i in (start, far)]
     what = "det(J)" if pose.has_det_J else "its manipulability"
@@ -176,7 +178,7 @@ def _lever(pose: PoseReport) -> Lesson:
         "A lever arm counts twice, once for the torque and once for the way of the tip; at the edge det(J) falls to "
         "zero, as one direction is lost.",
         rf"\frac{{C_{{max}}({from_si(far_r, 'mm'):.0f})}}{{C_{{max}}({from_si(near_r, 'mm'):.0f})}} = "
-        rf"\frac{{{from_si(softest[1], 'um/N'):.3f}}}{{{from_si(softest[0], 'um/N'):.3f}}} = {times:.2f}",
+        rf"\frac{{{far_C}}}{{{near_C}}} = {shown}",
         "(9), (13), Fig. 4",
         "Drag the arm to its edge on the first screen of Learn and watch det(J) beside the ellipsoid.",
         "Hold a broom at its end and half way: who feels the lever arm feels it squared.",
@@ -296,6 +298,8 @@ def _compensated(pose: PoseReport) -> Lesson:
         Slip("That is what the correction takes off, not what it leaves.", model),
         Slip("That share was taken of the real displacement, not of the model's.", WRONG * actual),
     )
+    both = [(from_si(C[a, a], "um/N"), 3) for C in (softer, pose.C)]
+    (real_C,), (own_C,), (left_um,) = settled(lambda real, own: (real - own) * FORCE, 1, *both)
     told = f"{format_si(left, 'mm', 3)} of {format_si(actual, 'mm', 3)}: {format_percent(left / actual)} of it stays."
     return Lesson(
         7,
@@ -304,8 +308,7 @@ def _compensated(pose: PoseReport) -> Lesson:
         (Choice(format_si(left, "mm", 3), told),),
         "A correction takes off what the model knows: what is left is the model's own error, however large the "
         "deflection was.",
-        rf"(C_{{real}} - C_{{model}})\,F = ({from_si(softer[a, a], 'um/N'):.3f} - {from_si(pose.C[a, a], 'um/N'):.3f})"
-        rf"\cdot {FORCE:.0f} = {from_si(left, 'um'):.1f}\;\mathrm{{\mu m}}",
+        rf"(C_{{real}} - C_{{model}})\,F = ({real_C} - {own_C})\cdot {FORCE:.0f} = {left_um}\;\mathrm{{\mu m}}",
         "(15)",
         "On Improve, correct the program and read what is left if all that gives is 20 % softer or stiffer.",
         "Ask what is better: a robot twice as stiff, or a model twice as good?",

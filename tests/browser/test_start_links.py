@@ -57,6 +57,27 @@ def test_a_link_opens_at_anothers_and_asks_before_it_takes_the_place_of_work(pag
         stranger.close()
 
 
+def test_what_is_shared_is_copied_by_keyboard_and_by_touch(page: Any) -> None:
+    """The symbol that copies is no mouse's alone: Tab leads to it, and where nothing hovers it is in sight."""
+    page.get_by_role("button", name="Share", exact=True).click()
+    panel = page.get_by_role("dialog")
+    panel.get_by_text("import robomill").wait_for(timeout=WAIT)
+    panel.get_by_test_id("stCode").first.focus()
+    page.wait_for_timeout(500)  # it fades in
+    page.keyboard.press("Tab")
+    assert "Copy to clipboard" in page.evaluate("document.activeElement.outerHTML")
+    page.keyboard.press("Escape")
+    panel.wait_for(state="hidden", timeout=WAIT)
+    touched = page.context.new_cdp_session(page)
+    touched.send("Emulation.setTouchEmulationEnabled", {"enabled": True})
+    touched.send("Emulation.setEmulatedMedia", {"features": [{"name": "hover", "value": "none"}]})
+    assert page.evaluate("matchMedia('(hover: none)').matches")
+    page.get_by_role("button", name="Share", exact=True).click()
+    panel.get_by_text("import robomill").wait_for(timeout=WAIT)
+    for each in panel.get_by_label("Copy to clipboard").all():
+        each.wait_for(state="visible", timeout=WAIT)
+
+
 def test_the_report_is_taken_away(page: Any, url: str, tmp_path: Path) -> None:
     page.goto(f"{url}/Milling")
     headline(page, "Reference groove")

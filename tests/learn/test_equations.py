@@ -9,7 +9,8 @@ import pytest
 
 import robomill as rm
 from robomill.compliance.at_pose import PoseReport
-from robomill.learn.equations import component, product
+from robomill.learn.equations import component, product, settled
+from robomill.learn.lessons import lesson
 from robomill.learn.push import Push
 
 
@@ -47,3 +48,21 @@ def test_the_product_is_for_the_push_of_the_question() -> None:
     ]
     assert force == ("100", "0", "0")
     np.testing.assert_allclose([float(v) for v in moved], [100.0, 0.0, 90.0], atol=0.06)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_numbers_of_a_lesson_give_its_result(seed: int) -> None:
+    """Lessons 3 and 7, read as a reader would: the printed numbers, put into the printed law, round to the result."""
+    robot = rm.load_robot("slavkovic_5r")
+    x, y = np.random.default_rng(seed).uniform([-0.4, -1.5], [0.4, -1.1])
+    pose = rm.at_pose(robot, rm.inverse_kinematics(robot, rm.pose_from_world([x, y, 0.0, 0.0, 0.0])).theta)
+    far, near, times = re.findall(r"\\frac\{([\d.]+)\}\{([\d.]+)\} = ([\d.]+)$", lesson(3, pose).equation)[0]
+    assert f"{float(far) / float(near):.2f}" == times
+    real, own, force, left = re.findall(r"\(([\d.]+) - ([\d.]+)\)\\cdot (\d+) = ([\d.]+)", lesson(7, pose).equation)[0]
+    assert f"{(float(real) - float(own)) * float(force):.1f}" == left
+
+
+def test_as_many_decimals_are_printed_as_the_result_needs() -> None:
+    """1.0004 x 1000 is 1000.4: with three decimals it would read 1000.0."""
+    assert settled(np.multiply, 1, (1.0004, 3), (1000.0, 0)) == (["1.0004"], ["1000.0"], ["1000.4"])
+    assert settled(np.multiply, 1, (1.25, 2), (4.0, 0)) == (["1.25"], ["4"], ["5.0"])

@@ -13,9 +13,9 @@ from conftest import PAGES, go, store, words
 from streamlit.testing.v1 import AppTest
 
 import robomill as rm
-from robomill.ui import other
+from robomill.ui import other, running
 from robomill.ui.maps.sides import SIDES, WHOSE
-from robomill.ui.project import Project, View, preset_setup
+from robomill.ui.project import Project, View, preset_setup, project_from_toml, project_to_toml
 from robomill.ui.session import Store
 from robomill.units import format_si, to_si
 
@@ -154,3 +154,21 @@ def test_the_sections_of_both_are_drawn_to_one_scale(app: AppTest) -> None:
         ends[key] = [np.ptp(spec["layout"][f"{axis}axis"]["range"]) for axis in "xy"]
     own, theirs = ends.values()
     np.testing.assert_allclose(own, theirs)
+
+
+def test_a_long_run_of_b_is_asked_for_and_a_is_there_meanwhile(app: AppTest, monkeypatch: pytest.MonkeyPatch) -> None:
+    longer = SOFTER.replace(tolerance=to_si(0.31, "mm"))
+    monkeypatch.setattr(running, "run_seconds", lambda setup: 300.0)
+    beside(app, longer)
+    assert not app.exception
+    assert "not computed yet" in words(app)
+    assert values(app, "B") == []
+    assert len(values(app, "A")) == 4
+    pressed(app, f"{other.RUN}.ask")
+    assert not app.exception
+    assert len(values(app, "B")) == 4
+
+
+def test_what_is_compared_with_is_kept_with_the_project() -> None:
+    project = Project(A, View(beside="example:heart"))
+    assert project_from_toml(project_to_toml(project)).view.beside == "example:heart"
