@@ -8,10 +8,10 @@ plane (G17: x, y; G18: z, x) in program units.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.held_moves import BESIDE_ARC, SHARPEST, HeldMove
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.motion_rules import arc_length, axes, feed_speed, inverse_time, swept, turns_of
 from robomill.toolpath.gcode.moves import centre_of_arc, plain_words
@@ -23,21 +23,6 @@ CORNER = 0.05
 OVERSHOOT = {"mm": 0.0254, "in": 0.001}
 """rad: an arc may sweep this much farther than programmed to meet the next move."""
 _HALF = math.pi / 2.0
-
-
-@dataclass
-class HeldMove:
-    """A move that waits for its successor. ``turn`` is 0 for straight moves."""
-
-    line: int
-    rapid: bool
-    end: tuple[float, float, float]
-    rotary: tuple[float, float, float]
-    v_f: float
-    direction: tuple[float, float] = (0.0, 0.0)
-    centre: tuple[float, float] = (0.0, 0.0)
-    turn: int = 0
-    sweep: float = 0.0
 
 
 class Compensation:
@@ -212,6 +197,11 @@ class Compensation:
             else:
                 mid = self._line_to_line(block, (cu, cv), beta, theta + gamma)
             self._finish_at(machine, block, *mid)
+        elif beta > CORNER and machine.sharp and beta <= SHARPEST:
+            if before:
+                raise block.refuse(BESIDE_ARC)
+            out = 1.0 / (1.0 + math.cos(beta))  # where both offset cuts meet
+            self._finish_at(machine, block, pu + out * (cu - pu + side[0]), pv + out * (cv - pv + side[1]))
         elif beta > CORNER:
             self._finish_at(machine, block, cu, cv)
             self._round(machine, block, full, (pu + side[0], pv + side[1]), (pu, pv), cw)
@@ -295,6 +285,10 @@ class Compensation:
         u, v, w = (full[axis] for axis in self.axes)
         turn = turns_of(plain_words(block), block.motion)
         if self.programmed is None:
+            if machine.other_control:
+                raise block.refuse(
+                    "cutter compensation begins on a straight move (G0, G1) on this control, not an arc."
+                )
             self._enter_arc(machine, block, full, (u, v, w), turn)
             return
         pu, pv, _ = self.programmed
@@ -323,6 +317,8 @@ class Compensation:
             else:
                 mid = self._line_to_arc(block, centre, radius, turn, theta, beta)
             self._finish_at(machine, block, *mid)
+        elif beta > CORNER and machine.sharp:
+            raise block.refuse(BESIDE_ARC)
         elif beta > CORNER:
             delta += 0.0 if inside else math.pi
             mid = (pu + self.radius * math.cos(delta), pv + self.radius * math.sin(delta))

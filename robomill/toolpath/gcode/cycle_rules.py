@@ -5,7 +5,7 @@ of ``codes``: R, P, Q, I, J, K, and in the column of Z the bottom along whatever
 says that a control (Fanuc, Haas) keeps R and the bottom as the heights that they are: G91 behind a hole in G90 counts
 places from hole to hole, and not how deep they are. It also makes no hole for L0, and keeps its words.
 ``m.is_fanuc`` says that it taps and bores (G89) out to R alone, and is at rapid from there, and that it goes to the
-next place at the height where it is.
+next place at the height where it is, and that what one cycle says holds for others too, until G80.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
@@ -134,7 +134,7 @@ def _keep(m, w, third: int) -> None:
 
 def _check(m, w, motion: int) -> int:
     """What a cycle needs: on its line, or kept from the line before if that was the same cycle."""
-    same = m.motion == motion
+    same = m.motion == motion or (m.is_fanuc and is_cycle(m.motion))
     if m.feed == 0.0:
         return NO_FEED
     if m.feed_mode == INVERSE_TIME:

@@ -11,12 +11,13 @@ from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.corners import LEGS, ROUND
 from robomill.toolpath.gcode.fanuc_cycles import bolt_holes
 from robomill.toolpath.gcode.findings import Findings
-from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.machine import UNITS, Machine
 from robomill.toolpath.gcode.motion_rules import LINE
 from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
 from robomill.toolpath.gcode.scaling import scales
 from robomill.toolpath.gcode.sinumerik import translated
 from robomill.toolpath.gcode.words import Block
+from robomill.units import to_si
 
 NAMES = ("linuxcnc", "fanuc", "grbl", "sinumerik", "heidenhain")
 
@@ -31,7 +32,7 @@ HARMLESS: dict[str, frozenset[int]] = {
     "fanuc": frozenset({90, 150, 220, 230, 401, 501, 500, 600, 620, 630, 670, 690, 1870}),
     "grbl": frozenset(),
     "heidenhain": frozenset(),
-    "sinumerik": frozenset({90, 600, 601, 602, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450, 4500, 4510}),
+    "sinumerik": frozenset({90, 600, 601, 602, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450}),
 }
 """G words that move nothing, by dialect; they are counted as ignored."""
 
@@ -180,10 +181,13 @@ class Dialect:
             findings.add("harmless-g", "ignored", number, f"{name} is left out: it moves nothing")
         return _SMOOTHING.sub("", raw)
 
-    def meant_otherwise(self, block: Block) -> None:
-        """Refuse G words that LinuxCNC knows and that mean something else on this control."""
+    def meant_otherwise(self, machine: Machine, block: Block) -> None:
+        """Refuse G words that LinuxCNC knows and that mean something else on this control, and count F as grbl does."""
         if block.twice and self.strict:
             raise block.refuse(block.twice)
+        unit = block.g.get(modal.UNITS, machine.unit_code)
+        if self.name == "grbl" and unit != machine.unit_code and machine.feed_mode != 930 and "f" in block.words:
+            block.words["f"] *= to_si(1.0, UNITS[unit]) / machine.factor
         if self.name == "fanuc" and modal.DIAMETER in block.g:
             raise block.refuse(f"{g_name(block.g[modal.DIAMETER])} of a Fanuc control is not read; remove the word.")
         if self.name == "sinumerik" and block.g.get(modal.COORDINATES) in (580, 590):
@@ -202,6 +206,9 @@ class Dialect:
                 continue
             if self.name == "sinumerik" and 5050 <= code <= 5990 and code % 10 == 0:
                 select_extended(machine, block, code / 10 - 500)
+                continue
+            if self.name == "sinumerik" and code in (4500, 4510):
+                machine.sharp = code == 4510
                 continue
             if code == 500 and not block.words.keys().isdisjoint("xyzabc"):
                 raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")

@@ -18,6 +18,8 @@ MOST_SAID = 1000
 """Stretches of a program that one finding counts."""
 FEW, RARE = 3, 0.1
 """So many whole numbers with a point (X10.) show how a program writes them; of so small a share none is a slip."""
+LARGE = 1000
+"""A whole number without a point, beside numbers that have one, is doubted from here on however many there are."""
 SAMPLE = 2_000_000
 """Bytes at the start of a program in which that is looked for."""
 _COORDINATE = re.compile(rb"(?<![A-Za-z_#\[(<\"=])[XYZIJxyzij](-?\d{1,9}(?:\.\d*)?)(?![\w.\[])")
@@ -31,13 +33,16 @@ LONG_DWELL = 60.0
 def doubt_points(findings: Findings, data: bytes) -> None:
     """Note whole numbers without a point where others have one (X10.): many controls count them in thousandths."""
     sample = _COMMENT.sub(b"", data[:SAMPLE])
-    words = [number for number in _COORDINATE.findall(sample) if not float(number) % 1.0 and float(number)]
+    numbers = _COORDINATE.findall(sample)
+    words = [number for number in numbers if not float(number) % 1.0 and float(number)]
     whole = sum(b"." not in number for number in words)
-    if not whole or len(words) - whole < FEW or whole > max(RARE * len(words), 1.0):
+    rare = len(words) - whole >= FEW and whole <= max(RARE * len(words), 1.0)
+    large = any(b"." in number for number in numbers)
+    if not whole or not (rare or large):
         return
     data = _COMMENT.sub(lambda comment: b" " * len(comment[0]), data)
     for found in _COORDINATE.finditer(data):
-        if b"." not in found[1] and int(found[1]) != 0:
+        if b"." not in found[1] and abs(int(found[1])) >= (1 if rare else LARGE):
             line = data.count(b"\n", 0, found.start()) + 1
             text = (
                 f"{found[0].decode('ascii', 'replace')} has no decimal point where other whole numbers have one: it is "
@@ -45,6 +50,22 @@ def doubt_points(findings: Findings, data: bytes) -> None:
             )
             findings.add("no-point", "suspicious", line, text)
             return
+
+
+def doubt_all_points(findings: Findings, data: bytes, program: Program) -> None:
+    """Say of a Fanuc program without any point how its numbers are read: aloud where no machine is so large."""
+    numbers = _COORDINATE.findall(_COMMENT.sub(b"", data[:SAMPLE]))
+    largest = max((abs(int(number)) for number in numbers if b"." not in number), default=0)
+    if program.extents is None or largest == 0 or any(b"." in number for number in numbers):
+        return
+    size = float(np.subtract(*program.extents[::-1]).max())
+    level: Level = "suspicious" if size > LIKELY[1] else "info"
+    unit, step = ("inches", 1e-4) if program.units == "in" else ("mm", 1e-3)
+    text = (
+        f"no number has a decimal point: they are read as whole {unit}; a control with conventional decimal input "
+        f"reads {largest} as {largest * step:g} {unit}: write the points"
+    )
+    findings.add("no-points", level, 0, text)
 
 
 def doubt(machine: Machine, program: Program) -> None:

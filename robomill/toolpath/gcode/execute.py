@@ -22,7 +22,8 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     set_rates(machine, plain)
     if g.get(modal.SPINDLE_MODE) == 960:
         machine.note("surface-speed", "warning", "G96: the spindle speed follows the diameter and is not known")
-    if "f" in words and machine.feed_mode != 930 and g.get(modal.UNITS, machine.unit_code) != machine.unit_code:
+    other_unit = g.get(modal.UNITS, machine.unit_code) != machine.unit_code
+    if "f" in words and machine.feed_mode != 930 and other_unit and not machine.feed_in_block:
         machine.note(
             "feed-units", "suspicious", f"F and {g_name(g[modal.UNITS])} on one line: F counts in the units before it"
         )

@@ -59,7 +59,8 @@ def repeats(machine: Machine, block: Block) -> None:
     if pecks(motion) and words.get("q", 0.0) >= _THOUSANDTHS and words["q"] == round(words["q"]):
         words["q"] /= 1000.0 if machine.unit == "mm" else 10_000.0
         machine.note("peck-thousandths", "info", "a depth per peck (Q) of 100 and more counts in the control's steps")
-    if takes_dwell(motion) and "p" not in words and (machine.motion != motion or math.isnan(machine.cycle[P])):
+    kept = machine.motion == motion or (machine.is_fanuc and is_cycle(machine.motion))
+    if takes_dwell(motion) and "p" not in words and (not kept or math.isnan(machine.cycle[P])):
         words["p"] = 0.0
     steps = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 910
     given = {"r", "xyz"[axes(machine.plane)[2]]} & words.keys()

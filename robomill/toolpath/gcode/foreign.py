@@ -61,7 +61,7 @@ _TOLD = (
     ("an STL surface", r"solid[ \t]*\w*[^\n]*\n[ \t]*facet\b"),
     ("STEP", r"ISO-10303-21;"),
 )
-_REMEDY = "expected G-code or APT; let the CAM system write one of them."
+_REMEDY = "expected G-code, Heidenhain's dialogue or APT; let the CAM system write one of them."
 
 
 def language_of(text: str) -> tuple[int, str] | None:

@@ -17,7 +17,7 @@ from robomill.toolpath.gcode.macro import with_brackets
 from robomill.toolpath.gcode.motion_rules import keep_motion
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.scaling import scale_words
-from robomill.toolpath.gcode.sinumerik import spaced
+from robomill.toolpath.gcode.sinumerik import parted, spaced
 from robomill.toolpath.gcode.stretches import Stretches
 from robomill.toolpath.gcode.subprograms import CALLS
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
@@ -62,6 +62,7 @@ class Interpreter(Klartext):
                 index = self.pc
                 self.pc = index + 1
                 self.step(index)
+                self.leave_if_due()
         finally:
             self.say_left_over()
 
@@ -75,7 +76,7 @@ class Interpreter(Klartext):
         if len(raw) > MAX_LINE:
             raise GCodeError.at(line, f"{len(raw)} characters long; at most {MAX_LINE} can be read.")
         if self.dialect.name == "sinumerik":
-            code, mark, comment = raw.partition(";")
+            code, comment = parted(raw)
             if len(code) > MAX_CODE:
                 raise GCodeError.at(line, f"{len(code)} characters long; at most {MAX_CODE} can be read.")
             plain = spaced(code.upper())
@@ -83,7 +84,7 @@ class Interpreter(Klartext):
             left = None if left is None else self.sinumerik_line(left, line)
             if left is None:
                 return
-            raw = raw if left == code.upper() else left + mark + comment
+            raw = raw if left == code.upper() else left + comment
         if self.is_klartext:
             left = self.klartext_line(index)
             if left is None:
@@ -118,7 +119,7 @@ class Interpreter(Klartext):
             if self.fanuc_call(block):
                 return
             self.dialect.unknown(machine, block)
-        self.dialect.meant_otherwise(block)
+        self.dialect.meant_otherwise(machine, block)
         if self.dialect.has_macros:
             as_bored(machine, block)
         check.choose_motion(machine, block, self.dialect)

@@ -65,6 +65,12 @@ class Machine:
     ``aways`` are those, each with the first move for which it holds, and ``homes`` those that the program has stored
     itself (28, 30).
 
+    ``feeds_follow`` says that feeds count in the unit of lengths (a Sinumerik's G70 and G71 change lengths alone),
+    ``feed_in_block`` that F beside a word of units counts in the new ones; ``sharp`` that compensation goes around
+    outside corners without an arc (G451).
+
+    ``radii`` are the radius and wear that G10 gives a tool.
+
     ``corner`` is what the line says of the corner at its end (size in program units), ``rounding`` what RNDM says of
     all corners (a radius, 0: none), ``polar_words`` says that X
     and Y are a radius and an angle (G16), ``before_turn`` is the origin and rotation without G68, ``scale`` what
@@ -101,6 +107,7 @@ class Machine:
         self.straight = 0
         self.arc_refused = False
         self.motion, self.plane, self.absolute, self.arc_absolute = 800, 17, True, False
+        self.feeds_follow, self.feed_in_block, self.sharp = True, False, False
         self.feed_mode, self.feed, self.speed, self.spindle, self.spindle_mode = 940, 0.0, 0.0, 0, 970
         self.retract_r, self.diameter_mode = True, False
         self.tool, self.selected, self.in_spindle = _NO_TOOL, 0, 0
@@ -113,6 +120,7 @@ class Machine:
         self.variable: Callable[[Machine, int], float] | None = None
         self.extended: dict[int, tuple[list[float], float]] = {}
         self.further = "G54.1 P{}"
+        self.radii: dict[int, list[float]] = {}
         self.systems: list[tuple[int, int]] = [(0, 1)]
         self.placed: dict[int, int] = {}
         self.sides: dict[int, str] = {}
@@ -152,7 +160,8 @@ class Machine:
         """True while the rules of ``mode_rules`` alone say what plain lines do."""
         held = self.compensation is not None or self.recorder.held is not None
         other = self.diameter_mode or self.polar_words or self.modal is not None or self.scale is not None
-        return not (held or other or self.rounding or any(self.away))
+        counted = self.feeds_follow or self.unit_code == 210
+        return counted and not (held or other or self.rounding or any(self.away))
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""

@@ -1,10 +1,13 @@
 """Where zero is: G10, G52, G54 to G59.3, G92 and its kin, and tool lengths G43, G49."""
 
+from dataclasses import replace
+
 from robomill.toolpath.gcode.codes import COMPENSATION, g_name
 from robomill.toolpath.gcode.compensation import Compensation
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.mode_rules import system_code
-from robomill.toolpath.gcode.motion_rules import rotate, to_frame
+from robomill.toolpath.gcode.motion_rules import MOST, rotate
+from robomill.toolpath.gcode.standing import begins, stand
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool
 from robomill.units import from_si, to_si
@@ -129,9 +132,9 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
     """G52 and the G92 family."""
     machine.need_compensation_off(block, g_name(code))
     numbered = machine.store.numbered
-    if code == 920 and _begins(machine):
+    if code == 920 and begins(machine):
         if machine.other_control:
-            _stand(machine, block)
+            stand(machine, block)
             return
         text = "G92 before the first move shifts part zero, as LinuxCNC takes the tool to stand at its own zero then"
         machine.note("zero-shifted", "warning", f"{text}; remove the line where it says where the tool stands")
@@ -160,26 +163,12 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
         machine.store.put(5211, [0.0] * 6)
 
 
-def _begins(machine: Machine) -> bool:
-    """Whether nobody knows yet where the machine stands."""
-    return not (machine.strict or len(machine.recorder) or machine.recorder.held or any(machine.g92) or any(machine.p))
-
-
-def _stand(machine: Machine, block: Block) -> None:
-    """G92 before the first move says where the tool stands: part zero is where it counts from."""
-    for axis, letter in enumerate(XYZABC):
-        machine.p[axis] = block.words.get(letter, machine.p[axis])
-        if axis >= 3:
-            machine.turned[axis - 3] = to_si(machine.p[axis], "deg")
-    machine.sent = list(machine.p)
-    x, y, z = machine.p[:3]
-    to_frame(machine, x, y, z, machine.at)
-    machine.note("begins-at", "info", "G92 before the first move is read as where the tool stands, from part zero")
-
-
 def set_data(machine: Machine, block: Block) -> None:
     """G10 L1, L2, L10, L11 and L20."""
     kind = round(block.words.get("l", -1.0))
+    if machine.is_fanuc and kind in (12, 13) and {"p", "r"} <= block.words.keys() and machine.absolute:
+        _set_radius(machine, block, kind == 13)
+        return
     if machine.is_fanuc and kind in _FANUC_TOOLS:
         machine.note(
             "tool-set", "warning", f"G10 L{kind} sets a tool of the control, which is left out: the tool table holds"
@@ -296,6 +285,18 @@ def _set_tool(machine: Machine, block: Block, kind: int, number: int) -> None:
     machine.tools[number] = changed
     if machine.tool.number == number:
         machine.tool = changed
+
+
+def _set_radius(machine: Machine, block: Block, wear: bool) -> None:
+    """Fanuc's G10 L12 P R is the radius that D of that number means, L13 what its wear adds."""
+    number, radius = round(block.words["p"]), to_si(block.words["r"], machine.unit)
+    machine.tools = _Assumed() if machine.tools is None else machine.tools
+    if not 1 <= number <= MOST:
+        raise block.refuse(f"G10 has P{number}; tool numbers start at 1.")
+    tool = machine.tools[number] if number in machine.tools else Tool(number)
+    sizes = machine.radii.setdefault(number, [tool.diameter / 2.0, 0.0])
+    sizes[wear] = radius
+    machine.tools[number] = replace(tool, diameter=2.0 * sum(sizes))
 
 
 class _Assumed(dict[int, Tool]):

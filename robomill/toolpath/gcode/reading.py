@@ -12,7 +12,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, Dialect, choose_dialect
-from robomill.toolpath.gcode.doubts import doubt, doubt_points, doubt_second_table
+from robomill.toolpath.gcode.doubts import doubt, doubt_all_points, doubt_points, doubt_second_table
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.foreign import language_of
 from robomill.toolpath.gcode.interpreter import Interpreter
@@ -114,7 +114,11 @@ def interpret(
         )
     if chosen.has_macros:
         doubt_points(machine.findings, data)
-    return _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
+    program = _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
+    if chosen.name == "fanuc":
+        doubt_all_points(machine.findings, data, program)
+        return replace(program, findings=machine.findings.freeze())
+    return program
 
 
 def _machine(tools: Tools | None, dialect: Dialect, lines: int) -> Machine:
@@ -122,6 +126,7 @@ def _machine(tools: Tools | None, dialect: Dialect, lines: int) -> Machine:
     machine.recorder.most = most_moves(lines)
     machine.strict = dialect.strict
     machine.keeps_heights = dialect.keeps_heights
+    machine.feed_in_block = dialect.name in ("grbl", "sinumerik")
     machine.other_control = dialect.name in ("fanuc", "sinumerik", "heidenhain")
     if machine.other_control:
         machine.store.cut_towards_zero()

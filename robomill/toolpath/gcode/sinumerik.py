@@ -5,11 +5,13 @@ import re
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.tool_axis import angles_of
+from robomill.units import to_si
 
 _SILENT = re.compile(
     r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|COMPCURV|COMPSURF|STOPRE|CFTCP|CFIN|CFC|ORIWKS|"
     r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|KONT|DIAMOF|FNORM|FLIN|FGROUP|SETMS|CUT2D|CDOF|WALIMOF|WALIMON|"
     r"STOPFIFO|STARTFIFO|CPRECON|CPRECOF|ORISON|ORISOF|SBLON|SBLOF|DISPLON|DISPLOF)\b(?:[ \t]*\([^()]*\))?|"
+    r"\bOFFN[ \t]*=[ \t]*0+(?:\.0*)?(?![.\d])|"
     r"\b(?:ADIS|ADISPOS|CTOL|OTOL|ATOL|(?:ACC|JERKLIM|VELOLIM)\[\w+\])[ \t]*=[ \t]*[.\d]+|"
     r"\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|\bGROUP_(?:BEGIN|END)[ \t]*\([^()]*\)|"
     r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)|\bCYCLE800[ \t]*\([ \t]*\)",
@@ -26,9 +28,19 @@ _SWIVEL = re.compile(r"\bCYCLE800[ \t]*\(([^()]*)\)", re.IGNORECASE)
 _TURNS = re.compile(r"\b(G0?4)[ \t]+S[ \t]*=?[ \t]*([.\d]+)", re.IGNORECASE)
 _TOOL = re.compile(r"\bT[ \t]*=?[ \t]*\"([^\"]*)\"", re.IGNORECASE)
 _MODES = re.compile(r"\bG9[01]\b(?!\.)", re.IGNORECASE)
+_CODE = re.compile(r"(?:[^;\"]|\"[^\"]*\"|\"(?=[^\"]*$))*+")
+_FOLLOWS = {"G70": False, "G71": False, "G700": True, "G710": True}
+_FEED = re.compile(rf"(?<![A-Za-z_])F(?:1?[ \t]*=)?[ \t]*({_NUMBER})", re.IGNORECASE)
 _ADDRESS = r"[A-DF-Z][-+]?(?:\d+(?:\.\d*)?|\.\d+)"
 _TIGHT = re.compile(rf"(?<![\w.+\-])(?:{_ADDRESS})+[A-DF-Z]?(?![\w.(+\-])")
 _EACH = re.compile(rf"({_ADDRESS})(?=[A-Z])")
+
+
+def parted(raw: str) -> tuple[str, str]:
+    """A line's code, and its comment with the ; before it; a ; in quotes begins none."""
+    found = _CODE.match(raw)
+    at = len(raw) if found is None else found.end()
+    return raw[:at], raw[at:]
 
 
 def spaced(code: str) -> str:
@@ -40,13 +52,14 @@ def spaced(code: str) -> str:
 
 def translated(raw: str, number: int, machine: Machine) -> str:
     """The line in LinuxCNC's words; what is left out on the way is noted. Raises GCodeError naming the line."""
-    code, mark, comment = raw.partition(";")
+    code, comment = parted(raw)
     for found in _SILENT.findall(code):
         machine.findings.add("harmless-word", "ignored", number, f"{_name(found)} is left out: it moves nothing")
     code = _SWIVEL.sub(lambda found: _unswivelled(found, number, machine), _SILENT.sub("", code))
     message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
     if message is not None:
         code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
+    code = _feeds(code, number, machine)
     code = _WORDS.sub(lambda found: _UNITS[found[0].upper()], code)
     code = _EXPONENT.sub(lambda found: f"{float(found[1] + 'e' + found[2]):.15f}", code)
     code = _tool_axis(code, number, machine)
@@ -59,7 +72,7 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = re.sub(r"\b(?:M17|RET)\b", "M2", code, flags=re.IGNORECASE)
     code = _TOOL.sub(lambda found: named_tool(found[1], number, machine), code)
     code = re.sub(r"\bD\d+\b", "", code, flags=re.IGNORECASE)
-    return code + (";" + comment if mark else "")
+    return code + comment
 
 
 def _unswivelled(found: re.Match[str], number: int, machine: Machine) -> str:
@@ -68,6 +81,24 @@ def _unswivelled(found: re.Match[str], number: int, machine: Machine) -> str:
         return found[0]
     machine.findings.add("harmless-word", "ignored", number, "CYCLE800 by 0 is left out: it swivels nothing")
     return ""
+
+
+def _feeds(code: str, number: int, machine: Machine) -> str:
+    """F in the unit of the line before, as it is read: G70 and G71 change lengths alone, G700 and G710 feeds too."""
+    said = [each.upper() for each in _WORDS.findall(code) if each.upper() in _FOLLOWS]
+    inch = machine.unit == "in"
+    if said:
+        machine.feeds_follow, inch = _FOLLOWS[said[-1]], said[-1] in ("G70", "G700")
+        if said[-1] == "G70":
+            text = (
+                "G70: feeds still count in mm/min, as on a control whose basic system is metric; G700 counts them in in"
+            )
+            machine.findings.add("feeds-metric", "info", number, text)
+    counts = "in" if inch and machine.feeds_follow else "mm"
+    if counts == machine.unit or machine.feed_mode == 930:
+        return code
+    ratio = to_si(1.0, counts) / to_si(1.0, machine.unit)
+    return _FEED.sub(lambda found: f"F{float(found[1]) * ratio:.12f}", code)
 
 
 def _waited(found: re.Match[str], number: int, machine: Machine) -> str:

@@ -297,7 +297,8 @@ class SinumerikWords(MacroCalls):
         while first > bottom:
             depths.append(first)
             step = max(step - less, less) if less > 0.0 else step
-            first -= step
+            rest = first - bottom
+            first -= 0.5 * rest if step == less < rest <= 2.0 * less else step  # the last two are alike
             if len(depths) > MAX_PECKS:
                 raise GCodeError.at(line, f"CYCLE83 would need more than {MAX_PECKS} pecks; give a larger FDPR.")
         return tuple(depths)

@@ -27,7 +27,7 @@ LOCALS = 33
 class Subprograms(OWords):
     """Follows calls of subprograms in the same file; ``OWords`` follows those of O words."""
 
-    calls_lines = False
+    calls_lines = leaves = False
 
     def fanuc_call(self, block: Block) -> bool:
         """M97, M98 and M198 call a subprogram, M99 returns from it (in the main program: ends it)."""
@@ -127,6 +127,12 @@ class Subprograms(OWords):
             self._go_back(level, rules.leave(self.machine.store.arrays, self.o_words(self.file).plain))
 
     # --- Sinumerik: by name
+    def leave_if_due(self) -> None:
+        """Leave a subprogram whose last line says more than its end."""
+        if self.leaves:
+            self.leaves = False
+            self._repeat_or_leave()
+
     def sinumerik_call(self, code: str, line: int) -> str | None:
         """Follow a call, or the end of a subprogram; what else the line says, None where it is done.
 
@@ -142,9 +148,8 @@ class Subprograms(OWords):
         if self.machine.store.level > 0 and _LEAVES.search(plain):
             rest = _LEAVES.sub("", plain).strip()
             if rest:
-                raise GCodeError.at(
-                    line, f"found {rest[:20]!r} beside the end of a subprogram; put it on a line before."
-                )
+                self.leaves = True
+                return rest
             self._repeat_or_leave()
             return None
         found = _NUMBERED.fullmatch(plain)

@@ -373,3 +373,38 @@ def test_compensation_said_once_more_changes_nothing() -> None:
     for other in ("G42 Y60\n", "G41 D2 Y60\n"):
         with pytest.raises(GCodeError, match="Line 5: G4[12] changes the side or the cutter without G40"):
             interpret(text.format(other), dialect="fanuc", tools=tools)
+
+
+TURNED = "T1 D1 M6\n{0}\nG0 X0 Y-20\nG41 G1 X0 Y0\nY50\nX50\nG40 Y-20\nM30\n"
+
+
+def test_g451_goes_on_to_where_the_offset_cuts_meet() -> None:
+    """Sinumerik: a cutter of 10 mm beside the corner (0, 50), 90 degrees outside: (-5, 55), and no arc."""
+    tools = {1: Tool(1, 10e-3)}
+    head = "G71 G90 G17 F100\n"
+    sharp = interpret(head + TURNED.format("G451"), dialect="sinumerik", tools=tools)
+    np.testing.assert_allclose(sharp.end[1:, :2] * 1e3, [[-5, 0], [-5, 55], [50, 55], [50, -20]], atol=1e-9)
+    assert not (sharp.kind == 2).any()
+    for words in ("G450", "G451\nG450", ""):
+        around = interpret(head + TURNED.format(words), dialect="sinumerik", tools=tools)
+        assert (around.kind == 2).sum() == 1
+    slant = "T1 D1 M6\nG451\nG0 X-20\nG42 G1 X0\nX50\nX100 Y50\nG40 Y80\nM30\n"
+    corner = interpret(head + slant, dialect="sinumerik", tools=tools).end[2, :2] * 1e3
+    np.testing.assert_allclose(corner, [50 + 5 * np.tan(np.radians(22.5)), -5], atol=1e-9)
+    arc = "T1 D1 M6\nG451\nG0 X-20\nG42 G1 X0\nX50\nG3 X60 Y30 CR=30\nG40 G1 Y80\nM30\n"
+    with pytest.raises(GCodeError, match="Line 7: an outside corner beside an arc under G451"):
+        interpret(head + arc, dialect="sinumerik", tools=tools)
+
+
+@pytest.mark.parametrize("dialect", ["fanuc", "sinumerik"])
+def test_compensation_begins_on_a_straight_move_but_for_linuxcnc(dialect: str) -> None:
+    text = "G21 G90 F100\nT1 M6\nG0 X-20. Y0\nG41 D1 G2 X0 Y20. I20. J0\nG40 G1 Y80.\nM30\n"
+    with pytest.raises(GCodeError, match="Line 4: cutter compensation begins on a straight move"):
+        interpret(text, dialect=dialect, tools={1: Tool(1, 10e-3)})
+    assert len(interpret(text, dialect="linuxcnc", tools={1: Tool(1, 10e-3)}))
+
+
+def test_g10_l12_and_l13_of_a_fanuc_are_a_radius_and_its_wear() -> None:
+    text = "G21 G90 F9\n{}G0 X0 Y-20.\nG1 G41 D1 X0 Y0\nY50.\nG40 X-20.\nM30\n"
+    for words, x in (("G10 L12 P1 R5.\n", -5), ("G10 L12 P1 R5.\nG10 L13 P1 R-.5\n", -4.5)):
+        assert interpret(text.format(words), dialect="fanuc").end[1, 0] * 1e3 == pytest.approx(x)

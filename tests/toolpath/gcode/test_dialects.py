@@ -269,3 +269,10 @@ def test_a_point_alone_is_nought_on_a_fanuc() -> None:
 def test_haas_engraving_is_named() -> None:
     with pytest.raises(GCodeError, match="Line 2: G47 engraves text"):
         interpret("G20 G0 X0\nG47 E7.5 F15. I45. J.5 P0 R0.05 Z-0.005 (TEXT)\n")
+
+
+def test_a_feed_beside_g20_counts_in_inches_on_grbl() -> None:
+    """grbl 1.1, gcode.c: the units of a block hold for all of it."""
+    program = interpret("G21 G90\nG20 G1 X1 F10\nX2 F20\nG21 X3 F30\nM2\n", dialect="grbl")
+    np.testing.assert_allclose(program.v_f * 6e4, [254, 508, 30])
+    assert "feed-units" not in {f.code for f in program.findings}

@@ -65,3 +65,18 @@ def test_a_system_other_than_the_first_is_said_to_be_at_part_zero(said: str, fou
     assert [f.message[:40] for f in findings if f.code == "zero-taken"] == [
         "part zero is taken to be that of G56, wh"
     ] * found
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "level"),
+    [
+        ("G21 G90\nG1 X-25000 Y-10000 F9\nM30\n", "no-points", "suspicious"),
+        ("G21 G90\nG1 X50 Y20 F9\nM30\n", "no-points", "info"),
+        ("G21 G90\nG1 X10000 Y5.5 F9\nM30\n", "no-point", "suspicious"),
+        ("G21 G90\nG1 X100 Y5.5 F9\nM30\n", "", ""),
+        ("G21 G90\nG1 X50. Y20. F9\nM30\n", "", ""),
+    ],
+)
+def test_numbers_without_a_point_are_said_of_a_fanuc_program(text: str, code: str, level: str) -> None:
+    found = [(f.code, f.level) for f in interpret(text, dialect="fanuc").findings if f.code.startswith("no-point")]
+    assert found == ([(code, level)] if code else [])

@@ -139,3 +139,10 @@ def test_the_next_place_is_gone_to_at_the_height_where_the_tool_is() -> None:
     program = read("G99 G81 X1 Z-5 R2\nG98 X3\n")
     heights = [(round(x * 1e3, 9), round(z * 1e3, 9)) for x, _, z in program.end.tolist()]
     assert heights[-3:] == [(3, 2), (3, -5), (3, 10)]
+
+
+def test_what_a_cycle_says_holds_for_the_next_ones_until_g80() -> None:
+    assert holes("G99 G82 X1 Z-5 R2 P500\nG81 X2\nG83 X3 Q4\n") == [(1, 0, -5), (2, 0, -5), (3, 0, -2), (3, 0, -5)]
+    assert read("G99 G82 X1 Z-5 R2 P500\nG81 X2\nG82 X3\n").dwell_time == pytest.approx(1.0)
+    with pytest.raises(GCodeError, match="Line 5: G81 needs R"):
+        read("G99 G82 X1 Z-5 R2 P500\nG80\nG81 X2\n")

@@ -62,4 +62,4 @@ def test_a_file_of_another_language_is_named_by_it_on_its_first_line(text: str, 
     with pytest.raises(GCodeError) as caught:
         interpret(text)
     assert str(caught.value).startswith(f"Line {line}: this is {name}")
-    assert "expected G-code or APT" in str(caught.value)
+    assert "expected G-code, Heidenhain's dialogue or APT" in str(caught.value)

@@ -225,7 +225,7 @@ def test_words_that_mean_something_else_on_a_fanuc_are_refused(code: str, says: 
 
 
 def test_tools_that_a_fanuc_program_sets_are_left_out_with_a_word() -> None:
-    program = interpret("G21 G90\nG10 L10 P1 R50.\nG10 L12 P1 R5.\nG0 Z5\nM30\n", dialect="fanuc")
+    program = interpret("G21 G90\nG10 L10 P1 R50.\nG10 L11 P1 R5.\nG0 Z5\nM30\n", dialect="fanuc")
     assert [f.line for f in program.findings if f.code == "tool-set"] == [2, 3]
     assert program.end[-1, 2] == pytest.approx(5e-3)
 

@@ -201,3 +201,36 @@ def test_boring_with_a_stop_and_at_feed_both_ways(cycle: str, last: list[tuple[s
     """840D sl, Cycles: 87 stops and leaves at rapid, 88 waits before, 89 leaves at the feed that it went in with."""
     assert heights(f"G0 Z20\n{cycle}\n")[-2 - len(last) :] == [("R", 2.0), ("F", -6.0), *last]
     assert interpret(f"{HEAD}{cycle}\nM30\n", dialect="sinumerik").dwell_time == pytest.approx(waits)
+
+
+@pytest.mark.parametrize(
+    ("body", "rates"),
+    [
+        ("G70 G1 X1 F100\nX2 F200\n", [100, 200]),
+        ("R1=5\nG70 G1 X1 F=R1*2\n", [10]),
+        ("G1 X1 F50\nG70 X2\nX3 F60\nG71 X2 F70\n", [50, 50, 60, 70]),
+        ("G700 G1 X1 F10\nX2 F20\nG710 X3 F300\n", [254, 508, 300]),
+        ("G700 G1 X1 F10\nG70 X2 F20\n", [254, 20]),
+    ],
+)
+def test_feeds_count_in_inches_under_g700_alone(body: str, rates: list[float]) -> None:
+    """840D sl, Fundamentals, Inch or metric dimensions: G70 and G71 change lengths, G700 and G710 feeds too."""
+    program = interpret(f"G90 G17 S500 M3\n{body}M30\n", dialect="sinumerik")
+    np.testing.assert_allclose(program.v_f * 6e4, rates)
+    codes = {f.code for f in program.findings}
+    assert "feed-units" not in codes
+    assert ("feeds-metric" in codes) == ("G70 " in body)
+
+
+def test_a_semicolon_in_quotes_begins_no_comment_and_the_last_line_of_a_subprogram_may_move() -> None:
+    assert places('MSG("HALLO; (x) G1 X999")\nG1 X1 ; "a\nX2\n') == [(1, 0, 0), (2, 0, 0)]
+    assert places("L1\nX9\nM30\n%_N_L1_SPF\nG91 G1 X1\nG90 X5 M17\n") == [(1, 0, 0), (5, 0, 0), (9, 0, 0)]
+    assert places("OFFN=0\nG1 X1\n") == [(1, 0, 0)]
+    with pytest.raises(GCodeError, match="Line 2: OFFN"):
+        places("OFFN=0.5\nG1 X1\n")
+
+
+def test_the_last_two_pecks_of_a_degression_are_alike() -> None:
+    """840D sl, CYCLE83: less by DAM each time, DAM at least, and what is less than twice DAM in two halves."""
+    found = [z for kind, z in heights("G0 X5 Z50\nCYCLE83(20,0,2,-15,,,5,2,0,0,1,0)\n") if kind == "F"]
+    assert found == [-5, -8, -10, -12, -13.5, -15]

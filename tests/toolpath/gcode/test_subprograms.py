@@ -40,6 +40,7 @@ SINUMERIK = [
     ('CALL "POCKET"\nX9\nM30\nPROC POCKET\nX4\nRET\n', [1, 4, 9]),
     ("L1\nX9\nM30\n%_N_L1_SPF\nL2\nX3\nM17\n%_N_L2_SPF\nX2\nM17\n", [1, 2, 3, 9]),
     ("X9\nM17\n", [1, 9]),
+    ("L1 P2\nX9\nM30\n%_N_L1_SPF\nG91 X3\nG90 X2 M17\n", [1, 4, 2, 5, 2, 9]),
 ]
 
 
@@ -58,7 +59,6 @@ REFUSED = [
     ("G71 G1 F9 X1\nL100 P2\nM30\n", "sinumerik", "Line 2: L100 calls a subprogram that is not in this file; paste"),
     ('G71 G1 F9 X1\nCALL "A1"\nM30\n', "sinumerik", "Line 2: A1 calls a subprogram that is not in this file"),
     ("G71\nSUB(3)\nM30\n%_N_SUB_SPF\nX1\nM17\n", "sinumerik", "Line 2: SUB is called with values"),
-    ("G71\nSUB\nM30\n%_N_SUB_SPF\nX1 M17\n", "sinumerik", "Line 5: found 'X1' beside the end of a subprogram"),
 ]
 
 
