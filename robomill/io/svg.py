@@ -17,6 +17,18 @@ from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.extras import needed
 from robomill.io.dxf import PER_INCH, STUMBLES, Read, Reading, metres
+from robomill.io.svg_viewports import (
+    ABSOLUTE,
+    NOT_DRAWN,
+    SIZE,
+    SVG,
+    XLINK,
+    Viewports,
+    box_of,
+    kind_of,
+    pixels,
+    target_of,
+)
 from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.units import format_count
 
@@ -25,21 +37,17 @@ MOST_TAGS = 100_000  # beginnings, ends and comments of elements
 MOST_ELEMENTS, OF_ONE = 20_000, 50  # drawn, each time they are used; so many characters of a path count as one,
 STRETCHES = 5  # and so many lines and curves of it
 MOST_STYLE, MOST_TRANSFORM = 20_000_000, 1_000  # characters: of styles, times elements; of any other attribute
-ABSOLUTE = {"mm": "mm", "cm": "cm", "in": "in", "pt": "pt", "pc": "pt", "q": "mm"}  # and what of it people know
-TIMES = {"pc": 12.0, "q": 0.25}
-SVG, INKSCAPE = "{http://www.w3.org/2000/svg}", "{http://www.inkscape.org/namespaces/inkscape}"
+INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 LAYER, NO_LAYER = "robomill-layer", "drawing"
-NOT_DRAWN = ("symbol", "marker", "mask", "clipPath", "pattern")  # unless something uses them
+PLACED = 60  # characters of the transform that a viewport or a use comes to
 WORDS = ("text", "image", "foreignObject")
 # All that says where a line is; the rest would be handed down to every element below.
-XLINK = "{http://www.w3.org/1999/xlink}href"
 PLACES = "d points x y x1 y1 x2 y2 cx cy r rx ry width height viewBox preserveAspectRatio transform"
 STYLED = frozenset((*PLACES.split(), "display"))
 KEPT = STYLED | {"style", "class", "id", "href", XLINK, LAYER}
 LONG = {"d", "points", "style"}  # attributes that may be
 COMMANDS = "MLTHVCSQAZmlthvcsqaz"
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
-_SIZE = re.compile(r"\s*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)\s*([A-Za-z%]*)\s*")
 
 
 class Svg:
@@ -84,7 +92,7 @@ class Svg:
     # ---- a look at everything before it is drawn -------------------------------------------------------------------
     def _look(self) -> None:
         """Names layers, puts away what is drawn only where it is used, and counts what all uses come to."""
-        known = {e.attrib["id"]: e for e in self.root.iter() if "id" in e.attrib}
+        self.known = known = {e.attrib["id"]: e for e in self.root.iter() if "id" in e.attrib}
         for parent in list(self.root.iter()):
             for place, child in enumerate(parent):
                 self._look_at(parent, place, child)
@@ -100,7 +108,7 @@ class Svg:
                 element.attrib.pop(XLINK, None)
             self._reduce(element)
         drawn, turned = self._count_of(self.root, known, {}, set())
-        style = sum(len(e.text or "") for e in self.root.iter() if _kind(e) == "style")
+        style = sum(len(e.text or "") for e in self.root.iter() if kind_of(e) == "style")
         if style * drawn > MOST_STYLE:
             raise self._refuse(f"its styles are {format_count(style)} characters long")
         if turned > MOST_STYLE:
@@ -108,19 +116,19 @@ class Svg:
 
     def _reduce(self, element: ElementTree.Element) -> None:
         """Leave of words and styles what says where a line is, and whether it is drawn."""
-        element.text = _rules(element.text or "") if _kind(element) == "style" else None
+        element.text = _rules(element.text or "") if kind_of(element) == "style" else None
         if "style" in element.attrib:
             element.set("style", _placing(element.attrib["style"]))
         if "class" in element.attrib:
             element.set("class", " ".join(dict.fromkeys(element.attrib["class"].split())))
 
     def _look_at(self, parent: ElementTree.Element, place: int, child: ElementTree.Element) -> None:
-        kind = _kind(child)
+        kind = kind_of(child)
         if kind == "g" and (parent is self.root or child.get(f"{INKSCAPE}groupmode") == "layer"):
             label = child.get(f"{INKSCAPE}label") or child.get("id")
             if label:
                 child.set(LAYER, label[:200])
-        if kind in NOT_DRAWN and _kind(parent) != "defs":
+        if kind in NOT_DRAWN and kind_of(parent) != "defs":
             put_away = ElementTree.Element(f"{SVG}defs")
             parent[place] = put_away
             put_away.append(child)
@@ -143,10 +151,10 @@ class Svg:
         if element not in counted:
             around.add(element)
             inside = list(element)
-            named = element.get("href", element.get(XLINK, "")).strip()
-            if _kind(element) == "use" and named[1:] in known:
-                inside.append(known[named[1:]])
-            if _kind(element) == "use" and not named.startswith("#"):
+            kind = kind_of(element)
+            if kind == "use" and (target := target_of(element, known)) is not None:
+                inside.append(target)
+            if kind == "use" and not element.get("href", element.get(XLINK, "")).strip().startswith("#"):
                 self.left_out["use of another file"] += 1
             count, turned = 1 + _weight(element), 0
             for each in inside:
@@ -154,29 +162,29 @@ class Svg:
                 count, turned = count + of_each[0], turned + of_each[1]
             if count > MOST_ELEMENTS:
                 raise self._too_many()
-            counted[element] = count, turned + count * len(element.get("transform", ""))
+            placed = PLACED if kind in ("use", "symbol", "svg") else 0
+            counted[element] = count, turned + count * (placed + len(element.get("transform", "")))
             around.discard(element)
         return counted[element]
 
     def _sized(self) -> str:
         """Whether the page has a size in a unit of length; one of the two follows from the other by the view box."""
-        sizes = {key: _SIZE.fullmatch(self.root.get(key, "")) for key in ("width", "height")}
-        box = [float(n) for n in re.findall(r"[-+.\deE]+", self.root.get("viewBox", "")) if _is_number(n)]
+        sizes = {key: SIZE.fullmatch(self.root.get(key, "")) for key in ("width", "height")}
+        box = box_of(self.root)
         good = {key: m for key, m in sizes.items() if m and m[2] != "%" and float(m[1]) > 0.0}
-        if len(box) == 4 and len(good) == 1 and box[2] > 0.0 and box[3] > 0.0:
+        if box and len(good) == 1:
             (key, m), ratio = *good.items(), box[3] / box[2]
             other, times = ("height", ratio) if key == "width" else ("width", 1.0 / ratio)
             self.root.set(other, f"{float(m[1]) * times!r}{m[2]}")
         elif len(good) < 2:
             for key in sizes:
                 self.root.attrib.pop(key, None)
-        said = {m[2].lower() for m in good.values()}
+        said = [unit for m in good.values() if (unit := m[2].lower()) in ABSOLUTE]
         for key in sizes:  # in pixels, to the last digit
-            read = _SIZE.fullmatch(self.root.get(key, ""))
+            read = SIZE.fullmatch(self.root.get(key, ""))
             if read and (unit := read[2].lower()) in ABSOLUTE:
-                pixels = float(read[1]) * TIMES.get(unit, 1.0) * metres(ABSOLUTE[unit]) / metres("px")
-                self.root.set(key, repr(pixels))
-        return ABSOLUTE.get(min(said), "") if len(said) == 1 else ""
+                self.root.set(key, repr(float(read[1]) * pixels(unit)))
+        return ABSOLUTE[said[0]] if said else ""  # one that says it fixes the other, whose pixels are 1/96 in
 
     def scale(self, unit: str) -> float:
         """m: a pixel, which is a ``unit`` where the page does not say how large it is. Raises ToolpathError."""
@@ -195,9 +203,8 @@ class Svg:
         reading = Reading(self.name)
         reading.found.left_out.update(self.left_out)
         try:
-            page = svgelements.SVG.parse(
-                io.StringIO(ElementTree.tostring(self.root, encoding="unicode")), ppi=PER_INCH["px"], on_error="raise"
-            )
+            written = ElementTree.tostring(Viewports(self.name, self.known).written_out(self.root), encoding="unicode")
+            page = svgelements.SVG.parse(io.StringIO(written), ppi=PER_INCH["px"], on_error="raise")
             height = float(page.height) if page.viewbox is not None or "height" in self.root.attrib else 0.0
             for element in page.elements():
                 if not isinstance(element, svgelements.Shape):
@@ -251,17 +258,6 @@ def _text_of(data: bytes, name: str) -> str:
     if "\0" in text:
         raise ToolpathError(f"{name}: this is a binary file; expected an SVG drawing in text.")
     return re.sub(r"^\s*<\?xml[^>]*\?>", "", text)
-
-
-def _kind(element: ElementTree.Element) -> str:
-    return element.tag.removeprefix(SVG) if isinstance(element.tag, str) else ""
-
-
-def _is_number(text: str) -> bool:
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
 
 
 def _lines(path: Any, scale: float, to: Reading) -> Iterator[tuple[Any, FloatArray]]:

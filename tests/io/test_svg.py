@@ -91,6 +91,9 @@ def test_y_points_up_from_the_lower_edge_of_the_page() -> None:
         ('width="4in" height="3in" viewBox="0 0 400 300"', "in", 5 * 0.254),
         ('width="200mm" viewBox="0 0 100 80"', "mm", 10.0),
         ('width="10cm" height="8cm"', "cm", 5 * 25.4 / 96),
+        ('width="96px" height="1in"', "in", 5 * 25.4 / 96),
+        ('width="100mm" height="4in"', "mm", 5 * 25.4 / 96),
+        ('width="96" height="2in" viewBox="0 0 96 192"', "in", 5 * 25.4 / 96),
         ('width="300" height="200"', "", 5 * 25.4 / 96),
         ('width="300px" height="200px" viewBox="0 0 30 20"', "", 50 * 25.4 / 96),
         ('width="100%" height="100%" viewBox="0 0 100 80"', "", 5 * 25.4 / 96),
@@ -205,3 +208,61 @@ def test_a_style_sheet_hides_lines_and_costs_no_time(sheet, drawn) -> None:
     read = svg(f'<style>{sheet}</style><line x2="1"/><circle r="1"/>').read(1e-3)
     assert len(read.pieces) == 1 + drawn
     assert time.process_time() - began < 2.0
+
+
+TEN = '<rect width="10" height="10"/>'
+NESTED_SVG = '<svg x="10" y="20" width="50" height="50" {}>{}</svg>'
+SYMBOL = '<symbol id="s" viewBox="0 0 10 10" {}>' + TEN + '</symbol><use href="#s" {}/>'
+
+
+@pytest.mark.parametrize(
+    ("body", "box"),  # mm, Y down from the upper edge of the page, as the file counts: x from, to, y from, to
+    [
+        (NESTED_SVG.format('viewBox="0 0 10 10"', TEN), (10, 60, 20, 70)),
+        (NESTED_SVG.format("", TEN), (10, 20, 20, 30)),
+        (NESTED_SVG.format('viewBox="5 5 10 10"', '<rect x="5" y="5" width="10" height="10"/>'), (10, 60, 20, 70)),
+        (NESTED_SVG.format('viewBox="0 0 10 20"', TEN), (22.5, 47.5, 20, 45)),
+        (NESTED_SVG.format('viewBox="0 0 10 20" preserveAspectRatio="xMaxYMin"', TEN), (35, 60, 20, 45)),
+        (NESTED_SVG.format('viewBox="0 0 10 20" preserveAspectRatio="none"', TEN), (10, 60, 20, 45)),
+        (NESTED_SVG.format('viewBox="0 0 10 20" preserveAspectRatio="xMidYMax slice"', TEN), (10, 60, -30, 20)),
+        (NESTED_SVG.format('viewBox="0 0 10 10"', '<rect width="50%" height="20%"/>'), (10, 35, 20, 30)),
+        (NESTED_SVG.format('viewBox="0 0 10 10"', '<rect style="width:50%;height:20%"/>'), (10, 35, 20, 30)),
+        (
+            NESTED_SVG.format("", '<svg x="50%" width="50%" height="10" viewBox="0 0 10 10">' + TEN + "</svg>"),
+            (42.5, 52.5, 20, 30),
+        ),
+        (NESTED_SVG.format("", "") + '<rect width="50%" height="10%"/>', (0, 50, 0, 8)),
+        ('<svg x="10%" y="50%" width="50%" height="50%">' + TEN + "</svg>", (10, 20, 40, 50)),
+        (SYMBOL.format("", 'x="50" y="50" width="20" height="20"'), (50, 70, 50, 70)),
+        (SYMBOL.format("", 'x="50" y="50" width="20" height="20" transform="scale(.5)"'), (25, 35, 25, 35)),
+        (SYMBOL.format('style="display:none"', 'x="5" width="20" height="10"'), (10, 20, 0, 10)),
+        (SYMBOL.format('width="30" height="30"', ""), (0, 30, 0, 30)),
+        (SYMBOL.format("", ""), (10, 90, 0, 80)),
+        (
+            '<symbol id="o" viewBox="0 0 2 2"><use href="#i" x="1" width="50%" height="1"/></symbol><symbol id="i" '
+            f'viewBox="0 0 10 10">{TEN}</symbol><use href="#o" x="10" y="20" width="40" height="40"/>',
+            (30, 50, 20, 40),
+        ),
+        (
+            f'<defs><svg id="n" x="1" width="5" height="5" viewBox="0 0 10 10">{TEN}</svg></defs>'
+            '<use href="#n" x="10" width="20" height="20"/>',
+            (11, 31, 0, 20),
+        ),
+        (f'<defs><g id="g">{TEN}</g></defs><use href="#g" x="7" width="99" height="99"/>', (7, 17, 0, 10)),
+        ('<g x="50" y="50" rx="3" r="9"><circle cx="20" cy="20" r="5"/></g>', (15, 25, 15, 25)),
+        ('<ellipse cx="50%" cy="40" rx="10"/>', (40, 60, 30, 50)),
+        (f'<rect height="10"/><rect/><circle cx="5"/><path/><polyline/>{TEN}', (0, 10, 0, 10)),
+    ],
+)
+def test_viewports_stand_where_browsers_show_them(body, box) -> None:
+    (piece,) = pieces(body)
+    points = piece.points * 1e3
+    if piece.shape == "circle":
+        points = points[0] + np.linalg.norm(points[1] - points[0]) * np.array([[-1, -1], [1, 1]])
+    (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
+    np.testing.assert_allclose([x0, x1, 80 - y1, 80 - y0], box, atol=1e-3)
+
+
+def test_a_place_in_letters_is_refused() -> None:
+    with pytest.raises(ToolpathError, match="found '2em' where a length should be"):
+        pieces('<svg width="2em"><line x2="1"/></svg>')
