@@ -17,8 +17,8 @@ How to write a page (at most 120 lines)::
 
 The core is ``project`` (what a person decided), ``session`` (its history and what is kept by name), ``cached`` and
 ``rendered`` (results, pictures by fingerprint), ``inputs``, ``pieces``, ``verdict`` and ``shell``; the room ``keeping``
-brings the project back where a page or its server went away. Every page has a room of its own beside it, and no room
-knows another.
+brings the project back where a page or its server went away, ``sharing`` hands it on. Every page has a room of its own
+beside them, and no page's room knows another's.
 
 Rules of the house:
 

@@ -7,13 +7,14 @@ import streamlit as st
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import SETUP
 from robomill.io.texts import read_text
-from robomill.ui import arriving, bar, declared, handing, inputs, menu, pieces, preparing, rendered, session
+from robomill.ui import bar, declared, inputs, menu, pieces, preparing, rendered, session
 from robomill.ui.closing import settle
 from robomill.ui.commons import weight
 from robomill.ui.keeping import against, autosave, snapshots
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
 from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_to_toml
+from robomill.ui.sharing import arriving, buttons
 from robomill.viz.theme import palette
 
 MAX_PROJECT_MB = 25
@@ -169,7 +170,7 @@ def _files(held: session.Store) -> None:
             icon=":material/save:",
             width="stretch",
         )
-    handing.row(project)
+    buttons.row(project)
     if st.button("Keep and compare", key="snapshots", icon=":material/bookmarks:", width="stretch", type="tertiary"):
         snapshots.show()
     if st.button("Compare A and B", key="other.panel", icon=":material/compare:", width="stretch", type="tertiary"):

@@ -113,8 +113,8 @@ def test_import_robomill_loads_no_screen_and_no_compiler() -> None:
     assert found.strip() == "[]", f"import robomill also imports {found}"
 
 
-CORE_ROOM = "keeping"  # of the screen's core: no page of its own
-UI_ROOMS = sorted({path.parent.name for path in (PACKAGE / "ui").glob("*/__init__.py")} - {CORE_ROOM})
+CORE_ROOMS = {"keeping", "sharing"}  # of the screen's core: no page of their own
+UI_ROOMS = sorted({path.parent.name for path in (PACKAGE / "ui").glob("*/__init__.py")} - CORE_ROOMS)
 
 
 @pytest.mark.parametrize("room", UI_ROOMS)
@@ -126,7 +126,8 @@ def test_no_room_of_the_screen_knows_another(room: str) -> None:
 
 
 def test_the_core_of_the_screen_knows_no_room() -> None:
-    for path in (*(PACKAGE / "ui").glob("*.py"), *(PACKAGE / "ui" / CORE_ROOM).glob("*.py")):
+    inside = (file for room in CORE_ROOMS for file in (PACKAGE / "ui" / room).glob("*.py"))
+    for path in (*(PACKAGE / "ui").glob("*.py"), *inside):
         for name in imported(path):
             assert not name.startswith(tuple(f"robomill.ui.{room}" for room in UI_ROOMS)), f"{path.name}: {name}"
 

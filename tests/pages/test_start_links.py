@@ -6,9 +6,9 @@ from __future__ import annotations
 from conftest import PAGES, go, store, words
 from streamlit.testing.v1 import AppTest
 
-from robomill.ui import address
 from robomill.ui.project import Project, preset_setup
 from robomill.ui.session import EDITED
+from robomill.ui.sharing import address
 from robomill.units import to_si
 
 HEART = Project(preset_setup("heart"), preset="heart")

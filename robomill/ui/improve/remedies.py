@@ -23,9 +23,10 @@ from robomill.simulation.estimate import run_seconds
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.verdict_words import TIGHT_FROM, Level
-from robomill.ui import cached, handing, inputs, pieces, session
+from robomill.ui import cached, inputs, pieces, session
 from robomill.ui.improve import sure
 from robomill.ui.job import Underway
+from robomill.ui.sharing import report
 from robomill.ui.verdict import WORDS
 from robomill.units import (
     format_count,
@@ -281,7 +282,7 @@ def known(result: SimulationResult, unit: str, by: str = NOMINAL) -> tuple[list[
             every.append(Found(remedy, why=str(refusal)))
     single = [each.made for each in every if each.left is not None and not each.remedy.joins]
     made = tuple(each.design if isinstance(each, Stiffened) else each for each in single)
-    session.hold(handing.REMEDIES, (result.setup.digest(), made))  # for the report
+    session.hold(report.REMEDIES, (result.setup.digest(), made))  # for the report
     return sorted(every, key=_rank), waits
 
 

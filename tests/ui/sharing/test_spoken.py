@@ -13,7 +13,7 @@ from robomill.cli import main
 from robomill.io.robots import load_robot
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.project import Project, preset_setup, presets, project_to_toml, with_field
-from robomill.ui.spoken import spoken
+from robomill.ui.sharing.spoken import spoken
 
 FLUTE = Project(preset_setup("paper_flute"))
 FILE = "mine.robomill.toml"

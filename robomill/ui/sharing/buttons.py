@@ -1,21 +1,16 @@
-"""What a person hands on, on every page: a report of the cut, a link, a command, Python."""
+"""The buttons by which a project is handed on, on every page: a report of the cut; a link, a command, Python."""
 
 from collections.abc import Mapping
-from functools import partial
-from typing import Any
 from urllib.parse import urlencode
 
 import streamlit as st
 
 from robomill.errors import RobomillError
-from robomill.identification.knowledge import Knowledge
-from robomill.simulation.result import SimulationResult
-from robomill.ui import address, cached, pieces, session
+from robomill.ui import pieces, session
 from robomill.ui.project import SUFFIX, Project, project_to_toml
-from robomill.ui.spoken import spoken
+from robomill.ui.sharing import address, report
+from robomill.ui.sharing.spoken import spoken
 
-REMEDIES = "handing.remedies"  # kept by who computes them: (fingerprint of the set-up, what was made)
-A_REPORT, A_SAMPLE = 0.1, 0.4e-3  # s, about
 OPEN = "handing.open"  # the page on which the panel is open
 LESSON = ("lesson", "step")  # what an address says beside the project
 
@@ -23,51 +18,13 @@ LESSON = ("lesson", "step")  # what an address says beside the project
 def row(project: Project) -> None:
     """The buttons beside the project's file."""
     with st.container(horizontal=True, gap="small"):
-        _report(project)
+        report.button(project)
         here = session.store().page
         st.button(
             "Share", key="share", icon=":material/share:", width="stretch", on_click=session.keep, args=(OPEN, here)
         )
     if session.kept(OPEN) == here:  # also when the page runs once more beside it
         shared(project)
-
-
-def _report(project: Project) -> None:
-    """The report of the run in force; without one, nothing is handed on."""
-    found = cached.held(project.setup)
-    if found is None:
-        why = "There is no result to report yet: the cut is still computed, or was refused."
-        look: dict[str, Any] = {"icon": ":material/description:", "width": "stretch"}
-        st.button("Report", key="report.none", disabled=True, help=why, **look)
-        return
-    known, tried = session.known(project.setup), _tried(project)
-    about = (cached.by_result(found), None if known is None else known.source, len(tried))
-    seconds = A_REPORT + A_SAMPLE * len(found.path)
-    pieces.download(
-        "Report",
-        partial(page_of, found, known, tried),
-        pieces.named("report.html"),
-        "report",
-        pieces.Making(seconds, lambda: about),
-        icon=":material/description:",
-        width="stretch",
-        help="One page to print or hand over: verdict, pictures, lines, what it rests on",
-    )
-
-
-def _tried(project: Project) -> tuple[Any, ...]:
-    """Remedies that were computed for this cut."""
-    digest, made = session.kept(REMEDIES, ("", ()))
-    return tuple(made) if digest == project.setup.digest() else ()
-
-
-def page_of(result: SimulationResult, known: Knowledge | None, tried: tuple[Any, ...]) -> str:
-    """The report as text."""
-    from robomill.report.html import page
-    from robomill.report.remedies_told import told
-    from robomill.report.simulation_record import simulation_record
-
-    return page(result, simulation_record(result, known), [row for each in tried for row in told(each)])
 
 
 @st.dialog("Share", width="large", on_dismiss=lambda: session.drop(OPEN))

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import streamlit as st
 
 from robomill.errors import RobomillError
-from robomill.ui import address, inputs, pieces, session
+from robomill.ui import inputs, pieces, session
 from robomill.ui.keeping import autosave
 from robomill.ui.markup import as_markdown
 from robomill.ui.project import Project
+from robomill.ui.sharing import address
 
 NOTICE = "arriving.notice"
 

@@ -12,8 +12,8 @@ import pytest
 
 from robomill.errors import ProjectError
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.address import EDITS, LARGEST, MOST, PRESET, opened, packed
 from robomill.ui.project import Project, preset_setup, presets, project_from_toml, project_to_toml, with_field
+from robomill.ui.sharing.address import EDITS, LARGEST, MOST, PRESET, opened, packed
 from robomill.units import from_si, to_si
 
 BASE = Project(preset_setup("paper_flute"))
