@@ -71,6 +71,15 @@ def test_a_3mf_says_its_unit(unit, times) -> None:
     np.testing.assert_allclose(stock.size * 1e3, np.array([30, 20, 10]) * times)
 
 
+def test_three_bodies_of_a_3mf_of_different_corners_keep_their_own() -> None:
+    ball, bar = trimesh.creation.icosphere(1, 8.0), trimesh.creation.cylinder(4.0, 12.0, sections=7)
+    bodies = [BOX, ball.apply_translation((60, 0, 0)), bar.apply_translation((0, 60, 0))]
+    objects = "".join(f'<object id="{n}">{mesh(each)}</object>' for n, each in enumerate(bodies, 1))
+    build = "".join(f'<item objectid="{n}"/>' for n in (1, 2, 3))
+    stock, _ = read_stl_stock(packed(objects, build), name="a.3mf")
+    assert volume(stock) * 1e9 == pytest.approx(sum(each.volume for each in bodies), rel=1e-5)
+
+
 def test_items_and_components_of_a_3mf_are_placed() -> None:
     pair = '<object id="2"><components><component objectid="1"/>'
     pair += '<component objectid="1" transform="0 1 0 -1 0 0 0 0 1 100 0 0"/></components></object>'

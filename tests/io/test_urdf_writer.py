@@ -54,7 +54,11 @@ def check(robot: Robot) -> None:
 
 @pytest.mark.parametrize("name", ["slavkovic_5r", "fanuc_r2000ic", "kuka_kr500", "planar_2r"])
 def test_every_pose_and_limit_is_in_the_file(name: str) -> None:
-    check(rm.load_robot(name))
+    robot = rm.load_robot(name)
+    check(robot)
+    written = [each for joint in ElementTree.fromstring(robot_to_urdf(robot)).iter("joint") for each in joint.iter()]
+    said = " ".join(value for each in written for value in each.attrib.values())
+    assert "-0.0" not in said.split(), "zero has no sign"
 
 
 def test_a_held_axis_becomes_a_part_of_its_link_and_a_name_is_no_markup() -> None:

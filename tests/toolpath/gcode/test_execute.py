@@ -6,6 +6,7 @@ from itertools import product
 
 import pytest
 
+from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 
 
@@ -20,6 +21,12 @@ def test_a_change_to_no_tool_is_told_only_where_none_was_named_and_none_was_ther
     assert told == ([len(before) + 2] if nothing_named and not in_spindle else [])
     number = on_line if on_line is not None else selected or 0
     assert program.tool.tolist() == [number]
+
+
+def test_tool_0_is_no_tool_and_may_be_said():
+    assert interpret("G21\nM61 Q4\nM61 Q0\nG0 X1\nM2\n").tool.tolist() == [0]
+    with pytest.raises(GCodeError, match="M61 needs Q, a tool number of 0 or more"):
+        interpret("G21\nM61 Q-1\nM2\n")
 
 
 MODES = {
