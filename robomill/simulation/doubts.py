@@ -17,7 +17,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_count, format_many, format_short, format_si
 
-CODE, OTHERS = "unit-doubt", "other-compliances"
+CODE, OTHERS, FRAME = "unit-doubt", "other-compliances", "tool-frame"
 THIN = 0.6e-3  # m: the widest cutter there is, with its metres taken for mm
 SMALL_PATH, NEAR, SHORT_TOOL = 2e-3, 0.05, 2e-3  # m
 SLIGHT, HEAVY = 1.0, 20e3  # N: hardly a cut pushes less, or more
@@ -42,6 +42,19 @@ def known_notes(setup: SimulationSetup) -> tuple[Finding, ...]:
         "Give that robot's compliances, or identify these."
     )
     return (Finding("warning", text, code=OTHERS),)
+
+
+def frame_notes(robot: Robot) -> tuple[Finding, ...]:
+    """Whether the arm stands on the wrong side of its tool: at the tip's end of z_T, which runs up to the spindle."""
+    along = float(-robot.T_tool[:3, 2] @ robot.T_tool[:3, 3])
+    if along >= -SHORT_TOOL:
+        return ()
+    text = (
+        f"The last axis's frame lies {format_short(-along, 'mm')} from the tip on the side of the part: z_T runs from "
+        "the tip to the spindle, so the arm reaches the part from below here. A flange whose z points out at the tool "
+        "wants a tool frame turned by 180° about x."
+    )
+    return (Finding("suspicious", text, code=FRAME),)
 
 
 def _of_sizes(setup: SimulationSetup, path: Toolpath) -> Iterator[str]:

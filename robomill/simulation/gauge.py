@@ -17,6 +17,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.simulation.places import Places, places
 from robomill.simulation.seen import Run
 from robomill.surface.outline import Walls
+from robomill.surface.passes import SMALLEST_RISE
 from robomill.values import ReadOnly
 
 CORNER = np.radians(45.0)
@@ -99,8 +100,10 @@ class Gauge(ReadOnly):
 
 
 def gauge(result: Run, most: int | None = None) -> Gauge:
-    """Everything that can be measured on the part that a run leaves, at so ``most`` of its samples."""
-    if not (result.judged.any() and result.removes.any()):
+    """Everything that can be measured on the part that a run leaves, at so ``most`` of its samples; nothing where a
+    tool that lies leaves no surface to be read from above."""
+    upright = (result.path.k[result.path.cutting, 2] >= SMALLEST_RISE).all()
+    if not (upright and result.judged.any() and result.removes.any()):
         none = np.zeros(0)
         nothing = Readings(none.astype(np.int64), none, none, none, none, np.zeros((0, 3)))
         return Gauge(nothing, nothing, nothing)

@@ -1,9 +1,10 @@
-"""Arms of up to four joints bring the tip to its place, with the tool as it happens to stand: told where it leans."""
+"""Tools that stand otherwise than a cut can be judged with: off the path's axis, or not upright over the part."""
 
 import numpy as np
 
 from robomill.cutting.unjudged import Unjudged
 from robomill.kinematics.result import IKResult, misfit, task_mode
+from robomill.surface.passes import SMALLEST_RISE
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_count, format_si, to_si
 
@@ -27,3 +28,17 @@ def leaning(path: Toolpath, ik: IKResult) -> tuple[Unjudged, ...]:
         "along the axis that this one holds"
     )
     return (Unjudged("leaning", where, why),)
+
+
+def lying(path: Toolpath) -> tuple[Unjudged, ...]:
+    """Steps at feed at which the tool lies or points upwards: the part is cut from above, so such a cut has no wall and
+    no floor that could be read, however far the tip is off."""
+    rise = path.k[:, 2]
+    where = path.cutting & (rise < SMALLEST_RISE)
+    if not where.any():
+        return ()
+    why = (
+        f"the tool lies there, or comes from below (the upward part of its axis is {rise[where].min():.2f}; a surface "
+        f"is judged from {SMALLEST_RISE} on): turn the part, or give the axis from the tip to the spindle"
+    )
+    return (Unjudged("tool-lies", where, why),)

@@ -23,7 +23,7 @@ from robomill.simulation.assumptions import Assumed, assumed_of_setup
 from robomill.simulation.columns import path_columns
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
-from robomill.simulation.doubts import known_notes, unit_doubts
+from robomill.simulation.doubts import frame_notes, known_notes, unit_doubts
 from robomill.simulation.gauge import Gauge, gauge
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.meant import corrected_notes, jump_notes
@@ -200,6 +200,7 @@ class SimulationResult(Tabled):
         pushed = self.judged & self.conditions.engaged
         found += suspicions(self.setup, self.force_components[pushed])
         found += [*unit_doubts(self.setup, self.path, self.F, pushed), *known_notes(self.setup)]
+        found += frame_notes(self.setup.robot)
         if self.coupling is not None:
             found.append(self.coupling.finding)
         if self.setup.add_sag:

@@ -25,7 +25,7 @@ from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
 from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import Led, cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
-from robomill.simulation.leaning import leaning
+from robomill.simulation.leaning import leaning, lying
 from robomill.simulation.led import against, led_beside, plunges
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
@@ -155,7 +155,7 @@ def along(
         delta=_known(bent.delta(F), unjudged),
         sag=sag,
         coupling=coupling,
-        unjudged=unjudged + beyond_map(setup, path, ik.reached),
+        unjudged=unjudged + beyond_map(setup, path, ik.reached) + lying(path),
     )
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from typing import Any
 
+import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.simulation.doubts import CODE
+from robomill.simulation.doubts import CODE, FRAME, frame_notes
 
 SLOT = {"p_mm": [[-20, 0, -2], [20, 0, -2]], "feed_mm_min": 1800}
 
@@ -55,3 +56,43 @@ def test_no_sample_is_doubted(sample: str) -> None:
 def test_what_looks_like_another_unit_is_said(changes: dict[str, Any], words: str) -> None:
     (said,) = doubted(**changes)
     assert re.search(words.replace("?", "\\?"), said), said
+
+
+def six(**more: Any) -> rm.Robot:
+    """A plain arm of six joints, whose flange points its z out at the tool."""
+    return rm.Robot.from_dh(
+        a_mm=[300, 1000, 50, 0, 0, 0],
+        alpha_deg=[-90, 0, -90, 90, -90, 0],
+        d_mm=[600, 0, 0, 1000, 0, 200],
+        k_theta_kNm_per_rad=3000,
+        **more,
+    )
+
+
+def test_a_flange_frame_taken_as_the_tool_frame_is_told() -> None:
+    """By the arm's own pose: with z_T along the tool's way out the flange ends up 160 mm below the tip."""
+    robot = six(tool_xyz_mm=[0, 0, 160])
+    setup = rm.SimulationSetup(
+        robot=robot,
+        source=rm.Toolpath.from_points(**SLOT),
+        cutter=rm.Cutter("flat", diameter_mm=6, flutes=2),
+        force=rm.ConstantForce([0, 100, 0]),
+        part_zero_mm=[1200, 0, 700],
+    )
+    found = rm.simulate(setup)
+    T_MT = rm.tool_pose(robot, found.theta[found.reached][0])
+    flange = T_MT @ np.linalg.inv(robot.T_tool)
+    assert flange[2, 3] - T_MT[2, 3] == pytest.approx(-0.160, abs=1e-9)
+    (told,) = [note for note in found.notes if note.code == FRAME]
+    assert "160 mm from the tip on the side of the part" in told.message
+
+
+def test_tools_that_stand_off_or_beside_their_flange_are_not_doubted() -> None:
+    turned = np.diag([1.0, -1.0, -1.0, 1.0])
+    turned[:3, 3] = [0.0, 0.0, 0.16]
+    beside = np.array([[0.0, 0, 1, 0.2], [0, 1, 0, 0], [-1, 0, 0, 0.1], [0, 0, 0, 1]])
+    assert frame_notes(six()) == frame_notes(six(T_tool=turned)) == ()
+    along = -float(beside[:3, 2] @ beside[:3, 3])  # -0.2: {T}'s z runs further out along x
+    assert along < 0.0 and len(frame_notes(six(T_tool=beside))) == 1
+    for name in ("slavkovic_5r", "kuka_kr270", "kuka_kr500", "fanuc_r2000ic", "planar_2r", "planar_3r"):
+        assert frame_notes(rm.load_robot(name)) == ()

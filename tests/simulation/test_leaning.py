@@ -71,3 +71,21 @@ def test_a_held_axis_takes_the_tools_axis_with_it(held: int) -> None:
     off = np.degrees(np.arccos(rm.tool_pose(robot, found.theta[there])[:, 2, 2])) > 0.1
     told = found.unjudged[0].where[there] if found.unjudged else np.zeros_like(off)
     np.testing.assert_array_equal(told, off)
+
+
+@pytest.mark.parametrize("axis", [[0, 0, -1], [1, 0, 0], [0, 1, 0], [0.9, 0, 0.05]])
+def test_a_tool_that_lies_or_points_upwards_is_not_judged(axis: list[float]) -> None:
+    """No surface is left that could be read from above; where the axis runs along the feed even the force is lost."""
+    paper = rm.load_setup("paper_flute")
+    path = rm.Toolpath.from_points(p_mm=[[-50, 0, -2], [50, 0, -2]], feed_mm_min=1800, k=axis)
+    found = rm.simulate(paper.replace(source=path))
+    assert found.verdict.level == "unjudged"
+    assert found.not_judged[path.cutting.argmax()]
+    assert "the tool lies there, or comes from below" in found.verdict.sentence
+    with pytest.raises(rm.RobomillError, match="upward part"):
+        _ = found.machined
+
+
+def test_a_tool_that_leans_far_but_stands_is_judged() -> None:
+    path = rm.Toolpath.from_points(p_mm=[[-50, 0, -2], [50, 0, -2]], feed_mm_min=1800, k=[0.6, 0, 0.8])
+    assert rm.simulate(rm.load_setup("paper_flute").replace(source=path)).unjudged == ()
