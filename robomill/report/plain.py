@@ -37,12 +37,15 @@ def assumed_lines(assumed: Sequence[dict[str, str]]) -> list[str]:
     return [f"assumed   {'; '.join(each['what'] for each in assumed)}"] if assumed else []
 
 
+HEADINGS = {"study": "studies", "load tests": "load tests", "answers": "answers of a class"}  # others take an s
+
+
 def sample_lines(record: dict[str, Any]) -> list[str]:
     """The samples by kind, each with the name that commands take."""
     lines: list[str] = []
     kinds = dict.fromkeys(each["kind"] for each in record["samples"])
     for kind in kinds:
-        lines.append(f"{kind}s" if kind != "load tests" else kind)
+        lines.append(HEADINGS.get(kind, f"{kind}s"))
         lines += [f"  {each['name']:32} {each['title']}" for each in record["samples"] if each["kind"] == kind]
     return lines
 

@@ -93,6 +93,7 @@ def test_tools_that_stand_off_or_beside_their_flange_are_not_doubted() -> None:
     beside = np.array([[0.0, 0, 1, 0.2], [0, 1, 0, 0], [-1, 0, 0, 0.1], [0, 0, 0, 1]])
     assert frame_notes(six()) == frame_notes(six(T_tool=turned)) == ()
     along = -float(beside[:3, 2] @ beside[:3, 3])  # -0.2: {T}'s z runs further out along x
-    assert along < 0.0 and len(frame_notes(six(T_tool=beside))) == 1
+    assert along < 0.0
+    assert len(frame_notes(six(T_tool=beside))) == 1
     for name in ("slavkovic_5r", "kuka_kr270", "kuka_kr500", "fanuc_r2000ic", "planar_2r", "planar_3r"):
         assert frame_notes(rm.load_robot(name)) == ()
