@@ -6,7 +6,7 @@ import streamlit as st
 
 from robomill import ui
 from robomill.ui import inputs, session
-from robomill.ui.improve import opened, remedies, stiffen, sure
+from robomill.ui.improve import opened, remedies, stiffen, studied, sure
 
 project = ui.begin("Improve")
 setup, unit = project.setup, project.view.length
@@ -38,3 +38,5 @@ if there:
 if waits is None:
     with st.container(border=True):
         sure.panel(result, remedies.error_words(result, unit), unit)
+    with st.container(border=True):
+        studied.panel(setup, unit)

@@ -13,22 +13,22 @@ from robomill.errors import CompensationError
 from robomill.frames import Columns
 from robomill.identification.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
-from robomill.improve.correction import COMPONENTS, Correction, correct, corrected_run
+from robomill.improve.correction import COMPONENTS, Correction, correct
 from robomill.improve.errors import Errors, errors_of, measured
 from robomill.improve.judged import refuse_corrected
+from robomill.improve.springs import Springs, springs
 from robomill.improve.written import WriteGCode, Written, writing
 from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.provenance import Finding, named
 from robomill.simulation.band import deviation_band
 from robomill.simulation.gauge import Gauge
-from robomill.simulation.led import against
-from robomill.simulation.meant import jump_notes
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import along
+from robomill.simulation.run import along, ran
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.verdict import judge
-from robomill.toolpath.source import GCodeSource
+from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import GCodeSource, PathSource
 from robomill.units import format_count, format_percent, format_si, from_si, to_si
 from robomill.values import Tabled
 
@@ -56,10 +56,12 @@ class Compensation(Tabled):
     half          m: half the 95 % interval of what remains, by linear propagation; NaN where nobody has said how sure
                   the compliances are
     change        m: by how much the correction still changed at each iteration
-    wanted, led   runs along the path as it is, and along the corrected one measured against it
-    c             (m, 3) m in {W}: the correction at the samples of the path, as written
+    wanted, led   runs of the program as it is, and of the corrected one's text, told from the path that was meant
+    c             (m, 3) m in {W}: the correction at the samples of the path as it is, as written
     unrolled      what was written out: loops and subprograms, canned cycles, ...
     findings      what a reader must know
+    sprung        where the force jumps, and how far the tip springs there, which no program can take away; not in
+                  ``after``
 
     Examples
     --------
@@ -85,6 +87,7 @@ class Compensation(Tabled):
     lines_in: int
     unrolled: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
+    sprung: tuple[Springs, ...] = ()
 
     @property
     def iterations(self) -> int:
@@ -97,29 +100,29 @@ class Compensation(Tabled):
     @property
     def name(self) -> str:
         """A name for the program's file."""
-        stem, dot, end = getattr(self.setup.source, "name", "program.nc").rpartition(".")
-        return f"{stem}_corrected.{end}" if dot and isinstance(self.setup.source, GCodeSource) else "corrected.nc"
+        return self.source.name
 
     @cached_property
     def source(self) -> GCodeSource:
         """The corrected program as a source: ``setup.replace(source=...)`` runs it as any other, and its deviation is
         told from the path that was meant."""
-        given = self.setup.source
-        if isinstance(given, GCodeSource):
-            return replace(given, text=self.text, name=self.name, wanted=given)
-        return GCodeSource(self.text, self.name, wanted=given)
+        return _source(self.setup.source, self.text)
 
     @cached_property
     def _digest(self) -> str:
         return digest((self.setup.digest(), self.components, self.bound, self.text))
 
     def columns(self) -> Columns:
-        """One row a sample of the path: the correction in {W}, and the deviation before and after in its cut's axes."""
-        path = self.wanted.path
+        """One row a sample of the corrected program: its line, how far along the path that was meant; the correction in
+        {W}, and the deviation before and after in its cut's axes."""
+        path, ahead = self.led.path, self.led.ahead
+        assert ahead is not None
         found: Columns = {path.block_name: path.block, "cutting": path.cutting, "station_mm": from_si(path.s, "mm")}
-        found |= {f"correction_{axis}_mm": from_si(self.c[:, i], "mm") for i, axis in enumerate("xyz")}
-        for when, run in (("before", self.wanted), ("after", self.led)):
-            parts = from_si(run.delta_in_cut, "mm")
+        c = ahead @ self.setup.T_MW[:3, :3]
+        found |= {f"correction_{axis}_mm": from_si(c[:, i], "mm") for i, axis in enumerate("xyz")}
+        before = beside(path, self.wanted.path, self.wanted.delta_in_cut)
+        for when, delta in (("before", before), ("after", self.led.delta_in_cut)):
+            parts = from_si(delta, "mm")
             found |= {f"{when}_{name}_mm": parts[:, i] for i, name in enumerate(("feed", "normal", "axial"))}
         return found
 
@@ -161,11 +164,39 @@ def compensation(
         check_found(found, wanted)
     with step(2, 4, "Writing the program"):
         written = back.write(found.c, FITTED * bound)
-        run = corrected_run(wanted, written.q)
-        led = against(run, wanted.path, wanted.R_MF)
-        check_reached(run, wanted)
+        check_reached(found.run, wanted)
     with step(3, 4, "What remains"):
+        led = ran(_corrected(setup, written.text))  # of the text, as anybody runs it: what is told is what that gives
         return _measured(found, (led, before), written, chosen, (bound, known))
+
+
+def _source(given: PathSource, text: str) -> GCodeSource:
+    """The corrected ``text`` of a source, with that as what is wanted."""
+    if not isinstance(given, GCodeSource):
+        return GCodeSource(text, "corrected.nc", wanted=given)
+    stem, dot, end = given.name.rpartition(".")
+    return replace(given, text=text, name=f"{stem}_corrected.{end}" if dot else "corrected.nc", wanted=given)
+
+
+def _corrected(setup: SimulationSetup, text: str) -> SimulationSetup:
+    """The set-up with the corrected text in the place of its program."""
+    return setup.replace(source=_source(setup.source, text), provenance=dict(setup.provenance))
+
+
+def beside(path: Toolpath, other: Toolpath, values: FloatArray) -> FloatArray:
+    """(n, k): values (m, k) at the samples of the ``other`` path where samples of a ``path`` along it are: cut by cut,
+    by how much of it has been gone."""
+    found = np.zeros((len(path), values.shape[1]))
+    here, there = (np.cumsum(~each.cutting & (each.step_length > 0.0)) for each in (path, other))
+    for cut in np.unique(here[path.cutting]):
+        a, b = (np.flatnonzero((of == cut) & each.cutting) for of, each in ((here, path), (there, other)))
+        if len(b):
+            s, t = (
+                each.s[some] - each.s[some[0]] + each.step_length[some[0]] for each, some in ((path, a), (other, b))
+            )
+            s = s * (t[-1] / s[-1]) if s[-1] > 0.0 else s
+            found[a] = np.column_stack([np.interp(s, t, values[b, i]) for i in range(values.shape[1])])
+    return found
 
 
 def _measured(
@@ -185,8 +216,9 @@ def _measured(
             f"{format_si(after.max, 'mm', 4)}, since what is pushed aside here is not what was chosen to be corrected; "
             "choose other components."
         )
-    softer, stronger = _wrong(wanted, led, written.q)
-    findings = (*_met(after, softer, stronger, led), *_findings(found, led, written))
+    softer, stronger = _wrong(led)
+    sprung = springs(led)
+    findings = (*_met(after, softer, stronger, led), *_findings(found, led, written, sprung))
     return Compensation(
         setup=wanted.setup,
         components=chosen,
@@ -204,6 +236,7 @@ def _measured(
         lines_in=written.lines_in,
         unrolled=written.unrolled,
         findings=findings,
+        sprung=sprung,
     )
 
 
@@ -298,20 +331,18 @@ def reversals(run: SimulationResult) -> int:
     return count
 
 
-def _wrong(wanted: SimulationResult, led: SimulationResult, q: FloatArray) -> tuple[Errors, Errors]:
+def _wrong(led: SimulationResult) -> tuple[Errors, Errors]:
     """What is left where compliances, or the force, are wrong by 20 % to either side: the larger one."""
-    setup = wanted.setup
+    setup = led.setup
     if not setup.coupling and not setup.add_sag:  # then the deflection is wrong by as much, whichever it is
-        pushed = led.delta - (q - wanted.path.p) @ setup.T_MW[:3, :3].T
-        more = (WRONG - 1.0) * pushed
+        assert led.ahead is not None
+        more = (WRONG - 1.0) * (led.delta - led.ahead)
         both = [replace(led, delta=led.delta + sign * more) for sign in (1.0, -1.0)]
         worse = errors_of(max(both, key=lambda run: float(np.abs(run.delta_in_cut[run.judged, 1:]).max(initial=0.0))))
         return worse, worse
     found = []
     for name in ("softer", "stronger"):
-        runs = [
-            against(corrected_run(wanted, q, **{name: by}), wanted.path, wanted.R_MF) for by in (WRONG, 2.0 - WRONG)
-        ]
+        runs = [ran(setup, **{name: by}) for by in (WRONG, 2.0 - WRONG)]
         found.append(max(map(errors_of, runs), key=lambda each: each.max))
     return found[0], found[1]
 
@@ -341,7 +372,9 @@ def _met(after: Errors, softer: Errors, stronger: Errors, led: SimulationResult)
     return (Finding("warning", text, code="met-if-right"),)
 
 
-def _findings(found: Correction, led: SimulationResult, written: Written) -> tuple[Finding, ...]:
+def _findings(
+    found: Correction, led: SimulationResult, written: Written, sprung: tuple[Springs, ...]
+) -> tuple[Finding, ...]:
     wanted, told = found.first, []
     if written.unrolled:
         told.append(Finding("info", f"written out: {', '.join(written.unrolled)}.", code="unrolled"))
@@ -351,7 +384,7 @@ def _findings(found: Correction, led: SimulationResult, written: Written) -> tup
             f"{wanted.path.block_name} {lines}: the tool just touches there, and no correction agrees with the force; "
         )
         told.append(Finding("warning", text + "what is left is in the numbers.", code="held"))
-    told += jump_notes(led.path, led.ahead)
+    told += [each.finding for each in sprung]
     known = {(each.code, each.line) for each in wanted.steadiness}
     told += [each for each in led.steadiness if (each.code, each.line) not in known]
     before, after = reversals(wanted), reversals(led)

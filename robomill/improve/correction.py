@@ -25,6 +25,7 @@ COMPONENTS = ("normal", "axial", "feed")
 AGREED = 0.5e-6  # m: corrections that change by no more have settled
 NEARLY, LONG = 5e-6, 12  # m: after so many runs it is enough if no correction changes by more
 MOST, PATIENCE = 40, 5  # runs, and after how many a place that comes no closer is given up
+UPRIGHT = 2e-6  # m: along a plunge corrections that differ by no more are one
 MITRE = 2.0  # times the larger deflection of two cuts that meet: no corner is moved further
 SLOWEST = 0.1  # least share of a change that is taken where corrections overshoot
 
@@ -97,6 +98,8 @@ def correct(setup: SimulationSetup, first: SimulationResult, components: tuple[s
         checkpoint(min(len(change) / 6.0, 0.95), "Correcting the path")
         known = result.path.cutting & np.isfinite(result.delta).all(axis=1)
         asked = places.one_each(P, np.where(known[:, None], result.delta, 0.0) @ to_W, known)
+        asked = places.held_outside(asked, known & (result.delta != 0.0).any(axis=1), ~result.over_stock)
+        asked = places.upright(asked)
         seeking = seeking.looked(asked)
         change.append(seeking.change(asked))
         if _settled(change) or len(change) >= MOST or not np.isfinite(change[-1]):
@@ -164,7 +167,7 @@ def corrected_run(wanted: SimulationResult, p: FloatArray, **wrong: float) -> Si
     """The run of the tool that is sent to p (m, 3) m in {W} to go along the path of the run ``wanted``; ``wrong`` as in
     ``along``."""
     path = wanted.path
-    led = led_beside(path, p, plunges(path, wanted.conditions)[0])
+    led = led_beside(path, p, plunges(path, wanted.conditions))
     return along(wanted.setup, replace(path, p=p), led=led, **wrong)
 
 
@@ -206,10 +209,40 @@ class Places:
         deepest = np.einsum("mi,mi->m", p[low] - p[i], k[i]) + lifted[low]
         lifted[i] = np.where(self.steep[i], lifted[low], np.maximum(up[i], deepest))
         c = c + (lifted - up)[:, None] * k
-        cutting = self.path.cutting  # a rapid arrives where the cut begins
+        return self._arriving(c)
+
+    def _arriving(self, c: FloatArray) -> FloatArray:
+        """c (m, 3) m with rapids that arrive where the cut begins."""
+        cutting = self.path.cutting
         arrives = np.flatnonzero(~cutting[:-1] & cutting[1:] & (self.place[:-1] == self.place[1:]))
         c[arrives] = c[arrives + 1]
-        return np.asarray(c)
+        return c
+
+    def held_outside(self, c: FloatArray, pushed: BoolArray, outside: BoolArray) -> FloatArray:
+        """c (m, 3) m with that of the next sample of the cut that is ``pushed`` (m,), else of the last one, where the
+        tool is ``outside`` (m,) the stock: where it first touches the force is there at once, and so has to be what
+        undoes it."""
+        path, every = self.path, np.arange(len(pushed))
+        cut = np.cumsum(~path.cutting & (path.step_length > 0.0))
+        after = np.minimum.accumulate(np.where(pushed, every, len(every) - 1)[::-1])[::-1]
+        before = np.maximum.accumulate(np.where(pushed, every, 0))
+        of = every.copy()
+        for near in (before, after):
+            some = path.cutting & outside & ~pushed & pushed[near] & (cut[near] == cut)
+            of[some] = near[some]
+        return self._arriving(c[of])
+
+    def upright(self, c: FloatArray) -> FloatArray:
+        """c (m, 3) m with one correction beside for all of a plunge whose own differ by no more than ``UPRIGHT``: along
+        a wall that is not upright a tool cuts on its side, too."""
+        path = self.path
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], self.steep & path.cutting, [False]]).astype(int)))
+        for begin, past in edges.reshape(-1, 2).tolist():
+            some = slice(begin, past)
+            aside = c[some] - np.einsum("mi,mi->m", c[some], path.k[some])[:, None] * path.k[some]
+            if np.abs(aside - aside[-1]).max() <= UPRIGHT:
+                c[some] += aside[-1] - aside
+        return self._arriving(c)
 
     def _shared(self, P: FloatArray, d: FloatArray, known: BoolArray) -> FloatArray:
         """c (m, 3) m, the same for all samples at a place where that does for them; else each undoes its own deflection

@@ -31,6 +31,10 @@ def compensation_record(found: Compensation) -> dict[str, Any]:
         "unrolled": list(found.unrolled),
         "reversals": {"before": reversals(found.wanted), "after": reversals(found.led)},
         "verdict": {"before": level_of(found.wanted), "after": level_of(found.led)},
+        "springs": [
+            {"kind": each.kind, "count": each.count, "lines": list(each.lines), "max_mm": shown(each.size, "mm")}
+            for each in found.sprung
+        ],
         "findings": [finding.record() for finding in found.findings],
         "assumed": [each.record() for each in assumed_of_setup(found.setup)],
         "digest": found.digest(),

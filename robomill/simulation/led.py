@@ -26,14 +26,26 @@ def plunges(path: Toolpath, conditions: CutConditions) -> tuple[IntArray, BoolAr
     return np.where(down & level[then], then, -1), steep
 
 
-def led_beside(path: Toolpath, p: FloatArray, then: IntArray) -> Led:
-    """The tool that is sent to p (m, 3) m in {W} to go along ``path``, in whose direction it feeds. A plunge, whose cut
-    goes on at ``then`` (m,), meets the part where that does: both were meant to be at one place."""
-    tips = np.where((then >= 0)[:, None], path.p + (p - path.p)[then], p)
+def led_beside(path: Toolpath, p: FloatArray, down: tuple[IntArray, BoolArray], links: BoolArray | None = None) -> Led:
+    """The tool that is sent to p (m, 3) m in {W} to go along ``path``, in whose direction it feeds. What goes ``down``
+    (see ``plunges``) meets the part where the cut does that goes on from there: both were meant to be at one place; how
+    deep a plunge is, it says itself. ``links`` (m,) are samples on the way from one cut to the next, which are no steps
+    of either."""
+    then, steep = down
+    behind = np.arange(len(p)) if links is None else _behind(links)
+    beside = path.p - p + (p - path.p)[behind[then]]
+    beside -= np.where(steep, np.einsum("mi,mi->m", beside, path.k), 0.0)[:, None] * path.k
+    tips = np.where((then >= 0)[:, None], p + beside, p)[behind]
     way = ways(path)
     back = np.einsum("mi,mi->m", np.diff(tips, axis=0, prepend=tips[:1]), way) < 0.0
     back &= path.step_length > 0.0  # a link is no step of the cut
     return Led(path.p, np.where(back[:, None], ways(replace(path, p=tips)), way), tips)
+
+
+def _behind(links: BoolArray) -> IntArray:
+    """(m,) samples themselves, and for those on ``links`` (m,) the first one behind the link."""
+    every = np.arange(len(links))
+    return np.minimum.accumulate(np.where(links, len(links) - 1, every)[::-1])[::-1]
 
 
 def tip_error(run: SimulationResult, wanted: Toolpath) -> FloatArray:
@@ -41,10 +53,18 @@ def tip_error(run: SimulationResult, wanted: Toolpath) -> FloatArray:
     return np.asarray(run.path.p - wanted.p + run.delta @ run.setup.T_MW[:3, :3])
 
 
-def against(run: SimulationResult, wanted: Toolpath, R_MF: FloatArray) -> SimulationResult:
+def against(
+    run: SimulationResult, wanted: Toolpath, R_MF: FloatArray, links: BoolArray | None = None
+) -> SimulationResult:
     """The run along a corrected path as one that was told to go along the ``wanted`` one, whose axes of the cut are
-    R_MF (m, 3, 3): what a gauge reads on it is the error of the part."""
+    R_MF (m, 3, 3): what a gauge reads on it is the error of the part. On ``links`` (m,) from one cut to the next it is
+    taken to be where the next begins: how far the tip springs there is told apart."""
     to_W = run.setup.T_MW[:3, :3]
     off = np.where(wanted.cutting[:, None], tip_error(run, wanted), 0.0) @ to_W.T
     ahead = np.where(wanted.cutting[:, None], run.path.p - wanted.p, 0.0) @ to_W.T
-    return replace(run, path=wanted, delta=off, R_MF=R_MF, ahead=ahead)
+    told = replace(run, path=wanted, delta=off, R_MF=R_MF, ahead=ahead)
+    if links is None or not links.any():
+        return told
+    of = _behind(links)
+    rows = {name: getattr(told, name)[of] for name in ("F", "delta_joint", "delta_spring", "delta", "ahead")}
+    return replace(told, **rows)

@@ -11,15 +11,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from robomill.arrays import FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import ToolpathError
 from robomill.progress import checkpoint
 from robomill.provenance import Finding, named
 from robomill.simulation.samples import ways
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.sampling import CORNER
 from robomill.toolpath.source import GCodeSource
 from robomill.units import format_count, format_si
+from robomill.vectors import angle_between
 
 WANTED = "wanted-path"  # the findings that say from which path a corrected program's deviation is told
 LINK = 20e-6  # m: corrections at one place that differ by more are joined by a link
@@ -28,6 +30,7 @@ FARTHEST = 2e-3  # m: no corrected program goes further beside its path, and non
 TURNED = 2e-3  # m: a place where the path goes the other way counts as so much further off, twice
 DIRECTED = 0.5e-3  # m: shorter steps may be links, which go any way
 ITS_WAY = 0.5  # cosine of the angle within which a sample goes the way of a step
+PLUNGING = 0.866  # cosine of the angle to the tool's axis within which a step is a plunge's
 WINDOW = 96  # samples of the path among which one looks
 SAID = 20_000  # samples between two words of progress
 
@@ -78,9 +81,15 @@ def meant(path: Toolpath, wanted: Toolpath, step: float) -> Toolpath:
         )
     directed = path.step_length >= min(DIRECTED, 0.5 * step)
     here, there = ways(path), ways(wanted)
-    for some, all_ in zip(cuts, told, strict=True):
+    for every, all_ in zip(cuts, told, strict=True):
+        moves = path.step_length[every] > 0.0
+        moves[0] = True
+        some = every[moves]
         near = _aligned(path.p[some], here[some] * directed[some, None], wanted.p[all_], there[all_])
         p[some], worst, at = _places(path.p[some], here[some], wanted.p[all_], near)
+        _bottoms(p, path, wanted, some, all_)
+        for i in every[~moves].tolist():  # what turns on the spot stays at its place
+            p[i] = p[i - 1]
         if worst > FARTHEST:
             raise ToolpathError(
                 f"Wanted path: at {path.block_name} {path.block[some[at]]} the program is {format_si(worst, 'mm')} off "
@@ -96,6 +105,54 @@ def _cuts(path: Toolpath) -> list[IntArray]:
     cut = np.cumsum(rapid)
     of = [np.flatnonzero(cut == number) for number in np.unique(cut[path.cutting])]
     return [some for some in of if path.step_length[some[1:]].any()]
+
+
+def _bottoms(p: FloatArray, path: Toolpath, wanted: Toolpath, some: IntArray, all_: IntArray) -> None:
+    """Plunges in ``p`` (m, 3) m, of the samples ``some`` of a corrected path, so that their ends are where those of the
+    wanted path's samples ``all_`` end: along its way a plunge is corrected by what the cut asks that goes on there."""
+    here, there = _plunges(path, some), _plunges(wanted, all_)
+    if not there:
+        return
+    ends = np.array([wanted.p[end] for _, end in there])
+    for begin, end in here:
+        n = int(np.argmin(np.linalg.norm(ends - p[end], axis=1)))
+        top, bottom = wanted.p[there[n][0] - 1], ends[n]
+        depth = float(np.linalg.norm(bottom - top))
+        if np.linalg.norm(bottom - p[end]) > FARTHEST or depth == 0.0:
+            continue
+        back = np.linalg.norm(path.p[begin : end + 1] - path.p[end], axis=1)
+        p[begin : end + 1] = bottom + np.minimum(back / depth, 1.0)[:, None] * (top - bottom)
+
+
+def _plunges(path: Toolpath, some: IntArray) -> list[tuple[int, int]]:
+    """The first and the last sample of each plunge among samples of a path."""
+    some = some[(path.step_length[some] > 0.0) & (some > 0)]
+    move = path.p[some] - path.p[some - 1]
+    down = np.einsum("mi,mi->m", move, path.k[some]) < -PLUNGING * path.step_length[some]
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], down & path.cutting[some], [False]]).astype(int)))
+    return [(int(some[begin]), int(some[past - 1])) for begin, past in edges.reshape(-1, 2).tolist()]
+
+
+def linked(path: Toolpath, wanted: Toolpath) -> BoolArray:
+    """(m,) samples of a corrected path, meant to be at ``wanted``, on links between two cuts that meet at a place: all
+    that stand there but for the first and the last, where the tool goes anywhere between these."""
+    place = np.cumsum(wanted.step_length >= SAME)
+    first = np.append(True, place[1:] != place[:-1])
+    last = np.append(first[1:], True)
+    inside = path.cutting & ~first & ~last & np.append(False, path.cutting[:-1])
+    return np.asarray(inside & (np.bincount(place, np.where(first, 0.0, path.step_length))[place] > LINK))
+
+
+def straight_on(path: Toolpath, wanted: Toolpath) -> BoolArray:
+    """(m,) samples of a corrected path that begin a move which turns against the one before, though the ``wanted`` path
+    goes straight on there: only two pieces of the correction meet."""
+    i = np.flatnonzero(path.cutting & (path.step_length == 0.0))
+    i = i[(i >= 2) & (i + 1 < len(path))]
+    back, on = wanted.p[i - 1] - wanted.p[i - 2], wanted.p[i + 1] - wanted.p[i]
+    found = np.zeros(len(path), dtype=bool)
+    moving = (wanted.step_length[i - 1] >= SAME) & (wanted.step_length[i + 1] >= SAME) & path.cutting[i - 1]
+    found[i[moving & (angle_between(back, on) < CORNER)]] = True
+    return found
 
 
 def _places(q: FloatArray, t: FloatArray, p: FloatArray, near: IntArray) -> tuple[FloatArray, float, int]:

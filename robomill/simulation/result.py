@@ -139,8 +139,10 @@ class SimulationResult(Tabled):
 
     @cached_property
     def judged(self) -> BoolArray:
-        """(m,) samples that count for the verdict: at feed, with an answer, the cutter within the stock's block."""
-        return np.asarray(self.path.cutting & self.answered & self.over_stock)
+        """(m,) samples that count for the verdict: at feed, with an answer, the cutter within the stock's block; of a
+        corrected program, which goes beside its path in the air, too, those that cut."""
+        cuts = self.path.cutting & self.answered & self.over_stock
+        return np.asarray(cuts if self.ahead is None else cuts & self.conditions.engaged)
 
     @cached_property
     def over_stock(self) -> BoolArray:

@@ -29,7 +29,7 @@ from robomill.simulation.leaning import leaning, lying
 from robomill.simulation.led import against, led_beside, plunges
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
-from robomill.simulation.meant import meant
+from robomill.simulation.meant import linked, meant, straight_on
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import sampled, ways
 from robomill.simulation.setup import SimulationSetup
@@ -89,17 +89,19 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     return ran(setup)
 
 
-def ran(setup: SimulationSetup, stronger: float = 1.0) -> SimulationResult:
-    """The run of ``setup``; of a corrected program, of which it is told what is wanted, against that path. ``stronger``
-    as in ``along``."""
+def ran(setup: SimulationSetup, *, softer: float = 1.0, stronger: float = 1.0) -> SimulationResult:
+    """The run of ``setup``; of a corrected program, of which it is told what is wanted, against that path. ``softer``
+    and ``stronger`` as in ``along``."""
     path = stepped(setup, setup.toolpath)
     if setup.wanted_path is None:
-        return along(setup, path, stronger=stronger)
+        return along(setup, path, softer=softer, stronger=stronger)
     checkpoint(0.0, "Where the program was meant to go")
     wanted = meant(path, stepped(setup, setup.wanted_path), setup.step)
     told = told_conditions(setup, wanted, np.ones(len(wanted), dtype=bool))
-    led = led_beside(wanted, path.p, plunges(wanted, told)[0])
-    return against(along(setup, path, led=led, stronger=stronger), wanted, feed_directions(setup, wanted))
+    links = linked(path, wanted)
+    led = led_beside(wanted, path.p, plunges(wanted, told), links)
+    run = along(setup, path, led=led, softer=softer, stronger=stronger)
+    return against(run, wanted, feed_directions(setup, wanted), links | straight_on(path, wanted))
 
 
 def stepped(setup: SimulationSetup, whole: Toolpath) -> Toolpath:

@@ -3,7 +3,8 @@
     cutter.diameter_mm    part.zero_mm[2]    robot.joint[2].a_mm    force.material.coefficients.Ktc_N_mm2
 
 Entries of lists are counted from 1, as joints are. The readers of these files check what comes out, so that a key has
-no meaning here that it has not there.
+no meaning here that it has not there. One key stands in no file: ``path.feed_percent`` is every feed of the path, in
+per cent of what it is.
 """
 
 from __future__ import annotations
@@ -16,15 +17,20 @@ from typing import Any
 import tomli_w
 
 from robomill.errors import RobomillError, StudyError
+from robomill.improve.ways import fed
 from robomill.io.materials import material_to_toml
 from robomill.io.projects import setup_from_table, setup_to_toml
 from robomill.io.robots import robot_to_toml
 from robomill.io.tables import parse_toml
 from robomill.simulation.setup import SimulationSetup
+from robomill.toolpath.source import PointsSource
+from robomill.units import to_si
 
 Data = dict[str, Any]
 NAMES = ("name", "compliance_set")  # of [robot] in the set-up's own file
 ROBOT, MATERIAL = "definition", "material_definition"  # keys that hold a file as text
+FEED = "path.feed_percent"
+FASTEST = 1000.0  # % of the feed
 _PART = re.compile(r"([^\[\].\s]+)((?:\[\d+\])*)")
 
 
@@ -76,14 +82,53 @@ def changed(data: Data, values: Mapping[str, Any]) -> SimulationSetup:
     """The set-up with numbers changed by their keys. Raises what the readers of its files raise."""
     made = copy.deepcopy(data)
     for key, value in values.items():
-        _put(made, key, value)
+        if key != FEED:
+            _put(made, key, value)
     for table, key in ((made["robot"], ROBOT), (made["force"], MATERIAL)):
         if isinstance(table.get(key), dict):
             table[key] = tomli_w.dumps(table[key])
-    return setup_from_table(made, "set-up")
+    setup = setup_from_table(made, "set-up")
+    return _fed(setup, values[FEED]) if FEED in values else setup
+
+
+def _fed(setup: SimulationSetup, percent: Any) -> SimulationSetup:
+    """The set-up with every feed so many per cent of what it is."""
+    if isinstance(percent, bool) or not isinstance(percent, int | float) or not 0.0 < percent <= FASTEST:
+        raise StudyError(
+            f"Parameter {FEED}: found {percent!r:.40}; expected a number above 0, at most {FASTEST:g}.", where=FEED
+        )
+    if percent == 100.0:
+        return setup
+    source = PointsSource(fed(setup.toolpath, float(to_si(percent, "%"))), setup.source.name)
+    return setup.replace(source=source, stock=setup.stock_block, provenance=dict(setup.provenance))
+
+
+def value_at(data: Data, key: str) -> Any:
+    """The number, list or table that stands at a key. Raises StudyError where nothing does."""
+    here, last = _holder(data, key)
+    if isinstance(here, dict) and isinstance(last, str):
+        if last not in here:
+            raise StudyError(f"Parameter {key}: nothing stands there.", where=key)
+        return here[last]
+    _entry(here, last, key)
+    return here[last]
 
 
 def _put(data: Data, key: str, value: Any) -> None:
+    here, last = _holder(data, key)
+    if isinstance(here, dict) and isinstance(last, str):
+        if isinstance(here.get(last), dict | list):
+            raise StudyError(
+                f"Parameter {key}: it is a table or a list; name one number of it, as {key}[1].", where=key
+            )
+        here[last] = value
+    else:
+        _entry(here, last, key)
+        here[last] = value
+
+
+def _holder(data: Data, key: str) -> tuple[Any, str | int]:
+    """The table or list in which a key's last part stands, and that part."""
     parts = parts_of(key)
     inner: list[str | int] = parts
     if parts[0] == "robot" and isinstance(data["robot"].get(ROBOT), dict):
@@ -96,16 +141,7 @@ def _put(data: Data, key: str, value: Any) -> None:
             here = here.setdefault(part, {})
         else:
             here = _entry(here, part, key)
-    last = inner[-1]
-    if isinstance(here, dict) and isinstance(last, str):
-        if isinstance(here.get(last), dict | list):
-            raise StudyError(
-                f"Parameter {key}: it is a table or a list; name one number of it, as {key}[1].", where=key
-            )
-        here[last] = value
-    else:
-        _entry(here, last, key)
-        here[last] = value
+    return here, inner[-1]
 
 
 def _entry(here: Any, part: str | int, key: str) -> Any:

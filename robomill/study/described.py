@@ -13,7 +13,7 @@ from robomill.arrays import digest
 from robomill.errors import RobomillError, StudyError
 from robomill.files import STUDY
 from robomill.io.beside import ALLOW, Beside
-from robomill.io.projects import load_setup
+from robomill.io.projects import load_setup, setup_from_table
 from robomill.io.samples import find_sample, sample_or_file
 from robomill.io.tables import Table, parse_toml
 from robomill.io.texts import read_text
@@ -164,10 +164,17 @@ def _read(top: Table, beside: Beside) -> Study:
 
 
 def _setup(top: Table, beside: Beside) -> tuple[SimulationSetup, str]:
-    """The set-up, by a sample's name or a file beside the study, and what it is called."""
+    """The set-up, by a sample's name or a file beside the study, or as its own table, and what it is called."""
     if isinstance(top.data.get("setup"), SimulationSetup):
         top.asked.add("setup")
         return top.data["setup"], top.data["setup"].name
+    if isinstance(top.data.get("setup"), dict):
+        top.asked.add("setup")
+        try:
+            made = setup_from_table(top.data["setup"], f"{top.where}, setup", beside)
+        except RobomillError as refused:
+            raise top.refuse("setup", str(refused)) from None
+        return made, made.name
     named = top.text("setup")
     place = beside.place(beside.folder or Path.cwd(), named)
     sample = place is None or not place.exists()

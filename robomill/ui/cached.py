@@ -104,21 +104,24 @@ def pictured(setup: SimulationSetup, times: float) -> Enlarged:
     return enlarged(result(setup), times)
 
 
-def asked_for(label: str, key: str, about: Any, make: Callable[[], Any]) -> Any:
+def asked_for(
+    label: str, key: str, about: Any, make: Callable[[], Any], place: str = FILE, icon: str = "download"
+) -> Any:
     """What ``make`` answers, which ``about`` tells apart: made beside the page, once the button ``label`` begins it.
 
-    ``key`` is the button's. Raises the refusal, and ``Underway`` while it is not there.
+    ``key`` is the button's; at one ``place`` one thing is made. Raises the refusal, and ``Underway`` while it is not
+    there.
     """
-    name = f"{FILE}.{key}", digest(about)
+    name = f"{place}.{key}", digest(about)
     found = commons.find(name, NOTHING)
     if found is not NOTHING:
         return found
-    if session.kept(f"{FILE}.asked") != name:
-        raise Underway(partial(inputs.button, label, f"{key}.ask", "download", beside.begin, FILE, name))
+    if session.kept(f"{place}.asked") != name:
+        raise Underway(partial(inputs.button, label, f"{key}.ask", icon, beside.begin, place, name))
     try:
-        return beside.made(FILE, name, partial(commons.get, name, make), label)
+        return beside.made(place, name, partial(commons.get, name, make), label)
     except RobomillError:
-        session.drop(f"{FILE}.asked")
+        session.drop(f"{place}.asked")
         raise
 
 

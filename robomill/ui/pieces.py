@@ -39,6 +39,7 @@ MIME = {
         "toml": "application/toml",
         "urdf": "application/xml",
         "html": "text/html",
+        "parquet": "application/vnd.apache.parquet",
     },
     **{"png": "image/png", "gif": "image/gif", "mp4": "video/mp4"},
     **{"stl": "model/stl", "ply": "application/octet-stream", "glb": "model/gltf-binary", "vtp": "application/xml"},

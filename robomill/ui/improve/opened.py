@@ -16,7 +16,7 @@ from robomill.improve.turning import Turning
 from robomill.provenance import Finding
 from robomill.simulation.result import SimulationResult
 from robomill.ui import inputs, pieces
-from robomill.ui.improve import stiffen
+from robomill.ui.improve import lab, stiffen
 from robomill.ui.improve.remedies import Both, Found, Left, Stiffened, error_at, error_words, take, use
 from robomill.ui.shell import dark
 from robomill.ui.verdict import WORDS
@@ -253,6 +253,7 @@ def _cut(found: Advice, left: Left, result: SimulationResult, unit: str) -> None
         head = ("Way", "Time at feed", "Removed", "Error", "Of tolerance", "Verdict")
         pieces.table(rows, "wnnnnv", head, strong=best)
         pieces.note("Bold: the quickest way within tolerance; the truest where none is. Each is a run of its own.")
+        lab.multiples(found, unit)
         better = {way.name: way.title for way in found.ways[1:] if way.run is not None}
         truest = min(found.ways[1:], key=lambda way: way.share if np.isfinite(way.share) else np.inf).name
         name = inputs.pick("Way", "improve.way", better, truest if truest in better else None, inputs.LISTED)

@@ -42,7 +42,9 @@ def meanwhile(result: SimulationResult) -> str:
     if not first:
         return ""
     parts = " and ".join(f"{format_percent(share[j])} from joint {numbers[j]}" for j in first)
-    return f"The {name} at line {result.path.block[decides_at(result)]} comes {parts}."
+    rest = 1.0 - float(share[first].sum())
+    back = f"; all else takes {format_percent(-rest)} of it back" if rest < -LEAST else ""
+    return f"The {name} at line {result.path.block[decides_at(result)]} comes {parts}{back}."
 
 
 def made_by(result: SimulationResult) -> tuple[str, FloatArray]:

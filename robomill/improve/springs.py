@@ -1,0 +1,90 @@
+"""Where the force jumps the tip springs, whatever a program does: from one cut to another, and as a plunge first
+touches. What it is off there is told apart from what a corrected program leaves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.provenance import Finding, named
+from robomill.simulation.meant import LINK, SAME, linked
+from robomill.simulation.places import STEEP
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import along, stepped
+from robomill.toolpath.path import Toolpath
+from robomill.units import format_count, format_si
+
+WORDS = {
+    "link": ("corner", "goes from one correction to the next by a short link, on which the tip is off by up to"),
+    "touch": ("plunge", "touches first, and the tip springs sideways onto its path, by up to"),
+}
+
+
+@dataclass(frozen=True)
+class Springs:
+    """Places of one ``kind`` ("link" or "touch"): how many, on which ``lines`` of the corrected program, and how far
+    (m) the tip springs at most."""
+
+    kind: str
+    count: int
+    lines: tuple[int, ...]
+    size: float
+
+    @property
+    def finding(self) -> Finding:
+        """In a sentence."""
+        what, does = WORDS[self.kind]
+        text = (
+            f"at {format_count(self.count, what)} (line {named(list(self.lines))} of the corrected program) it {does} "
+            f"{format_si(self.size, 'mm')}: the force jumps there, and no program can take that away."
+        )
+        return Finding("info", text, code=f"springs-{self.kind}")
+
+
+def springs(led: SimulationResult) -> tuple[Springs, ...]:
+    """Of the run ``led`` of a corrected program, measured against the path that was meant. On links a run of the same
+    text says it that is told nothing of that path."""
+    found = []
+    path = stepped(led.setup, led.setup.toolpath)
+    links = linked(path, led.path)
+    if links.any():
+        plain = along(led.setup, path)
+        tips = path.p + np.nan_to_num(plain.delta) @ led.setup.T_MW[:3, :3]
+        off = _beside(tips, led.path, np.flatnonzero(links))
+        begins = links & ~np.append(False, links[:-1])
+        lines = tuple(sorted(set(led.path.block[links].tolist())))
+        found.append(Springs("link", int(begins.sum()), lines, float(off.max())))
+    assert led.ahead is not None
+    pushed = np.einsum("mij,mi->mj", led.R_MF, led.delta - led.ahead)
+    size = np.linalg.norm(pushed[:, :2], axis=1)
+    touch = _touches(led) & (size > LINK)
+    if touch.any():
+        lines = tuple(sorted(set(led.path.block[touch].tolist())))
+        found.append(Springs("touch", int(touch.sum()), lines, float(size[touch].max())))
+    return tuple(found)
+
+
+def _touches(led: SimulationResult) -> BoolArray:
+    """(m,) the first samples of plunges that cut."""
+    cuts = led.conditions.engaged & (led.conditions.across < STEEP)
+    before = np.append(False, led.path.cutting[:-1] & ~led.conditions.engaged[:-1])
+    return np.asarray(cuts & before & led.path.cutting)
+
+
+def _beside(tips: FloatArray, path: Toolpath, at: IntArray) -> FloatArray:
+    """(k,) m: how far tips (m, 3) m at samples ``at`` (k,) are off the two lines of a path that meet there."""
+    place = np.cumsum(path.step_length >= SAME)
+    first, last = np.searchsorted(place, place[at], "left"), np.searchsorted(place, place[at], "right") - 1
+    ends = path.p[np.maximum(first - 1, 0)], path.p[np.minimum(last + 1, len(path) - 1)]
+    corner, least = path.p[at], np.full(len(at), np.inf)
+    for end in ends:
+        way = end - corner
+        square = np.einsum("ki,ki->k", way, way)
+        share = np.divide(
+            np.einsum("ki,ki->k", tips[at] - corner, way), square, out=np.zeros(len(at)), where=square > 0.0
+        )
+        off = np.linalg.norm(tips[at] - corner - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1)
+        least = np.minimum(least, off)
+    return np.asarray(least)
