@@ -340,8 +340,8 @@ WORDS: dict[str, dict[str, str]] = {
         "lines_in": "Lines of the program.",
         "lines_out": "Lines of the corrected one.",
         "unrolled": "What was written out: loops and subprograms, canned cycles, rounded corners, computed words ...",
-        "springs[].*": "Where the force jumps, and by how much the tip springs there (`max_mm`), which no program can take "
-        "away and which is not in `after_mm`: `kind` is `link` (between two corrections at a corner) or `touch` (a "
+        "springs[].*": "Where the force jumps, and by how much the tip springs there (`max_mm`), which no program can "
+        "take away and which is not in `after_mm`: `kind` is `link` (between two corrections at a corner) or `touch` (a "
         "plunge first touches), `count` how many, `lines` of the corrected program.",
         "reversals.*": "How often joints turn back while cutting, before and after.",
         "verdict.*": "The verdict as it is, and of the corrected program.",
