@@ -341,8 +341,8 @@ WORDS: dict[str, dict[str, str]] = {
         "lines_out": "Lines of the corrected one.",
         "unrolled": "What was written out: loops and subprograms, canned cycles, rounded corners, computed words ...",
         "springs[].*": "Where the force jumps, and by how much the tip springs there (`max_mm`), which no program can "
-        "take away and which is not in `after_mm`: `kind` is `link` (between two corrections at a corner) or `touch` (a "
-        "plunge first touches), `count` how many, `lines` of the corrected program.",
+        "take away, and which `after_mm` does not hold: `kind` is `link` (between two corrections at a corner) or "
+        "`touch` (a plunge first touches), `count` how many, `lines` of the corrected program.",
         "reversals.*": "How often joints turn back while cutting, before and after.",
         "verdict.*": "The verdict as it is, and of the corrected program.",
         "digest": "The result's fingerprint.",
