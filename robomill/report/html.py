@@ -138,8 +138,9 @@ def page(
 ) -> str:
     """The page of a run and its record."""
     made = (when or datetime.now().astimezone()).strftime("%d %B %Y, %H:%M UTC%z").lstrip("0")
+    robot = result.setup.robot
     parts = [
-        sections_told.header(record, made),
+        sections_told.header(record, made, robot.title or robot.name),
         sections_told.verdict(record),
         sections_told.tiles(record),
         _pictures(result, record),

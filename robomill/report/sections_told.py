@@ -22,11 +22,11 @@ MOST_FINDINGS, MOST_SOURCES = 20, 30
 LEVELS = {"error": "Error", "warning": "Warning", "suspicious": "Doubt", "ignored": "Ignored", "info": "Note"}
 
 
-def header(record: dict[str, Any], made: str) -> Markup:
-    """What was cut, with what, when."""
+def header(record: dict[str, Any], made: str, robot: str) -> Markup:
+    """What was cut, with what (the ``robot`` as people call it), when."""
     facts = {
         "Program": record["program"] or "–",
-        "Robot": f"{record['robot']}, compliances {record['compliance_set'].replace('_', ' ')}",
+        "Robot": f"{robot}, compliances {record['compliance_set'].replace('_', ' ')}",
         "Made": made,
         "Fingerprint": record["digest"][:12],
     }

@@ -89,3 +89,9 @@ def test_the_report_is_taken_away(page: Any, url: str, tmp_path: Path) -> None:
     text = file.read_text(encoding="utf-8")
     assert "within tolerance (77 % of it used)" in text
     assert re.search(r"Fingerprint</dt><dd>[0-9a-f]{12}<", text)
+
+
+def test_a_link_to_the_start_page_opens_its_example_there(page: Any, url: str) -> None:
+    page.goto(f"{url}/?preset=heart")
+    headline(page, "Start · Heart")
+    assert "preset" not in page.url

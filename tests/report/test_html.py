@@ -216,3 +216,9 @@ def test_it_prints_on_a_few_pages(name: str, tmp_path: Path) -> None:
     subprocess.run(words, check=True, capture_output=True, timeout=60)
     pages = len(re.findall(rb"/Type\s*/Page\b", (tmp_path / "report.pdf").read_bytes()))
     assert 1 <= pages <= 6
+
+
+def test_the_robot_is_called_as_people_call_it() -> None:
+    text = Page(rm.report_html(SLOT.replace(robot=rm.load_robot("kuka_kr270")))).text
+    assert "Robot KUKA KR270-2F, compliances published" in text
+    assert "kuka_kr270" not in text
