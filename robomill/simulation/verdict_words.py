@@ -126,19 +126,20 @@ def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
     beside = " ".join(_sentence(words) for words in (_unjudged(result), _early(result)) if words)
     level = verdict.level
     if result.worst < 0:
-        if level == "unreached" and result.reached.any():
+        if level == "unreached" and result.reached[result.path.cutting].any():
             return "No point of the cut lies inside the measured map.", beside
         if level == "unreached" and result.turned:
             return "No point of the cut can be reached: turn the tool frame, whose z_T points into the part.", beside
         return NOTHING.get(level, ""), beside
     if level == "unjudged" and result.not_judged.any() and not verdict.decides:
         return "", beside
-    if verdict.premise and level == "unjudged":
-        return _sentence(f"{_measured(result, verdict, unit)}, {verdict.premise}"), f"{verdict.asked} {beside}".rstrip()
     judged = f"{_measured(result, verdict, unit)}: {WORDS[verdict.grade]} ({_used(verdict)})"
+    if verdict.premise:  # a grade by the force of another cut would be none
+        judged, beside = f"{_measured(result, verdict, unit)}, {verdict.premise}", f"{verdict.asked} {beside}".rstrip()
     if level == "unreached":
         judged = f"{_missed(result)}; of the rest: {judged}"
-    return _sentence(f"{judged}, where it is judged" if level == "unjudged" else judged), beside
+    where = ", where it is judged" if level == "unjudged" and not verdict.premise else ""
+    return _sentence(f"{judged}{where}"), beside
 
 
 def way(name: str, reading: Reading) -> str:

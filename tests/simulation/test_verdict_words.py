@@ -77,6 +77,23 @@ def test_by_a_force_that_was_stated_for_another_path_nothing_is_judged():
         assert "tolerance" not in open_.sentence
 
 
+@pytest.mark.parametrize("start", [0, 3000])
+def test_a_path_out_of_reach_says_so_and_has_no_grade_by_the_force_of_another_cut(start):
+    """Rapids that are reached are no points of a cut, and without a measured map nothing lies outside one."""
+    text = f"G21 G90\nS8000 M3\nG0 X{start} Y{start} Z5\nG1 Z-1 F300\nG1 X3200 F3000\nG0 Z20\nM2\n"
+    carried = {"force": Provenance("measured", "dynamometer").carried("Flute")}
+    setup = rm.load_setup("paper_flute").replace(source=GCodeSource(text), stock=None, step=5e-3, provenance=carried)
+    found = simulate(setup).verdict
+    assert found.level == "unreached"
+    if start:
+        assert found.sentence.startswith("No point of the cut can be reached: move the part zero.")
+    else:
+        assert "points cannot be reached" in found.sentence
+        assert "of the rest: the groove is " in found.sentence
+        assert ", if the tool is pushed with 100 N. Nobody has said yet what this path cuts" in found.sentence
+        assert "tolerance" not in found.sentence
+
+
 @pytest.mark.parametrize(("count", "more"), [(1, ""), (2, " (and 1 more reason)"), (3, " (and 2 more reasons)")])
 def test_of_reasons_why_nothing_is_judged_the_first_is_told_and_the_others_are_counted(result, count, more):
     where = np.zeros(len(result.path), dtype=bool)
