@@ -67,7 +67,7 @@ def metric(app: AppTest) -> list[tuple[str, str]]:
     """Every metric length that is read somewhere, with what stands around it."""
     found = []
     for kind, text in said(app):
-        text = KEPT.sub("", SOURCES.sub("", text))
+        text = KEPT.sub("", SOURCES.sub("", text.replace("\u00a0", " ")))  # a unit is held together
         found += [(kind, text[max(0, at.start() - 60) : at.end() + 20]) for at in METRIC.finditer(text)]
     return list(dict.fromkeys(found))
 
