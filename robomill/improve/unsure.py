@@ -222,7 +222,7 @@ def unsure_of(setup: SimulationSetup, spread: Spread, known: Knowledge | None) -
     every = [*springs, *others]
     whole = np.diag([each.std**2 for each in every])
     whole[: len(springs), : len(springs)] = covariance
-    keep = [i for i, each in enumerate(every) if each.std > 0.0]
+    keep = [i for i in range(len(every)) if whole[i, i] > 0.0]  # what is too small has no square
     if not keep:
         raise SetupError("Spread: everything is known exactly; state a standard deviation of something.")
     at = {i: n for n, i in enumerate(keep)}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 
+import pytest
+
 from robomill.cli.progress_line import ProgressLine
 from robomill.progress import Progress
 
@@ -18,7 +20,9 @@ def test_what_takes_minutes_is_announced_in_a_log_too() -> None:
     assert log.getvalue() == "Compiling once ...\n"
 
 
-def test_without_standard_error_nothing_is_said() -> None:
+def test_without_standard_error_nothing_is_said(capfd: pytest.CaptureFixture[str]) -> None:
     line = ProgressLine(None)
     line.announce("Compiling once")
+    line.say(Progress(stage="Cut", share=0.5))
     line.clear()
+    assert capfd.readouterr() == ("", "")

@@ -1,4 +1,4 @@
-"""A march: one step asked and cut at a time, voids of a mesh, and what a straight run may leave for later."""
+"""A march: one step asked and cut at a time, voids of a mesh, and which steps a straight run passes over."""
 
 import numpy as np
 import pytest
