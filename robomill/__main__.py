@@ -84,7 +84,10 @@ def _tell(exc: Exception) -> None:
 
 def leave() -> NoReturn:
     """The process of the command line, to its end."""
-    code = main()
+    try:
+        code = main()
+    except KeyboardInterrupt:  # between what is done and what is said of it
+        code = INTERRUPTED
     if code == INTERRUPTED:  # Python would end itself by the signal where it came in the midst of an import in C
         os._exit(code)
     raise SystemExit(code)

@@ -28,9 +28,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         argcomplete.autocomplete(make_parser())
     try:
-        if not words or (words[0].startswith("--") and words[0] not in ("--help", "--version")):
+        if not words or (words[0].startswith("-") and words[0] not in ("-h", "--help", "--version")):
             from robomill.cli.serve import start_app
 
+            if words and "." not in words[0].partition("=")[0]:  # as options of the app's server have one
+                raise RobomillError(f"There is no option {words[0]!r:.40}; 'robomill --help' lists the verbs.")
             return start_app(words)
         return _run(words)
     except KeyboardInterrupt:

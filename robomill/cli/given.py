@@ -90,6 +90,12 @@ def stdin(kind: FileKind, error: type[RobomillError]) -> bytes:
     return data
 
 
+def check_tip(arguments: Any) -> None:
+    """Refuse a link where no robot is named: it would change nothing, without a word."""
+    if arguments.tip and not arguments.robot:
+        raise RobotError("--tip: it is a link of the URDF that --robot names; give both, or leave it out.")
+
+
 def robot(name: str, tip: str | None = None) -> Any:
     """The robot called so, of a file, or of standard input; of a URDF up to the link ``tip``."""
     from robomill.io.robots import load_robot, read_robot

@@ -14,7 +14,7 @@ def run_grade(arguments: Any) -> int:
     from robomill.learn.record import marks_lines, marks_record
 
     place = Path(arguments.out)
-    folder = find_sample("answers", arguments.folder) or Path(arguments.folder)
+    folder = find_sample("answers", arguments.folder) or arguments.folder
     found = grade(folder, arguments.robot, but=place)
     files = Written.before([place])
     write_files(place.parent, {place.name: found.csv()})

@@ -40,6 +40,7 @@ def asked_setup(arguments: Any) -> Any:
     """The set-up with what the options say in its stead, and who said so."""
     from robomill.provenance import Provenance
 
+    given.check_tip(arguments)
     setup = given.setup(arguments.setup, arguments.allow_outside)
     changes: dict[str, Any] = {}
     said = {}

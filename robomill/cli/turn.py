@@ -13,6 +13,7 @@ def run_turn(arguments: Any) -> int:
     from robomill.report.turning_record import turning_lines, turning_record
     from robomill.simulation.verdict_words import RED
 
+    given.check_tip(arguments)
     setup = given.setup(arguments.setup, arguments.allow_outside)
     if arguments.robot:
         if setup.measured_map is not None:

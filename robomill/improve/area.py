@@ -123,6 +123,9 @@ def area(setup: SimulationSetup, asked: dict[str, Any]) -> Area:
             continue
         given = one_of(declared, plain, in_unit, SetupError, WHO)
         lower[i], upper[i] = _range(declared, given, plain if in_unit is None else in_unit)
+    if max(abs(lower[3]), abs(upper[3])) > 2.0 * FULL_TURN:
+        ends = format_many([lower[3], upper[3]], "deg", 0)
+        raise SetupError(f"{WHO}, yaw: found {ends}; expected at most two turns to either side.", where="yaw")
     if upper[3] - lower[3] > FULL_TURN:
         upper[3] = lower[3] + FULL_TURN
     doubts = () if asked.get("yaw_deg") is None else _doubts(lower[3], upper[3])

@@ -120,6 +120,8 @@ def grade(folder: str | Path, robot: str | None = None, but: str | Path | None =
     0
     """
     check_place(folder, "a folder of answers", LearnError)
+    if not str(folder).strip():
+        raise LearnError("The name of the folder of answers is empty; give one, or . for the folder you are in.")
     if robot is not None and robot not in robot_names():
         raise LearnError(f"Robot {robot!r:.40} is not known here; known are {', '.join(robot_names())}.")
     files = [each for each in _files(Path(folder)) if but is None or each[0].resolve() != Path(but).resolve()]

@@ -205,3 +205,18 @@ def test_nothing_is_written_under_a_name_that_says_another_kind(own: Path, words
     before = {file.name for file in own.iterdir()}
     assert sentence in refusal(capsys, *words.split())
     assert {file.name for file in own.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("grade", "", "--out", "m.csv"), "The name of the folder of answers is empty"),
+        (("simulate", "paper_flute", "--tip", "flange"), "--tip: it is a link of the URDF that --robot names"),
+        (("turn", "paper_flute", "--tip", "flange"), "--tip: it is a link of the URDF that --robot names"),
+        (("place", "paper_flute", "--yaw", "-1e9:1e9"), "expected at most two turns to either side"),
+        (("--frobnicate",), "There is no option '--frobnicate'; 'robomill --help' lists the verbs"),
+        (("-x",), "There is no option '-x'"),
+    ],
+)
+def test_what_would_be_passed_over_is_refused(own: Path, words, sentence: str, capsys) -> None:
+    assert sentence in refusal(capsys, *words)
