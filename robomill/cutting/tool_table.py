@@ -87,6 +87,11 @@ class TableTool:
         return 0.0 if self.cutter is None else self.cutter.diameter
 
     @property
+    def sized(self) -> bool:
+        """Whether the table says what G41 and G42 count with."""
+        return self.cutter is not None or self.compensates is not None
+
+    @property
     def offset(self) -> tuple[float, float, float]:
         """What G43 counts along X, Y and Z, m."""
         return self.offset_x, self.offset_y, self.length

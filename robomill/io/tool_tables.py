@@ -30,7 +30,12 @@ from robomill.units import format_count, format_si, from_si, to_si
 
 UNITS = ("mm", "in")
 LAYOUT = Layout("Tool table", CuttingError, {}, "tool,kind,diameter_mm,flutes,length_mm")
-NAMES = {"tool": "number", "t": "number"}
+NAMES = dict.fromkeys(("tool", "t", "tool_number", "tool_no", "no", "nr"), "number")
+SHORT = {
+    **dict.fromkeys(("d", "dia", "diameter"), "diameter_mm"),
+    **dict.fromkeys(("l", "len", "length"), "length_mm"),
+}
+"""Usual headings without a unit, which is that of the table."""
 ASSUMED_KIND = "flat"
 LONGEST_LINE = 500  # characters of a tool in a .tbl
 SMALL = 1.6e-3
@@ -51,7 +56,7 @@ def read_tool_table(given: str | Path | bytes, *, unit: str = "mm", name: str = 
     given : str, Path or bytes
         A file, its text or its bytes.
     unit : str
-        Of a ``.tbl``, which does not say it: "mm" or "in".
+        Of a ``.tbl``, and of columns such as D and L, which do not say it: "mm" or "in".
     name : str
         What refusals call it.
 
@@ -79,13 +84,12 @@ def read_tool_table(given: str | Path | bytes, *, unit: str = "mm", name: str = 
     if first.startswith("[") or "=" in first:
         return tools_from_table(Table(parse_toml(text, place, CuttingError), place, CuttingError))
     if re.search(r"[,;\t]", first) and not re.match(r"[Tt]\s*\d", first):
-        tools, passed_over = _from_csv(text, name)
+        tools, findings = _from_csv(text, name, unit)
     else:
-        tools, passed_over = _from_tbl(text, place, unit), []
+        tools, findings = _from_tbl(text, place, unit), []
     if not tools:
         raise CuttingError(f"{place}: found no tools; expected lines such as 'T1 P1 D3.0 Z12.5'.")
-    left_out = f"{', '.join(passed_over)}: not a column of a tool table, left out"
-    return _whole(tools, place, *[Finding("ignored", left_out, code="column-left-out")] * bool(passed_over))
+    return _whole(tools, place, *findings)
 
 
 def tools_from_table(top: Table, beside: Beside = ALONE) -> ToolTable:
@@ -156,17 +160,18 @@ def _from_tbl(text: str, place: str, unit: str) -> list[TableTool]:
         diameter = lengths.get("D", 0.0)
         if diameter:
             entry["diameter_mm"] = abs(diameter)
-        if diameter < 0.0:
+        if "D" in lengths and diameter <= 0.0:  # D0: the program is of the cutter's centre
             entry["compensates_mm"] = diameter
         tools.append(_tool(Table({**entry, "name": comment.strip()}, where, CuttingError)))
     return tools
 
 
-def _from_csv(text: str, name: str) -> tuple[list[TableTool], list[str]]:
-    """The tools, and the headers of the columns that are left out."""
+def _from_csv(text: str, name: str, unit: str) -> tuple[list[TableTool], list[Finding]]:
+    """The tools, and what is to be said of their columns."""
     known = {declared.key for cls in (TableTool, Cutter) for declared in quantities(cls).values()} | {"name"}
     tools = []
     passed_over: dict[str, None] = {}
+    short: dict[str, str] = {}
     for where, cells in read_cells(text, LAYOUT, name):
         entry: dict[str, Any] = {}
         for header, cell in cells.items():
@@ -175,12 +180,22 @@ def _from_csv(text: str, name: str) -> tuple[list[TableTool], list[str]]:
             value = cell if key == "name" else _value(cell)
             if key.endswith("_in") and isinstance(value, int | float):
                 key, value = f"{key[:-2]}mm", from_si(to_si(float(value), "in"), "mm")
+            if key in SHORT and SHORT[key] not in entry and isinstance(value, int | float):
+                short[header] = f"{header} is {SHORT[key].partition('_')[0]}"
+                key, value = SHORT[key], value if unit == "mm" else from_si(to_si(float(value), unit), "mm")
             if key in known:
                 entry[key] = value
             else:
                 passed_over[header] = None
         tools.append(_tool(Table(entry, where, CuttingError)))
-    return tools, list(passed_over)
+    findings = []
+    if short:
+        said = f"{', '.join(short.values())}, in {unit}: the headings say no unit; write diameter_mm or diameter_in"
+        findings.append(Finding("info", said, code="column-unit"))
+    if passed_over:
+        left_out = f"{', '.join(passed_over)}: not a column of a tool table, left out"
+        findings.append(Finding("ignored", left_out, code="column-left-out"))
+    return tools, findings
 
 
 def _value(cell: str) -> int | float | str:

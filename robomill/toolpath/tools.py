@@ -9,7 +9,7 @@ from typing import Protocol
 class Tool:
     """A tool, in m: ``offset`` x, y, z (z is the length), ``diameter``, lathe ``orientation`` 0..9.
 
-    ``name`` is what programs call it by that have names for tools.
+    ``name`` is what programs call it by that have names for tools. ``sized`` is whether anybody has said its diameter.
     """
 
     number: int
@@ -17,6 +17,7 @@ class Tool:
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     orientation: int = 0
     name: str = ""
+    sized: bool = True
 
 
 class Sized(Protocol):
@@ -30,6 +31,8 @@ class Sized(Protocol):
     def orientation(self) -> int: ...
     @property
     def name(self) -> str: ...
+    @property
+    def sized(self) -> bool: ...
 
 
 Tools = Mapping[int, Sized]
@@ -38,5 +41,6 @@ Tools = Mapping[int, Sized]
 def own_copy(tools: Tools) -> dict[int, Tool]:
     """The tools of a table, to be changed by G10."""
     return {
-        number: Tool(number, tool.diameter, tool.offset, tool.orientation, tool.name) for number, tool in tools.items()
+        number: Tool(number, tool.diameter, tool.offset, tool.orientation, tool.name, tool.sized)
+        for number, tool in tools.items()
     }

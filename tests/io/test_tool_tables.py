@@ -47,6 +47,25 @@ def test_inches() -> None:
     assert not table.findings
 
 
+def test_the_usual_headings_without_a_unit() -> None:
+    """Diameter and length count in the unit of the table, and that is said."""
+    for text in ("T,D,L\n1,6,50\n", "Tool;Diameter;Length\n1;6,0;50\n", "No\tDia\tLen\n1\t6\t50\n"):
+        table = read_tool_table(text)
+        assert (table[1].diameter, table[1].length) == (pytest.approx(6e-3), pytest.approx(50e-3))
+        assert [f.code for f in table.findings] == ["column-unit"]
+    assert "D is diameter, L is length, in mm" in read_tool_table("T,D,L\n1,6,50\n").findings[0].message
+    assert read_tool_table("T,D,L\n1,0.25,2.5\n", unit="in")[1].diameter == pytest.approx(6.35e-3)
+    assert read_tool_table("T,diameter_mm,D\n1,8,6\n")[1].diameter == pytest.approx(8e-3)
+    with pytest.raises(CuttingError, match="diameter_mm: expected a number"):
+        read_tool_table("T,diameter_mm\n1,six\n")
+
+
+def test_a_diameter_of_0_is_said_and_none_is_not() -> None:
+    sizes = read_tool_table("T1 D0 Z5\nT2 Z5\nT3 D-4\nT4 D4\n")
+    assert [sizes[k].sized for k in (1, 2, 3, 4)] == [True, False, True, True]
+    assert [sizes[k].diameter for k in (1, 2, 3, 4)] == pytest.approx([0.0, 0.0, -4e-3, 4e-3])
+
+
 def test_columns_that_are_not_known_are_said() -> None:
     table = read_tool_table("tool,diameter_mm,vendor\n1,6,ACME\n2,,ACME\n")
     assert [(f.code, "vendor" in f.message) for f in table.findings] == [("column-left-out", True)]

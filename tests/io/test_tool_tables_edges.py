@@ -22,7 +22,7 @@ def test_units_are_doubted_by_the_largest_tool(share: float, doubted: bool) -> N
 
 def test_a_diameter_of_nothing_is_none_and_one_below_it_compensates_to_the_other_side() -> None:
     table = read_tool_table("T1 D0 Z2\nT2 D-6 Z2\nT3 D6 Z2\n")
-    assert [tool.compensates for tool in table.tools] == [None, pytest.approx(-6e-3), None]
+    assert [tool.compensates for tool in table.tools] == [0.0, pytest.approx(-6e-3), None]
     assert [tool.diameter for tool in table.tools] == pytest.approx([0.0, -6e-3, 6e-3])
     assert table[1].cutter is None
     assert table[2].cutter is not None

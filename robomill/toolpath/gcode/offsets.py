@@ -279,9 +279,8 @@ def _set_tool(machine: Machine, block: Block, kind: int, number: int) -> None:
         if letter in words:
             offset[axis] = to_si(here[axis] + sign * words[letter], machine.unit)
     diameter = to_si(2.0 * words["r"], machine.unit) if "r" in words else tool.diameter
-    changed = Tool(
-        number, diameter, (offset[0], offset[1], offset[2]), round(words.get("q", tool.orientation)), tool.name
-    )
+    place, orientation = (offset[0], offset[1], offset[2]), round(words.get("q", tool.orientation))
+    changed = Tool(number, diameter, place, orientation, tool.name, tool.sized or "r" in words)
     machine.tools[number] = changed
     if machine.tool.number == number:
         machine.tool = changed
@@ -296,14 +295,14 @@ def _set_radius(machine: Machine, block: Block, wear: bool) -> None:
     tool = machine.tools[number] if number in machine.tools else Tool(number)
     sizes = machine.radii.setdefault(number, [tool.diameter / 2.0, 0.0])
     sizes[wear] = radius
-    machine.tools[number] = replace(tool, diameter=2.0 * sum(sizes))
+    machine.tools[number] = replace(tool, diameter=2.0 * sum(sizes), sized=True)
 
 
 class _Assumed(dict[int, Tool]):
     """A table that has every tool, of no size, until G10 sets one."""
 
     def __missing__(self, number: int) -> Tool:
-        return Tool(number)
+        return Tool(number, sized=False)
 
     def __contains__(self, number: object) -> bool:
         return True
@@ -377,10 +376,11 @@ def compensation_on(machine: Machine, block: Block) -> None:
             if abs(number - round(number)) > 1e-4 or number < 0:
                 raise block.refuse(f"{name} has D{number:g}; expected the number of a tool.")
             tool = known_tool(machine, block, round(number))
-        if machine.tools is None:
+        if machine.tools is None or not (tool.sized or machine.strict):
             named = f'tool "{machine.tool_name[:40]}"' if machine.tool_name else "the tool in the spindle"
             which = f"tool {tool.number}" if tool.number else named
-            raise block.refuse(f"{name} needs the diameter of {which}; give a tool table.")
+            do = "give a tool table" if machine.tools is None else "write it into the tool table"
+            raise block.refuse(f"{name} needs the diameter of {which}; {do}.")
         if tool.number and tool.number not in machine.tools:
             raise block.refuse(f"tool {tool.number} is not in the tool table; add it.")
         if not tool.number and machine.tool_name:

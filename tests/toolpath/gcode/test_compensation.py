@@ -339,6 +339,25 @@ def test_the_cutter_is_named_by_the_number_of_a_tool(number):
         interpret("G21 G90 F100\nT1 M6\nG41\nG1 X20\nM2\n")
 
 
+@pytest.mark.parametrize("dialect", ["auto", "fanuc", "sinumerik", "grbl"])
+def test_a_tool_whose_table_does_not_say_its_diameter_is_none_to_compensate_with(dialect):
+    """As without a table; LinuxCNC takes a D that is not written for 0, and a D of 0 is a program of the centre."""
+    text = f"G21 G90 G17 F100\nT1{' D1' * (dialect == 'sinumerik')} M6\nG41\nG1 X20\nX40\nM2\n"
+    with pytest.raises(GCodeError, match=r"^Line 3: G41 needs the diameter of tool 1; write it into the tool table\.$"):
+        interpret(text, dialect=dialect, tools={1: Tool(1, sized=False)})
+    text = text.replace(" D1", "")
+    assert interpret(text, dialect="linuxcnc", tools={1: Tool(1, sized=False)}).end[-1, 0] == pytest.approx(40e-3)
+    assert interpret(text, dialect="auto", tools={1: Tool(1)}).end[-1, 0] == pytest.approx(40e-3)
+
+
+def test_g10_says_the_diameter_that_the_table_does_not():
+    text = "G21 G90 G17 F100\nG10 L1 P1 {}\nT1 M6\nG41\nG1 X20\nX40\nM2\n"
+    for tools in (None, {1: Tool(1, sized=False)}):
+        with pytest.raises(GCodeError, match="G41 needs the diameter of tool 1"):
+            interpret(text.format("Z5"), tools=tools)
+        assert interpret(text.format("R5"), tools=tools).end[-1, 1] == pytest.approx(5e-3)
+
+
 ENTRIES = {  # where the cutter of 10 mm stands as the cut of the wall x = 0 begins, and where it meets the next wall
     "fanuc": "G21 G90 G17 T1 M6 F100\nG0 X{x} Y{y} Z0\nG41 D1 G1 X0 Y0\n{down}Y50\nX50\nG40 X80\nM30\n",
     "sinumerik": "G71 G90 G17 T1 D1 F100\nM6\nG0 X{x} Y{y} Z0\nG41 G1 X0 Y0\n{down}Y50\nX50\nG40 X80\nM30\n",
