@@ -76,7 +76,7 @@ def _force(setup: SimulationSetup) -> list[Usual]:
         value = np.asarray(getattr(setup.force, name), dtype=object)
         if declared.unit != "N" or any(part is None for part in value.ravel()):
             continue
-        label = f"Force {declared.label}".replace("Force F", "Force")
+        label = "Force" if declared.label == "F" else f"Force, {declared.label[:1].lower()}{declared.label[1:]}"
         if declared.shape:
             axes = declared.axes or [str(i + 1) for i in range(len(value))]
             found += [

@@ -22,6 +22,13 @@ def test_each_usual_number_put_back_leaves_the_set_up_as_it_was_and_another_valu
         assert changed(data, {each.key: each.in_key(each.high)}).digest() != now.digest(), each.key
 
 
+def test_numbers_are_called_what_people_call_them() -> None:
+    setup = rm.load_setup("paper_flute")
+    assert [each.label for each in usual_parameters(setup)][:2] == ["Force, feed-normal", "Force, feed"]
+    fixed = setup.replace(force=rm.ConstantForce((0.0, 100.0, 0.0)))
+    assert [each.label for each in usual_parameters(fixed)][:3] == ["Force Y", "Force X", "Force Z"]
+
+
 def test_an_arm_read_from_its_stiffnesses_offers_no_compliance_that_its_file_does_not_have() -> None:
     setup = rm.load_setup("paper_flute")
     odd = setup.replace(robot=setup.robot.replace(C_theta=setup.robot.C_theta * np.pi))
