@@ -53,6 +53,8 @@ def as_floats(
     Leading axes are free, but of ``one`` thing, which has none. Raises ``error`` with what was found and expected.
     """
     try:
+        if is_unreal(value):
+            raise TypeError
         array = np.asarray(value, dtype=np.float64)
     except NO_NUMBERS as exc:
         found = no_number(value) or brief(value)
@@ -69,12 +71,23 @@ def as_floats(
     return array
 
 
+def is_unreal(value: Any) -> bool:
+    """Whether NumPy would take for numbers what is none: True and False alone or in lists, and complex ones."""
+    if isinstance(value, np.ndarray):
+        return value.dtype.kind == "c"
+    if isinstance(value, list | tuple):
+        return any(map(is_unreal, value))
+    return isinstance(value, bool | np.bool_ | complex | np.complexfloating)
+
+
 def no_number(value: Any) -> str:
     """What in ``value`` is no number: the first such thing, or rows that differ in length; "" where all are numbers."""
     if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes):
         lengths = {len(row) for row in value if isinstance(row, Sequence | np.ndarray) and not isinstance(row, str)}
         uneven = f"rows of {' and '.join(map(str, sorted(lengths)))}" if len(lengths) > 1 else ""
         return next((found for each in value if (found := no_number(each))), uneven)
+    if is_unreal(value):
+        return brief(value)
     try:
         float(value)
     except NO_NUMBERS:

@@ -23,7 +23,7 @@ from typing import Any, Literal, get_type_hints
 
 import numpy as np
 
-from robomill.arrays import NO_NUMBERS, as_floats, brief, frozen
+from robomill.arrays import NO_NUMBERS, as_floats, brief, frozen, is_unreal
 from robomill.errors import RobomillError
 from robomill.units import UNITS, format_short, unit_label
 
@@ -267,6 +267,8 @@ def _declared(declared: Quantity, default: Any, compare: bool = True) -> Any:
 
 def _number(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> float:
     try:
+        if is_unreal(value):
+            raise TypeError
         return float(value)
     except NO_NUMBERS as exc:
         raise declared._refusal(brief(value, 40), error, who) from exc

@@ -21,7 +21,7 @@ import numpy as np
 
 from robomill.arguments import asked as telling
 from robomill.arguments import named, refuse_unknown
-from robomill.arrays import NO_NUMBERS, brief, no_number
+from robomill.arrays import NO_NUMBERS, brief, is_unreal, no_number
 from robomill.errors import ArgumentError, RobomillError
 from robomill.kinds import kinds_told
 from robomill.quantities import Quantity, quantities
@@ -139,6 +139,8 @@ def converted(value: Any, unit: str, error: type[RobomillError], name: str) -> A
     if isinstance(value, list | tuple) and None in value:
         return tuple(converted(one, unit, error, name) for one in value)
     try:
+        if is_unreal(value):
+            raise TypeError
         numbers = np.asarray(value, dtype=np.float64)
     except NO_NUMBERS:
         found = no_number(value) or brief(value)

@@ -17,13 +17,13 @@ from robomill.kinematics.forward import joint_angles, joint_frames
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.lazy import cached_property
 from robomill.robot.model import Robot
-from robomill.units import format_si
-from robomill.values import Said
+from robomill.units import format_many, format_si
+from robomill.values import Value
 
 
 @made_by("rm.at_pose(robot, theta)")
 @dataclass(frozen=True, eq=False, repr=False)
-class PoseReport(Said):
+class PoseReport(Value):
     """The arm at the configuration theta (n,) rad (m where prismatic); every number NaN where theta is NaN.
 
     Examples
@@ -41,6 +41,13 @@ class PoseReport(Said):
         units = self.robot.joint_units
         theta = ", ".join(format_si(each, unit, 2) for each, unit in zip(self.theta, units, strict=True))
         return f"of {self.robot.name} at {theta}" if self.reached else f"of {self.robot.name}, not reached"
+
+    def _facts(self) -> list[tuple[str, str]]:
+        said = [("Robot", self.robot._said())]
+        if not self.reached:
+            return said
+        said.append(("Tip in {M}", format_many(self.T_MT[:3, 3], "mm", 2)))
+        return [*said, *((f"C_{c}{c}", format_si(self.C[i, i], "um/N", 3)) for i, c in enumerate("xyz"))]
 
     @property
     def reached(self) -> bool:

@@ -17,7 +17,7 @@ from robomill.spelled import refuse_slip
 from robomill.vectors import angle_between
 
 UNIT = 1e-6  # to which the axes of a pose are unit and square, as files and controllers round them
-TILT = Quantity("A or B", "deg", name="A or B", key="", slip=2.0 * np.pi)
+TILT_A, TILT_B = (Quantity(name, "deg", name=name, key="", slip=2.0 * np.pi) for name in "AB")
 
 
 def _rotation(angle: ArrayLike, i: int, j: int) -> FloatArray:
@@ -107,7 +107,7 @@ def pose_from_world(x_M: ArrayLike) -> FloatArray:
     Raises
     ------
     KinematicsError
-        Where x_M is not finite or has not 5 entries.
+        Where x_M is not finite or has not 5 entries, and for tilts in degrees.
 
     Examples
     --------
@@ -116,7 +116,8 @@ def pose_from_world(x_M: ArrayLike) -> FloatArray:
     [0.1, -1.2, 0.05]
     """
     x_M = as_floats(x_M, "x_M", (5,), error=KinematicsError)
-    refuse_slip(TILT, x_M[..., 3:], KinematicsError, "Pose")
+    for declared, angle in ((TILT_A, x_M[..., 3]), (TILT_B, x_M[..., 4])):
+        refuse_slip(declared, angle.flat[np.argmax(np.abs(angle))] if angle.size else 0.0, KinematicsError, "Pose")
     return transform(rotation_x(x_M[..., 3]) @ rotation_y(x_M[..., 4]), x_M[..., :3])
 
 

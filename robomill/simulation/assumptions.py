@@ -7,7 +7,7 @@ from typing import Any
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ToolTable
 from robomill.provenance import MADE_UP, Finding, Provenance
-from robomill.quantities import quantities
+from robomill.quantities import described, quantities
 from robomill.robot.model import Robot
 from robomill.simulation.origins import MODEL, Source, robot_lengths, robot_sources, sources
 from robomill.simulation.setup import SimulationSetup
@@ -33,35 +33,37 @@ class Assumed:
 def assumed_of_robot(robot: Robot, compliances: bool = True) -> list[Assumed]:
     """Of a robot: geometry, lengths, limits, frames, and the ``compliances`` in force, where they are used."""
     rows = robot_sources(robot, robot.provenance)
-    found = _of_sources(rows if compliances else rows[1:], robot)
+    return [*_of_sources(rows if compliances else rows[1:], robot), *_of_base(robot)]
+
+
+def _of_base(robot: Robot) -> Iterator[Assumed]:
     base = robot.provenance.get("base")
     if base is not None and base.kind == "assumed":
-        found.append(Assumed("base frame", f"at {format_many(robot.T_base[:3, 3], 'mm', 1)}", base.source))
-    return found
+        yield Assumed("base frame", f"at {format_many(robot.T_base[:3, 3], 'mm', 1)}", base.source)
 
 
 def assumed_of_setup(setup: SimulationSetup) -> list[Assumed]:
     """Of all that a run rests on."""
     rows, path = sources(setup), setup.toolpath
-    found = _of_sources(rows, setup.robot)
+    found = [*_of_sources(rows, setup.robot), *_of_base(setup.robot)]
     if setup.stock is None and all(each.what != "stock" for each in found):
         value = next(row.value for row in rows if row.what == "Stock")
         found.append(Assumed("stock", value, "none is given: a block around what the path cuts"))
     found += assumed_of_tools(setup.tools, path.tool[path.cutting].tolist())
-    found += [Assumed(what, "", said.source) for what, said in _beside(setup) if said.kind in MADE_UP]
+    found += [Assumed(what, value, said.source) for what, value, said in _beside(setup) if said.kind in MADE_UP]
     return found + assumed_of_program(path.findings)
 
 
-def _beside(setup: SimulationSetup) -> Iterator[tuple[str, Provenance]]:
-    """What is said of whatever has no row among the sources."""
+def _beside(setup: SimulationSetup) -> Iterator[tuple[str, str, Provenance]]:
+    """What is said of whatever has no row among the sources, with its value in short."""
     for spring in setup.springs:
-        yield f"spring {spring.name}", spring.provenance
+        yield f"spring {spring.name}", described(spring), spring.provenance
     if setup.links is not None:
-        yield "link masses", setup.links.provenance
+        yield "link masses", "", setup.links.provenance
     if setup.measured_map is not None:
-        yield "measured map", setup.provenance.get("measured_map", setup.measured_map.provenance)
+        yield "measured map", "", setup.provenance.get("measured_map", setup.measured_map.provenance)
     if "part" in setup.provenance:
-        yield "part zero", setup.provenance["part"]
+        yield "part zero", format_many(setup.T_MW[:3, 3], "mm", 1), setup.provenance["part"]
 
 
 def assumed_of_tools(tools: ToolTable, numbers: Iterable[int]) -> list[Assumed]:

@@ -334,3 +334,50 @@ def test_a_spindle_as_soft_as_its_stiffness_is_a_doubt_beside_the_result() -> No
     for value, doubts in ((20.0, 1), (0.05, 0)):
         run = rm.simulate(setup.replace(springs=[rm.SpindleSpring(lateral_um_N=value)]))
         assert sum("in N/µm" in note.sentence for note in run.notes) == doubts
+
+
+def test_the_bending_of_another_tool_is_a_doubt_beside_the_result() -> None:
+    setup = rm.load_setup("paper_flute").replace(step=20e-3, springs=[rm.ToolBending(diameter_mm=8, stick_out_mm=40)])
+    for cutter, doubts in ((4, 1), (8, 0), (10, 0)):
+        run = rm.simulate(setup.replace(cutter=rm.Cutter("flat", diameter_mm=cutter, flutes=3)))
+        assert sum("is it of another" in note.sentence for note in run.notes) == doubts
+        assert [each.value[:13] for each in run.assumed if each.what == "spring tool bending"] == ["Diameter 8 mm"]
+
+
+@pytest.mark.parametrize(
+    ("slip", "words"),
+    [
+        (lambda: rm.tool_pose(ARM, [0.1j] * 5), "expected numbers, found 0.1j"),
+        (lambda: rm.cartesian_compliance(ARM, np.zeros(5) * 1j), "expected numbers, found"),
+        (lambda: rm.tool_pose(ARM, [True] * 5), "expected numbers, found True"),
+        (lambda: rm.Cutter("flat", diameter_mm=True), "expected a number, found True"),
+        (lambda: rm.Stock(lower_mm=[0, 0, 1j], upper_mm=[1, 1, 1]), "expected a number, found 1j"),
+        (lambda: rm.pose_from_world([0, -1.3, 0, 20, 0]), "Pose, A: found 20 rad, .* give A=0.34907"),
+        (lambda: rm.pose_from_world([[0, -1.3, 0, 0, 0], [0, -1.3, 0, 0, -30]]), "Pose, B: found -30 rad"),
+        (lambda: rm.compliance_map(ARM, rm.Grid(x_mm=0, y_mm=-1300, z_mm=0), 0, 20), "Pose, B: found 20 rad"),
+    ],
+)
+def test_what_is_no_number_and_tilts_in_degrees_are_told(slip, words: str) -> None:
+    with pytest.raises(rm.RobomillError, match=words):
+        slip()
+
+
+def test_tilts_of_half_and_quarter_turns_are_poses() -> None:
+    assert rm.pose_from_world([0, -1.3, 0, np.pi, -np.pi / 2]).shape == (4, 4)
+    assert rm.pose_from_world(np.empty((0, 5))).shape == (0, 4, 4)
+
+
+ARM = rm.load_robot("slavkovic_5r")
+
+
+def test_reports_of_one_pose_are_equal_and_show_themselves_in_a_notebook() -> None:
+    one, two = rm.at_pose(ARM, np.zeros(5)), rm.at_pose(ARM, np.zeros(5))
+    assert one == two == copy.deepcopy(one) == pickle.loads(pickle.dumps(one))
+    assert one != rm.at_pose(ARM, np.full(5, 0.1))
+    assert "C_yy" in one._repr_html_()
+    assert "not reached" in rm.at_pose(ARM, np.full(5, np.nan))._repr_html_()
+
+
+def test_the_base_that_is_assumed_stands_among_what_a_run_rests_on() -> None:
+    setup = rm.load_setup("paper_flute").replace(robot=rm.load_robot("kuka_kr270"), part_zero_mm=[1700, 0, 800])
+    assert "base frame" in [each.what for each in rm.simulate(setup.replace(step=20e-3)).assumed]
