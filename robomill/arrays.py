@@ -53,7 +53,7 @@ def as_floats(
     Leading axes are free, but of ``one`` thing, which has none. Raises ``error`` with what was found and expected.
     """
     try:
-        if is_unreal(value):
+        if np.iscomplexobj(value):
             raise TypeError
         array = np.asarray(value, dtype=np.float64)
     except NO_NUMBERS as exc:
