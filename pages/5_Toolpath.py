@@ -32,8 +32,8 @@ result = ui.attempt(ui.result, setup) if reach is not None else None
 
 view.headline(source, path, reach, result, unit)
 other.tiles(view.tiles(source, path, reach, result, unit), view.tiles_of_b)
-if result is not None:
-    mathematics(partial(of_the_run, result, decides_at(result)), "toolpath")
+# there without a result, too: what comes between tiles and board later would push the board from beneath the mouse
+mathematics(partial(of_the_run, result, decides_at(result)) if result is not None else tuple, "toolpath")
 question.panel(path, "" if result is None else result.verdict.premise)
 
 program = source.kind == "program" and not drawing.shown()

@@ -54,15 +54,18 @@ class Sheet:
         return self._each(frame, lambda column, row, cell: None if empty(cell) else cell)
 
     def shown(self, frame: pd.DataFrame) -> pd.DataFrame:
-        """A plain ``frame`` with its numbers as lines of text; those of a column have equally many decimals, where none
-        has more than its unit."""
+        """A plain ``frame`` with its numbers as lines of text; those of a column of one quantity have equally many
+        decimals, where none has more than its unit."""
         texts = self._each(frame, lambda column, row, cell: self.box(column, row).written(cell, cell=True))
-        most = {name: max(map(_decimals, texts[name]), default=0) for name in self.numbers}
+        one = [name for name, boxes in self.numbers.items() if isinstance(boxes, NumberBox)]
+        most = {name: max(map(_decimals, texts[name]), default=0) for name in one}
 
         def level(column: str, row: int, cell: Any) -> str:
             box = self.box(column, row)
-            alike = cell and not box.whole and most[column] <= box.decimals  # a zero is exact, and stays a plain one
-            return box.written(cell, True, most[column]) if alike else texts.loc[row, column]
+            exact = not cell or box.whole  # a zero stays a plain one
+            if exact or column not in most or most[column] > box.decimals:
+                return str(texts.loc[row, column])
+            return box.written(cell, True, most[column])
 
         return self._each(frame, level)
 

@@ -239,7 +239,7 @@ def test_compliance_and_stiffness_stand_side_by_side(app: AppTest, grid: Grid) -
     typed(app, grid, 0, "stiffness", "1000")
     assert robot_of(app).C_theta[0] == pytest.approx(1e-6, rel=1e-12)
     app.run()
-    assert grid.shown["compliance"].loc[0, "compliance"] == "10"
+    assert float(grid.shown["compliance"].loc[0, "compliance"]) == 10.0
     typed(app, grid, 1, "compliance", "20")
     app.run()
     assert float(grid.shown["compliance"].loc[1, "stiffness"]) == pytest.approx(500.0, rel=1e-6)

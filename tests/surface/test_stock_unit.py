@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import trimesh
 
 from robomill.surface.stock import Stock
 from robomill.surface.stock_unit import unit_doubt
@@ -17,9 +18,14 @@ TRUE = np.array([0.1016, 0.0762, 0.0254])
 
 
 def block(times: float) -> Stock:
-    """Said in mm, as a file does: a plain number of this size would be taken for a slip of the unit."""
+    """Said in mm, as a file does: a plain number of this size would be taken for a slip of the unit. A block below half
+    a millimetre is refused, and a mesh of that size is not."""
     width, depth, height = 1e3 * TRUE * times
-    return Stock(lower_mm=(0.0, 0.0, -height), upper_mm=(width, depth, 0.0))
+    corners = {"lower_mm": (0.0, 0.0, -height), "upper_mm": (width, depth, 0.0)}
+    if max(width, depth, height) >= 0.5:
+        return Stock(**corners)
+    mesh = trimesh.creation.box(bounds=1e-3 * np.array(list(corners.values())))
+    return Stock(**corners, triangles=np.asarray(mesh.triangles))
 
 
 @pytest.mark.parametrize(

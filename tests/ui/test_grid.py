@@ -103,7 +103,7 @@ def test_a_whole_number_may_be_emptied_or_be_larger_than_any(typed: str) -> None
 
 
 def test_a_column_may_have_a_box_a_row() -> None:
-    mixed = Sheet({"a": [NumberBox("a", unit) for unit in ("mm", "deg", "in")]})  # too many digits to be alike
+    mixed = Sheet({"a": [NumberBox("a", unit) for unit in ("mm", "deg", "in")]})  # of other units, so not alike
     start = begun(mixed)
     assert start.shown["a"].tolist() == ["1", "0.0190986", "0.11811"]
     assert start.after(edited(row2={"a": "1"}), mixed).now["a"][2] == pytest.approx(25.4e-3)
