@@ -57,8 +57,8 @@ class Sheet:
         """A plain ``frame`` with its numbers as lines of text; those of a column of one quantity have equally many
         decimals, where none has more than its unit."""
         texts = self._each(frame, lambda column, row, cell: self.box(column, row).written(cell, cell=True))
-        one = [name for name, boxes in self.numbers.items() if isinstance(boxes, NumberBox)]
-        most = {name: max(map(_decimals, texts[name]), default=0) for name in one}
+        alike = [name for name, boxes in self.numbers.items() if isinstance(boxes, NumberBox) or _of_one_unit(boxes)]
+        most = {name: max(map(_decimals, texts[name]), default=0) for name in alike}
 
         def level(column: str, row: int, cell: Any) -> str:
             box = self.box(column, row)
@@ -223,6 +223,11 @@ def _take(name: str, key: str, write: Callable[[pd.DataFrame], None], sheet: She
     held.read_as[name] = name, _few(now.understood)
     if now.refused or now.converted or sheet.linked:
         session.keep(_turn(name), session.kept(_turn(name), 0) + 1)
+
+
+def _of_one_unit(boxes: Sequence[NumberBox]) -> bool:
+    """Whether the rows of a column are of one quantity, as those of joints that all turn."""
+    return len({(box.unit, box.decimals) for box in boxes}) == 1
 
 
 def _decimals(text: str) -> int:

@@ -119,3 +119,10 @@ def test_the_numbers_of_a_column_have_equally_many_decimals_and_what_is_shown_is
     assert start.shown["b"].tolist() == ["1220.5", "1.5875", "300"]
     assert start.shown["c"].tolist() == ["1220", "", "-300"]
     assert start.after(edited(row1={"a": "12.30"}), sheet).now["a"].tolist() == start.began["a"].tolist()
+    rows = {"a": pd.Series([7.14e-3, 12.3e-3], dtype=object)}
+    shown = {
+        units: Edited.start(pd.DataFrame(rows), Sheet({"a": [NumberBox("a", unit) for unit in units]})).shown["a"]
+        for units in (("mm", "mm"), ("mm", "in"))
+    }
+    assert shown["mm", "mm"].tolist() == ["7.14", "12.30"]
+    assert shown["mm", "in"].tolist() == ["7.14", "0.484252"]
