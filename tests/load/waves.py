@@ -110,7 +110,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         told = Path(folder) / "counts.json"
         os.environ |= {"ROBOMILL_COUNTS": str(told), "PYTHONPATH": str(PROBE)}
-        server = Server(Path(folder))
+        server = Server(Path(folder) / "kept")  # a shelf that is empty again is taken away
         server.start()
         try:
             assert server.process is not None
