@@ -14,10 +14,10 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.simulation.leaning import lies
 from robomill.simulation.places import Places, places
 from robomill.simulation.seen import Run
 from robomill.surface.outline import Walls
-from robomill.surface.passes import SMALLEST_RISE
 from robomill.values import ReadOnly
 
 CORNER = np.radians(45.0)
@@ -102,8 +102,7 @@ class Gauge(ReadOnly):
 def gauge(result: Run, most: int | None = None) -> Gauge:
     """Everything that can be measured on the part that a run leaves, at so ``most`` of its samples; nothing where a
     tool that lies leaves no surface to be read from above."""
-    upright = (result.path.k[result.path.cutting, 2] >= SMALLEST_RISE).all()
-    if not (upright and result.judged.any() and result.removes.any()):
+    if lies(result.path).any() or not (result.judged.any() and result.removes.any()):
         none = np.zeros(0)
         nothing = Readings(none.astype(np.int64), none, none, none, none, np.zeros((0, 3)))
         return Gauge(nothing, nothing, nothing)

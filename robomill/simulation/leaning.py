@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from robomill.arrays import BoolArray
 from robomill.cutting.unjudged import Unjudged
 from robomill.kinematics.result import IKResult, misfit, task_mode
 from robomill.surface.passes import SMALLEST_RISE
@@ -30,15 +31,21 @@ def leaning(path: Toolpath, ik: IKResult) -> tuple[Unjudged, ...]:
     return (Unjudged("leaning", where, why),)
 
 
+def lies(path: Toolpath) -> BoolArray:
+    """(m,) steps at feed at which the tool is too close to level for a surface seen from above, or points
+    downwards."""
+    return np.asarray(path.cutting & (path.k[:, 2] < SMALLEST_RISE))
+
+
 def lying(path: Toolpath) -> tuple[Unjudged, ...]:
     """Steps at feed at which the tool lies or points upwards: the part is cut from above, so such a cut has no wall and
     no floor that could be read, however far the tip is off."""
-    rise = path.k[:, 2]
-    where = path.cutting & (rise < SMALLEST_RISE)
+    where = lies(path)
     if not where.any():
         return ()
+    least = path.k[where, 2].min()
     why = (
-        f"the tool lies there, or comes from below (the upward part of its axis is {rise[where].min():.2f}; a surface "
+        f"the tool lies there, or comes from below (the upward part of its axis is {least:.2f}; a surface "
         f"is judged from {SMALLEST_RISE} on): turn the part, or give the axis from the tip to the spindle"
     )
     return (Unjudged("tool-lies", where, why),)

@@ -39,6 +39,7 @@ from robomill.workspace.region import holds_paper_box
 
 WHERE = "project file"
 SUFFIX = ".robomill.toml"
+MAX_PROJECT_MB = 25
 DEFAULT_PRESET = "paper_flute"
 PLACE: dict[str, Any] = {"unit": "mm", "shape": (3,), "axes": tuple("XYZ"), "digits": 2}  # in {M}
 TILT: dict[str, Any] = {"unit": "deg", "default": 0.0}

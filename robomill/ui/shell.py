@@ -13,11 +13,10 @@ from robomill.ui.commons import weight
 from robomill.ui.keeping import against, autosave, snapshots
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
-from robomill.ui.project import SUFFIX, Project, preset_setup, presets, project_to_toml
+from robomill.ui.project import MAX_PROJECT_MB, SUFFIX, Project, preset_setup, presets, project_to_toml
 from robomill.ui.sharing import arriving, buttons
 from robomill.viz.theme import palette
 
-MAX_PROJECT_MB = 25
 BYTE_S = 4e-8  # s that a byte of a project takes to be written
 LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="190" height="36" viewBox="0 0 190 36">
 <g fill="none" stroke="{accent}" stroke-width="3.2" stroke-linecap="round" stroke-linejoin="round">

@@ -9,10 +9,9 @@ from robomill.files import SETUP
 from robomill.io.texts import read_text
 from robomill.ui import inputs, other, pieces, session
 from robomill.ui.keeping import autosave
-from robomill.ui.project import preset_setup, presets, project_from_toml
+from robomill.ui.project import MAX_PROJECT_MB, preset_setup, presets, project_from_toml
 
 NOTHING, CHOSEN = "", "other.chosen"
-MOST_MB = 25
 
 
 @st.dialog("Compare with …")
@@ -26,7 +25,7 @@ def comparing() -> None:
     inputs.choice("Compare with", "other.which", names, now, _choose, inputs.LISTED)
     inputs.button("The project as it is now", "other.pin", "push_pin", _pin, width="stretch")
     fresh = session.store().revision
-    inputs.upload("A project or set-up file (.toml)", "other.file", _take, most_MB=MOST_MB, fresh=fresh)
+    inputs.upload("A project or set-up file (.toml)", "other.file", _take, most_MB=MAX_PROJECT_MB, fresh=fresh)
 
 
 def show() -> None:
