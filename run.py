@@ -87,7 +87,7 @@ def offer_graphics() -> None:
     """VTK draws off screen through EGL or OSMesa, which pip does not carry; Debian does."""
     if sys.platform != "linux" or loads("libEGL.so.1") or loads("libOSMesa.so.8"):
         return
-    from robomill.viz.graphics import INSTALL, no_opengl  # needs the standard library only
+    from robomill.viz.rendered.graphics import INSTALL, no_opengl  # needs the standard library only
 
     root = hasattr(os, "geteuid") and os.geteuid() == 0
     if root and shutil.which("apt-get"):

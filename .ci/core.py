@@ -23,7 +23,7 @@ PARTS = [
     "kinematics/test_forward.py",
     "kinematics/test_jacobian.py",
     "compliance",
-    "identification/test_estimate.py",
+    "identification/fit/test_estimate.py",
     "cli/test_core_install.py",
     "docs/test_notebooks.py",
     "learn/test_marking.py",

@@ -5,7 +5,8 @@ from functools import partial
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import inputs, session
+from robomill.ui import session
+from robomill.ui.entry import inputs
 from robomill.ui.improve import opened, remedies, stiffen, studied, sure
 
 project = ui.begin("Improve")

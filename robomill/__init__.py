@@ -54,23 +54,23 @@ if TYPE_CHECKING:
     from robomill.improve.uncertainty import uncertainty as uncertainty
     from robomill.improve.unsure import Spread as Spread
     from robomill.io.compensated import compensate as compensate
-    from robomill.io.drawings import read_drawing as read_drawing
-    from robomill.io.force_models import process_force as process_force
-    from robomill.io.forces import read_forces as read_forces
-    from robomill.io.identified import identify as identify
-    from robomill.io.load_tests import read_load_tests as read_load_tests
+    from robomill.io.drawing.drawings import read_drawing as read_drawing
     from robomill.io.maps import write_map as write_map
     from robomill.io.materials import load_material as load_material
     from robomill.io.materials import material_names as material_names
+    from robomill.io.measured.forces import read_forces as read_forces
+    from robomill.io.measured.identified import identify as identify
+    from robomill.io.measured.load_tests import read_load_tests as read_load_tests
     from robomill.io.meshes import read_stock as read_stock
     from robomill.io.point_tables import read_points as read_points
     from robomill.io.programs import read_program as read_program
-    from robomill.io.projects import load_setup as load_setup
-    from robomill.io.robots import load_robot as load_robot
-    from robomill.io.robots import robot_names as robot_names
+    from robomill.io.robot.robots import load_robot as load_robot
+    from robomill.io.robot.robots import robot_names as robot_names
     from robomill.io.samples import copy_samples as copy_samples
     from robomill.io.samples import samples as samples
-    from robomill.io.tool_tables import read_tool_table as read_tool_table
+    from robomill.io.setups.force_models import process_force as process_force
+    from robomill.io.setups.projects import load_setup as load_setup
+    from robomill.io.setups.tool_tables import read_tool_table as read_tool_table
     from robomill.io.writers import write_gcode as write_gcode
     from robomill.io.writers import write_material as write_material
     from robomill.io.writers import write_robot as write_robot
@@ -89,15 +89,15 @@ if TYPE_CHECKING:
     from robomill.report.html import report_html as report_html
     from robomill.report.html import write_report as write_report
     from robomill.robot.model import Robot as Robot
+    from robomill.simulation.judging.verdict_words import Verdict as Verdict
     from robomill.simulation.result import SimulationResult as SimulationResult
     from robomill.simulation.run import simulate as simulate
     from robomill.simulation.setup import SimulationSetup as SimulationSetup
-    from robomill.simulation.verdict_words import Verdict as Verdict
     from robomill.study.described import Study as Study
     from robomill.study.described import load_study as load_study
     from robomill.study.running import StudyResult as StudyResult
     from robomill.study.running import run_study as run_study
-    from robomill.surface.groove import GrooveSection as GrooveSection
+    from robomill.surface.sections.groove import GrooveSection as GrooveSection
     from robomill.surface.stock import Stock as Stock
     from robomill.surface.zmap import ZMap as ZMap
     from robomill.toolpath.drawing import Drawing as Drawing
@@ -144,7 +144,7 @@ _PUBLIC = {
     "TableTool": "robomill.cutting.tool_table",
     "ToolTable": "robomill.cutting.tool_table",
     "RobomillError": "robomill.errors",
-    "identify": "robomill.io.identified",
+    "identify": "robomill.io.measured.identified",
     "Knowledge": "robomill.identification.knowledge",
     "JointTests": "robomill.identification.load_test",
     "LoadTests": "robomill.identification.load_test",
@@ -166,22 +166,22 @@ _PUBLIC = {
     "Tornado": "robomill.improve.draws",
     "Uncertainty": "robomill.improve.draws",
     "uncertainty": "robomill.improve.uncertainty",
-    "read_drawing": "robomill.io.drawings",
-    "process_force": "robomill.io.force_models",
-    "read_forces": "robomill.io.forces",
-    "read_load_tests": "robomill.io.load_tests",
+    "read_drawing": "robomill.io.drawing.drawings",
+    "process_force": "robomill.io.setups.force_models",
+    "read_forces": "robomill.io.measured.forces",
+    "read_load_tests": "robomill.io.measured.load_tests",
     "write_map": "robomill.io.maps",
     "load_material": "robomill.io.materials",
     "material_names": "robomill.io.materials",
     "read_stock": "robomill.io.meshes",
     "read_points": "robomill.io.point_tables",
     "read_program": "robomill.io.programs",
-    "load_setup": "robomill.io.projects",
-    "load_robot": "robomill.io.robots",
-    "robot_names": "robomill.io.robots",
+    "load_setup": "robomill.io.setups.projects",
+    "load_robot": "robomill.io.robot.robots",
+    "robot_names": "robomill.io.robot.robots",
     "copy_samples": "robomill.io.samples",
     "samples": "robomill.io.samples",
-    "read_tool_table": "robomill.io.tool_tables",
+    "read_tool_table": "robomill.io.setups.tool_tables",
     "write_gcode": "robomill.io.writers",
     "write_material": "robomill.io.writers",
     "write_robot": "robomill.io.writers",
@@ -203,12 +203,12 @@ _PUBLIC = {
     "SimulationResult": "robomill.simulation.result",
     "simulate": "robomill.simulation.run",
     "SimulationSetup": "robomill.simulation.setup",
-    "Verdict": "robomill.simulation.verdict_words",
+    "Verdict": "robomill.simulation.judging.verdict_words",
     "Study": "robomill.study.described",
     "load_study": "robomill.study.described",
     "StudyResult": "robomill.study.running",
     "run_study": "robomill.study.running",
-    "GrooveSection": "robomill.surface.groove",
+    "GrooveSection": "robomill.surface.sections.groove",
     "Stock": "robomill.surface.stock",
     "ZMap": "robomill.surface.zmap",
     "Drawing": "robomill.toolpath.drawing",

@@ -11,12 +11,13 @@ from robomill.compliance.springs import SPRINGS
 from robomill.cutting.forces import FORCES
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool
-from robomill.io import forces, load_test_columns, profiles, tool_tables
 from robomill.io.columns import Layout, spelled
-from robomill.io.load_test_columns import written
 from robomill.io.materials import LAWS
-from robomill.io.robot_reader import SPELLED, STEMS
-from robomill.io.robots import load_robot
+from robomill.io.measured import forces, load_test_columns, profiles
+from robomill.io.measured.load_test_columns import written
+from robomill.io.robot.reader import SPELLED, STEMS
+from robomill.io.robot.robots import load_robot
+from robomill.io.setups import tool_tables
 from robomill.quantities import Quantity, quantities
 from robomill.robot.model import Robot
 from robomill.simulation.given import PART_TURN, PART_ZERO

@@ -98,7 +98,7 @@ def check_tip(arguments: Any) -> None:
 
 def robot(name: str, tip: str | None = None) -> Any:
     """The robot called so, of a file, or of standard input; of a URDF up to the link ``tip``."""
-    from robomill.io.robots import load_robot, read_robot
+    from robomill.io.robot.robots import load_robot, read_robot
 
     if name != STDIN:
         return load_robot(name, tip=tip)
@@ -108,8 +108,8 @@ def robot(name: str, tip: str | None = None) -> Any:
 
 def setup(name: str, allow_outside: bool) -> Any:
     """The set-up of a sample, a file, or standard input, which names files in the folder in which one stands."""
-    from robomill.io.beside import Beside
-    from robomill.io.projects import load_setup, setup_from_toml
+    from robomill.io.setups.beside import Beside
+    from robomill.io.setups.projects import load_setup, setup_from_toml
     from robomill.io.texts import read_text
 
     if name != STDIN:
@@ -121,7 +121,7 @@ def setup(name: str, allow_outside: bool) -> Any:
 def study(name: str, allow_outside: bool) -> Any:
     """The study of a sample, a file, or standard input, which names a set-up in the folder in which one stands."""
     from robomill.errors import StudyError
-    from robomill.io.beside import Beside
+    from robomill.io.setups.beside import Beside
     from robomill.io.texts import read_text
     from robomill.study.described import load_study, study_from_toml
 
@@ -192,7 +192,7 @@ def is_table(data: bytes) -> bool:
 
 def load_tests(name: str, robot: Any) -> tuple[Any, str]:
     """Load tests, and what they are called."""
-    from robomill.io.load_tests import read_load_tests
+    from robomill.io.measured.load_tests import read_load_tests
     from robomill.io.texts import read_text
 
     if name == STDIN:
@@ -203,7 +203,7 @@ def load_tests(name: str, robot: Any) -> tuple[Any, str]:
 
 def drawing(name: str, unit: str) -> Any:
     """A drawing; what comes in by standard input is told by how it begins."""
-    from robomill.io.drawings import drawing_from_bytes, read_drawing
+    from robomill.io.drawing.drawings import drawing_from_bytes, read_drawing
 
     if name != STDIN:
         return read_drawing(name, unit=unit)
@@ -214,7 +214,7 @@ def drawing(name: str, unit: str) -> Any:
 def tools(name: str, unit: str) -> Any:
     """A tool table."""
     from robomill.errors import CuttingError
-    from robomill.io.tool_tables import read_tool_table
+    from robomill.io.setups.tool_tables import read_tool_table
 
     if name == STDIN:
         return read_tool_table(stdin(TOOLS, CuttingError), unit=unit, name=CALLED)

@@ -9,15 +9,15 @@ from robomill.cli.saying import Written, say
 
 def run_identify(arguments: Any) -> int:
     """Fit, write what is asked for, and say it."""
-    from robomill.identification.estimate import identify
+    from robomill.identification.fit.estimate import identify
     from robomill.identification.plan import next_best
     from robomill.identification.record import identification_record
-    from robomill.io.declared import kind_to_table
-    from robomill.io.load_test_sheets import measuring_sheet
+    from robomill.io.measured.load_test_sheets import measuring_sheet
     from robomill.io.results import write_file
-    from robomill.io.robots import robot_to_toml
+    from robomill.io.robot.robots import robot_to_toml
+    from robomill.io.setups.declared import kind_to_table
     from robomill.report.plain import identification_lines
-    from robomill.simulation.assumptions import assumed_of_robot, assumed_of_tests
+    from robomill.simulation.origin.assumptions import assumed_of_robot, assumed_of_tests
 
     robot = given.robot(arguments.robot, arguments.tip)
     tests, called = given.load_tests(arguments.tests, robot)
@@ -43,8 +43,8 @@ def run_identify(arguments: Any) -> int:
 
 def _asked(arguments: Any) -> tuple[str, Any]:
     """The model and how the tests are treated."""
-    from robomill.identification.models import Model
-    from robomill.identification.treatment import AUTO, BENDING_JOINTS, Treatment
+    from robomill.identification.fit.models import Model
+    from robomill.identification.fit.treatment import AUTO, BENDING_JOINTS, Treatment
 
     bending: Any = BENDING_JOINTS if arguments.bending is None else arguments.bending
     model = Model(arguments.model)

@@ -239,7 +239,7 @@ def _identify_options(fit: argparse.ArgumentParser) -> None:
     _robot(fit)
     _named(fit, "tests", "load tests (.csv), a sample's name, or - for standard input", "load tests")
     models = "joints, joints+bending, joints+tool, joints+bending+tool or constant"
-    _worded(fit, "--model", "identification.models.MODELS", default="joints", help=models)
+    _worded(fit, "--model", "identification.fit.models.MODELS", default="joints", help=models)
     fit.add_argument(
         "--bending",
         "--bending-joints",
@@ -248,12 +248,12 @@ def _identify_options(fit: argparse.ArgumentParser) -> None:
         "chooses",
     )
     points = "points to fit too: none (default), force, gauge or both"
-    _worded(fit, "--fit-points", "identification.points.FREED", default="none", help=points)
+    _worded(fit, "--fit-points", "identification.pull.points.FREED", default="none", help=points)
     fit.add_argument("--robust", action="store_true", help="weigh down tests that do not fit")
     weights = "equal (default), or size: every test by its relative error"
-    _worded(fit, "--weights", "identification.treatment.WEIGHTS", default="equal", help=weights)
+    _worded(fit, "--weights", "identification.fit.treatment.WEIGHTS", default="equal", help=weights)
     folds = "cross-validation by pose (default) or by neighbours"
-    _worded(fit, "--leave-out", "identification.folds.LEAVE_OUT", default="pose", help=folds)
+    _worded(fit, "--leave-out", "identification.fit.folds.LEAVE_OUT", default="pose", help=folds)
     fit.add_argument("--exclude", default="", metavar="ROWS", help="rows of the file to leave out, with commas")
     fit.add_argument(
         "--out", metavar="ROBOT.toml", help="write the robot with these compliances there; an older file is replaced"

@@ -12,7 +12,7 @@ def run_place(arguments: Any) -> int:
     from robomill.improve.placement import place
     from robomill.io.writers import write_setup
     from robomill.report.placement_record import placement_lines, placement_record
-    from robomill.simulation.verdict_words import RED
+    from robomill.simulation.judging.verdict_words import RED
 
     found = place(
         given.setup(arguments.setup, arguments.allow_outside),

@@ -90,8 +90,8 @@ def _check_folder(folder: Path, arguments: Any) -> None:
 
 def _contents(result: Any, record: Mapping[str, Any]) -> dict[str, str | bytes]:
     """What there always is, by name."""
-    from robomill.io.projects import setup_to_toml
     from robomill.io.results import json_text
+    from robomill.io.setups.projects import setup_to_toml
     from robomill.report.records import jsonable
     from robomill.report.tables import csv_text
 

@@ -11,7 +11,7 @@ def run_turn(arguments: Any) -> int:
     """Search; 1 where the cut is red along the best course, too."""
     from robomill.improve.turning import turn
     from robomill.report.turning_record import turning_lines, turning_record
-    from robomill.simulation.verdict_words import RED
+    from robomill.simulation.judging.verdict_words import RED
 
     given.check_tip(arguments)
     setup = given.setup(arguments.setup, arguments.allow_outside)

@@ -11,7 +11,7 @@ from robomill.errors import RobomillError
 
 
 def run_robots(arguments: Any) -> int:
-    from robomill.io.robots import load_robot, robot_names
+    from robomill.io.robot.robots import load_robot, robot_names
     from robomill.report.plain import robot_lines
     from robomill.report.records import robots_record
 
@@ -54,7 +54,7 @@ def run_gcode(arguments: Any) -> int:
     from robomill.errors import ToolpathError
     from robomill.report.plain import gcode_lines
     from robomill.report.records import path_record
-    from robomill.simulation.assumptions import assumed_of_program, assumed_of_tools
+    from robomill.simulation.origin.assumptions import assumed_of_program, assumed_of_tools
     from robomill.toolpath.apt import read_apt
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
 
@@ -140,9 +140,9 @@ def run_reproduce(arguments: Any) -> int:
 
 def _evidence() -> Any:
     """The paper's test and robot, and the (synthetic) load tests, computed."""
-    from robomill.identification.estimate import identify
+    from robomill.identification.fit.estimate import identify
     from robomill.io.materials import sample_materials
-    from robomill.io.robots import load_robot
+    from robomill.io.robot.robots import load_robot
     from robomill.report.reproduction_row import Evidence
     from robomill.simulation.run import simulate
 

@@ -4,11 +4,11 @@ import numpy as np
 from scipy.special import stdtrit
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.identification.confidence import half_width
-from robomill.identification.least_squares import Fit, robust_fit, triangle
-from robomill.identification.models import Parameter
+from robomill.identification.fit.confidence import half_width
+from robomill.identification.fit.least_squares import Fit, robust_fit, triangle
+from robomill.identification.fit.models import Parameter
+from robomill.identification.fit.system import System
 from robomill.identification.result import Outlier, UnseenJoint
-from robomill.identification.system import System
 from robomill.provenance import Finding
 from robomill.units import format_number, format_percent, format_si
 

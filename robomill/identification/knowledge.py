@@ -11,8 +11,8 @@ from robomill.arguments import made_by
 from robomill.arrays import FloatArray, as_floats, digest, frozen
 from robomill.compliance.spring import Spring
 from robomill.errors import ProjectError
-from robomill.identification.model_error import ModelError
-from robomill.identification.models import Model
+from robomill.identification.fit.model_error import ModelError
+from robomill.identification.fit.models import Model
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.units import format_count

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import LoadTestError
-from robomill.identification.estimate import identify
+from robomill.identification.fit.estimate import identify
 from robomill.identification.load_test import LoadTests
 from robomill.identification.result import IdentificationResult
 from robomill.identification.synthesis import simulated_tests

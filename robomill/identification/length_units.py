@@ -6,9 +6,9 @@ import numpy as np
 
 from robomill.errors import LoadTestError
 from robomill.identification.configurations import OTHER_UNITS
+from robomill.identification.fit.models import Model
+from robomill.identification.fit.system import build_system
 from robomill.identification.load_test import LoadTests
-from robomill.identification.models import Model
-from robomill.identification.system import build_system
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.units import format_percent

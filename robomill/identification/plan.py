@@ -12,12 +12,12 @@ import numpy as np
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
-from robomill.identification.confidence import half_width
+from robomill.identification.fit.confidence import half_width
+from robomill.identification.fit.models import Parameter
+from robomill.identification.fit.system import build_system
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.models import Parameter
 from robomill.identification.result import IdentificationResult
 from robomill.identification.synthesis import three_directions
-from robomill.identification.system import build_system
 from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, world_from_pose

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.compliance.deflection import displacement
 from robomill.errors import RobomillError
-from robomill.identification.confidence import LEVEL, half_width
+from robomill.identification.fit.confidence import LEVEL, half_width
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
 from robomill.lazy import cached_property

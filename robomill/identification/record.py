@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.identification.found_points import FoundPoint
-from robomill.identification.lines_of_pull import LinesOfPull, lines_of_pull
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.pull_words import load_point, pull_findings, pull_report
+from robomill.identification.pull.found_points import FoundPoint
+from robomill.identification.pull.lines_of_pull import LinesOfPull, lines_of_pull
+from robomill.identification.pull.pull_words import load_point, pull_findings, pull_report
 from robomill.identification.result import IdentificationResult
 from robomill.provenance import Finding
 from robomill.robot.model import Robot

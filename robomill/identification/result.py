@@ -15,10 +15,10 @@ from robomill.compliance.springs.joint_bending import JointBending
 from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.errors import LoadTestError
 from robomill.frames import Columns
-from robomill.identification.found_points import FoundPoint, Offer
-from robomill.identification.model_error import ModelError
-from robomill.identification.models import Model, Parameter
-from robomill.identification.treatment import STANDARD, Treatment
+from robomill.identification.fit.model_error import ModelError
+from robomill.identification.fit.models import Model, Parameter
+from robomill.identification.fit.treatment import STANDARD, Treatment
+from robomill.identification.pull.found_points import FoundPoint, Offer
 from robomill.lazy import cached_property
 from robomill.provenance import Finding, Kind, Provenance
 from robomill.robot.model import Robot

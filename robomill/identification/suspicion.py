@@ -4,10 +4,10 @@ import numpy as np
 
 from robomill.compliance.gravity import GRAVITY
 from robomill.errors import LoadTestError
+from robomill.identification.fit.models import Model
+from robomill.identification.fit.system import build_system
 from robomill.identification.length_units import length_suspicions
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.models import Model
-from robomill.identification.system import build_system
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.units import to_si

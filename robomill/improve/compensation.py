@@ -11,7 +11,7 @@ from robomill.arguments import made_by
 from robomill.arrays import FloatArray, digest
 from robomill.errors import CompensationError
 from robomill.frames import Columns
-from robomill.identification.confidence import LEVEL
+from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.correction import COMPONENTS, Correction, correct
 from robomill.improve.errors import Errors, errors_of, measured
@@ -22,11 +22,11 @@ from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.provenance import Finding, named
 from robomill.simulation.band import deviation_band
-from robomill.simulation.gauge import Gauge
+from robomill.simulation.judging.gauge import Gauge
+from robomill.simulation.judging.verdict import judge
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, ran
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.verdict import judge
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource, PathSource
 from robomill.units import format_count, format_percent, format_si, from_si, to_si

@@ -13,9 +13,9 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.progress import checkpoint
+from robomill.simulation.judging.places import STEEP
 from robomill.simulation.led import led_beside, plunges, tip_error
 from robomill.simulation.meant import LINK
-from robomill.simulation.places import STEEP
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along
 from robomill.simulation.setup import SimulationSetup

@@ -11,7 +11,7 @@ from robomill.arguments import made_by
 from robomill.arrays import BoolArray, FloatArray, digest
 from robomill.errors import SetupError
 from robomill.frames import Columns
-from robomill.identification.confidence import LEVEL
+from robomill.identification.fit.confidence import LEVEL
 from robomill.improve.judged import Measure
 from robomill.improve.unsure import Input
 from robomill.lazy import cached_property

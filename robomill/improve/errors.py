@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.simulation.gauge import Gauge, Readings
-from robomill.simulation.gauge import gauge as gauge_at
+from robomill.simulation.judging.gauge import Gauge, Readings
+from robomill.simulation.judging.gauge import gauge as gauge_at
+from robomill.simulation.judging.verdict import judge
+from robomill.simulation.judging.verdict_words import Level
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.verdict import judge
-from robomill.simulation.verdict_words import Level
 from robomill.units import format_si
 from robomill.values import Value
 

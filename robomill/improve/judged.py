@@ -9,7 +9,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import SetupError
-from robomill.simulation.gauge import Readings
+from robomill.simulation.judging.gauge import Readings
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.source import wanted_of

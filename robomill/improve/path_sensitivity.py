@@ -10,7 +10,7 @@ from robomill.arguments import asked, made_by
 from robomill.arrays import FloatArray, digest, frozen, of_kind
 from robomill.errors import SetupError
 from robomill.frames import Columns
-from robomill.identification.models import Model
+from robomill.identification.fit.models import Model
 from robomill.improve.expansion import At, chosen_spin
 from robomill.improve.judged import refuse_corrected
 from robomill.improve.screening import screen

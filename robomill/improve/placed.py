@@ -14,9 +14,9 @@ from robomill.improve.screening import Asked, share_of, standing
 from robomill.kinematics.transforms import rotation_z, transform
 from robomill.lazy import cached_property
 from robomill.provenance import Finding, Provenance
+from robomill.simulation.judging.verdict_words import Level
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.verdict_words import Level
 from robomill.units import format_many, format_si, from_si, to_si
 from robomill.values import Tabled, Value
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import GCodeError
-from robomill.simulation.places import APART
+from robomill.simulation.judging.places import APART
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import stepped
 from robomill.simulation.setup import SimulationSetup

@@ -23,7 +23,7 @@ from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_ki
 from robomill.kinematics.spin import LEAST_DEVIATION
 from robomill.progress import checkpoint
 from robomill.robot.model import Robot
-from robomill.simulation.gauge import ALIKE, Readings
+from robomill.simulation.judging.gauge import ALIKE, Readings
 from robomill.simulation.mapped import total_compliance
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import compliances, sags, tool_frames

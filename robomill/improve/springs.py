@@ -9,8 +9,8 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.provenance import Finding, named
+from robomill.simulation.judging.places import STEEP
 from robomill.simulation.meant import LINK, SAME, linked
-from robomill.simulation.places import STEEP
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, stepped
 from robomill.toolpath.path import Toolpath

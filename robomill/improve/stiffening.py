@@ -9,9 +9,9 @@ from robomill.arrays import FloatArray, IntArray, frozen
 from robomill.improve.sensitivity import stiffened
 from robomill.progress import step
 from robomill.robot.model import Robot
+from robomill.simulation.judging.verdict_words import Verdict
 from robomill.simulation.run import Simulate, simulate
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.verdict_words import Verdict
 
 TWICE = 2.0
 

@@ -10,7 +10,7 @@ import numpy as np
 from robomill.arguments import asked
 from robomill.arrays import FloatArray, frozen, of_kind
 from robomill.errors import RobomillError, SetupError
-from robomill.identification.confidence import quantile
+from robomill.identification.fit.confidence import quantile
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.result import IdentificationResult
 from robomill.improve.draws import Tornado, Uncertainty
@@ -21,7 +21,7 @@ from robomill.improve.screening import share_of
 from robomill.improve.unsure import Spread, Unsure, unsure_of
 from robomill.progress import step
 from robomill.provenance import Finding
-from robomill.simulation.doubts import OTHERS, known_notes
+from robomill.simulation.origin.doubts import OTHERS, known_notes
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup

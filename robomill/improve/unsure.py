@@ -11,14 +11,14 @@ from robomill.arrays import FloatArray, frozen
 from robomill.cutting.force import ForceModel
 from robomill.cutting.process import ProcessForce
 from robomill.errors import SetupError
+from robomill.identification.fit.models import Model
 from robomill.identification.knowledge import Knowledge
-from robomill.identification.models import Model
 from robomill.kinematics.transforms import rotation_z, transform
 from robomill.progress import checkpoint
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity, quantities, quantity, settle
 from robomill.robot.model import Robot
-from robomill.simulation.origins import robot_lengths
+from robomill.simulation.origin.origins import robot_lengths
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import ran
 from robomill.simulation.setup import SimulationSetup

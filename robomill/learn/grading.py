@@ -13,7 +13,7 @@ from pathlib import Path
 from robomill.arguments import asked
 from robomill.errors import LearnError, RobomillError
 from robomill.files import check_place, shown_place
-from robomill.io.robots import robot_names
+from robomill.io.robot.robots import robot_names
 from robomill.learn.answers import Answers, plain_name, read_answers
 from robomill.learn.exercise import Exercise
 from robomill.learn.marking import MOST, Judgement, check

@@ -10,7 +10,7 @@ from functools import lru_cache
 from robomill.arguments import asked
 from robomill.errors import LearnError
 from robomill.identification.load_test import LoadTests
-from robomill.io.robots import load_robot, robot_names
+from robomill.io.robot.robots import load_robot, robot_names
 from robomill.learn import poses, readings, remedies
 from robomill.learn.draws import Draws, student_number
 from robomill.learn.exercise import Exercise, Slip

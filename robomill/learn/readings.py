@@ -12,7 +12,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import displacement
-from robomill.identification.estimate import identify
+from robomill.identification.fit.estimate import identify
 from robomill.identification.load_test import LoadTests
 from robomill.identification.synthesis import SYNTHETIC
 from robomill.kinematics.jacobian import geometric_jacobian

@@ -14,8 +14,8 @@ from robomill.compliance.deflection import deflection, displacement, shares_alon
 from robomill.cutting.forces.mechanistic import MechanisticForce, MechanisticRow
 from robomill.kinematics.dexterity import task_matrix
 from robomill.learn.equations import column, component, matrix, product, settled, texts
+from robomill.simulation.judging.verdict_words import Reading
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.verdict_words import Reading
 from robomill.units import from_si, unit_label
 
 SAME = 1e-9  # m, N: what a law gives otherwise is not what was simulated

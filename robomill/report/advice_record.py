@@ -4,7 +4,7 @@ from typing import Any
 
 from robomill.improve.advice import Advice, Way
 from robomill.report.design_record import deviations
-from robomill.simulation.assumptions import assumed_of_setup
+from robomill.simulation.origin.assumptions import assumed_of_setup
 from robomill.units import from_si
 from robomill.version import __version__
 

@@ -5,7 +5,7 @@ from typing import Any
 from robomill.improve.compensation import Compensation, reversals
 from robomill.improve.errors import Errors, level_of
 from robomill.report.records import shown
-from robomill.simulation.assumptions import assumed_of_setup
+from robomill.simulation.origin.assumptions import assumed_of_setup
 from robomill.units import format_count, format_value
 from robomill.version import __version__
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from robomill.improve.design import Design
 from robomill.report.records import shown
-from robomill.simulation.assumptions import assumed_of_setup
+from robomill.simulation.origin.assumptions import assumed_of_setup
 from robomill.simulation.result import SimulationResult
 from robomill.version import __version__
 

@@ -11,7 +11,7 @@ from robomill.compliance.deflection import shares_along
 from robomill.report.drawn import Axes, svg
 from robomill.report.tags import Markup, joined, tag
 from robomill.simulation.result import SimulationResult
-from robomill.surface.groove import GrooveSection
+from robomill.surface.sections.groove import GrooveSection
 from robomill.units import format_limit, format_percent, format_si, format_value, from_si
 
 WIDE, HALF = 720, 352  # units of a picture over the whole width, and of one beside another

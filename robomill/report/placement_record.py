@@ -5,7 +5,7 @@ from typing import Any
 from robomill.improve.placed import WHY, Place, Placement
 from robomill.report.design_record import deviation_words
 from robomill.report.records import shown
-from robomill.simulation.assumptions import assumed_of_setup
+from robomill.simulation.origin.assumptions import assumed_of_setup
 from robomill.version import __version__
 
 NAMES = ("best", "now", "median", "worst")

@@ -6,8 +6,8 @@ from typing import Any
 
 from robomill.provenance import Finding, named
 from robomill.report.reproduction_row import WORDS as WORDS_OF_STATUS
-from robomill.simulation.strays import WORDS
-from robomill.surface.section_law import MEASURES
+from robomill.simulation.judging.strays import WORDS
+from robomill.surface.sections.section_law import MEASURES
 from robomill.units import format_beside, format_limit, format_percent, format_share, format_value, from_si, to_si
 
 AXES = "XYZ"

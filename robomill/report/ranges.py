@@ -7,15 +7,15 @@ from functools import cache
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.identification.confidence import LEVEL
+from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.provenance import Kind
 from robomill.report.paper_lengths import over_lengths
 from robomill.simulation.band import deviation_band, size_band
+from robomill.simulation.judging.verdict_words import Reading
+from robomill.simulation.origin.spread import alloy_spread
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import alloy_spread
 from robomill.simulation.tooth import tooth
-from robomill.simulation.verdict_words import Reading
 from robomill.units import format_percent
 
 Ends = tuple[float, float]

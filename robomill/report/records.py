@@ -13,7 +13,7 @@ from robomill.kinematics.inverse import IKResult
 from robomill.kinematics.result import beyond_limits
 from robomill.report.settled import settled
 from robomill.robot.model import Robot
-from robomill.simulation.assumptions import assumed_of_program, assumed_of_robot
+from robomill.simulation.origin.assumptions import assumed_of_program, assumed_of_robot
 from robomill.toolpath.path import Toolpath
 from robomill.units import from_si
 from robomill.workspace.fields import Field

@@ -16,7 +16,7 @@ from robomill.report.compensation_record import compensation_record
 from robomill.report.design_record import design_record
 from robomill.report.placement_record import placement_record
 from robomill.report.turning_record import turning_record
-from robomill.simulation.verdict_words import TITLES
+from robomill.simulation.judging.verdict_words import TITLES
 from robomill.units import format_value
 
 Remedy = Advice | Compensation | Design | Placement | Turning

@@ -9,7 +9,7 @@ from robomill.identification.result import IdentificationResult
 from robomill.lazy import cached_property
 from robomill.report.paper import Statement, Status
 from robomill.robot.model import Robot
-from robomill.simulation.assumptions import assumed_of_robot
+from robomill.simulation.origin.assumptions import assumed_of_robot
 from robomill.simulation.result import SimulationResult
 from robomill.workspace.fields import ComplianceMap, compliance_map
 from robomill.workspace.grid import PAPER_BOX, plane_grid

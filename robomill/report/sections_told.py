@@ -7,10 +7,10 @@ from robomill.provenance import Finding, named
 from robomill.report.plain import reading_share, reading_value
 from robomill.report.remedies_told import Told
 from robomill.report.tags import Markup, joined, table, tag
-from robomill.simulation.strays import WORDS
-from robomill.simulation.verdict_words import TITLES
-from robomill.surface.groove import MEASURED
-from robomill.surface.section_law import MEASURES
+from robomill.simulation.judging.strays import WORDS
+from robomill.simulation.judging.verdict_words import TITLES
+from robomill.surface.sections.groove import MEASURED
+from robomill.surface.sections.section_law import MEASURES
 from robomill.units import format_count, format_percent, format_share, format_value
 
 READINGS = {"wall": "Wall error", "floor": "Floor error", "end": "End of the cut", "feed": "Along the feed"}

@@ -10,13 +10,13 @@ from robomill.report.lines_record import lines_record
 from robomill.report.paper_lengths import TRIED, over_lengths
 from robomill.report.ranges import Range, ranges
 from robomill.report.records import shown
-from robomill.simulation.assumptions import assumed_of_setup
-from robomill.simulation.origins import sources
+from robomill.simulation.origin.assumptions import assumed_of_setup
+from robomill.simulation.origin.origins import sources
+from robomill.simulation.origin.spread import alloy_spread, peak_force
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.simulation.stations import decides_at, largest_deviations, nearest_feed, section_at
 from robomill.simulation.tooth import LEFT_OUT, tooth
-from robomill.surface.groove import MEASURED, GrooveSection
+from robomill.surface.sections.groove import MEASURED, GrooveSection
 from robomill.toolpath.source import wanted_of
 from robomill.version import __version__
 

@@ -5,7 +5,7 @@ from typing import Any
 from robomill.improve.turning import Turning
 from robomill.report.placement_record import numbers, place_record
 from robomill.report.records import shown
-from robomill.simulation.assumptions import assumed_of_setup
+from robomill.simulation.origin.assumptions import assumed_of_setup
 from robomill.version import __version__
 
 OF_PLACE = ("zero_mm", "yaw_deg")

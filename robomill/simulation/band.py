@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
-from robomill.identification.confidence import LEVEL
+from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.propagation import Uncertain, uncertain_by_map, uncertain_deflection

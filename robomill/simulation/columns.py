@@ -7,8 +7,8 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.frames import Columns
-from robomill.simulation.gauge import Gauge
-from robomill.simulation.seen import Run
+from robomill.simulation.judging.gauge import Gauge
+from robomill.simulation.judging.seen import Run
 from robomill.units import from_si
 
 

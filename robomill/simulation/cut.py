@@ -16,8 +16,8 @@ from robomill.provenance import Finding
 from robomill.simulation.samples import clock, ways
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import tooling
-from robomill.surface.engagement import Engagement, engage
-from robomill.surface.march import March
+from robomill.surface.contact.engagement import Engagement, engage
+from robomill.surface.contact.march import March
 from robomill.surface.stock_unit import unit_doubt
 from robomill.toolpath.path import ROTARY_ASKED, Toolpath
 from robomill.units import format_short

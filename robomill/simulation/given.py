@@ -21,8 +21,8 @@ from robomill.kinematics.asked import in_the_foot
 from robomill.provenance import Provenance, stated_blocks
 from robomill.quantities import Quantity
 from robomill.robot.model import Robot, check_robot
-from robomill.simulation import sources
-from robomill.simulation.sources import AROUND, UNSTATED_TOLERANCE, unstated
+from robomill.simulation.origin import sources
+from robomill.simulation.origin.sources import AROUND, UNSTATED_TOLERANCE, unstated
 from robomill.spelled import one_of, refuse_slip
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath

@@ -10,7 +10,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tool import DISH
 from robomill.simulation.cut import Led
-from robomill.simulation.places import STEEP
+from robomill.simulation.judging.places import STEEP
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import ways
 from robomill.toolpath.path import Toolpath

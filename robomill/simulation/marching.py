@@ -15,8 +15,8 @@ from robomill.progress import checkpoint
 from robomill.simulation.coupling import Coupling, Settled, settle
 from robomill.simulation.cut import Led, met_conditions, through_stock
 from robomill.simulation.setup import SimulationSetup
-from robomill.surface.engagement import engagement
-from robomill.surface.march import March
+from robomill.surface.contact.engagement import engagement
+from robomill.surface.contact.march import March
 from robomill.toolpath.path import Toolpath
 
 

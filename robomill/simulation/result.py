@@ -19,24 +19,24 @@ from robomill.frames import Columns
 from robomill.kinematics.inverse import IKResult
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
-from robomill.simulation.assumptions import Assumed, assumed_of_setup
 from robomill.simulation.columns import path_columns
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
-from robomill.simulation.doubts import frame_notes, known_notes, unit_doubts
-from robomill.simulation.gauge import Gauge, gauge
+from robomill.simulation.judging.gauge import Gauge, gauge
+from robomill.simulation.judging.strays import Stray, stray
+from robomill.simulation.judging.verdict import judge, thin_wall_notes
+from robomill.simulation.judging.verdict_words import Verdict
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.meant import corrected_notes, jump_notes
+from robomill.simulation.origin.assumptions import Assumed, assumed_of_setup
+from robomill.simulation.origin.doubts import frame_notes, known_notes, unit_doubts
 from robomill.simulation.posture import posture_notes, turned_notes
 from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.steadiness import steadiness
-from robomill.simulation.strays import Stray, stray
 from robomill.simulation.tools import feed_notes, tool_notes, tooling
-from robomill.simulation.verdict import judge, thin_wall_notes
-from robomill.simulation.verdict_words import Verdict
 from robomill.surface.deviation import Deviation, deviation
-from robomill.surface.groove import GrooveSection, GrooveSections, groove_sections
+from robomill.surface.sections.groove import GrooveSection, GrooveSections, groove_sections
 from robomill.surface.swept import CutPath
 from robomill.surface.zmap import ZMap, cut
 from robomill.toolpath.path import Toolpath

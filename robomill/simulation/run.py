@@ -25,7 +25,8 @@ from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
 from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import Led, cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
-from robomill.simulation.leaning import leaning, lying
+from robomill.simulation.judging.leaning import leaning, lying
+from robomill.simulation.judging.sinking import clear, sinking, told_to_sink
 from robomill.simulation.led import against, led_beside, plunges
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
@@ -33,7 +34,6 @@ from robomill.simulation.meant import linked, meant, straight_on
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import sampled, ways
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.sinking import clear, sinking, told_to_sink
 from robomill.simulation.threads import threads_in_cut
 from robomill.simulation.tools import farther, held
 from robomill.simulation.turning import turns_in_cut

@@ -26,7 +26,7 @@ from robomill.provenance import Provenance
 from robomill.quantities import quantity, settle, switch, told
 from robomill.robot.model import Robot
 from robomill.simulation import given
-from robomill.simulation.sources import changed_sources, stated
+from robomill.simulation.origin.sources import changed_sources, stated
 from robomill.spelled import Replaceable, in_units
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath

@@ -5,10 +5,10 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.compliance.deflection import shares_along
+from robomill.simulation.origin.spread import AlloySpread, alloy_spread
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import AlloySpread, alloy_spread
-from robomill.surface.groove import GrooveSection
-from robomill.surface.metrology import GrooveProfile
+from robomill.surface.sections.groove import GrooveSection
+from robomill.surface.sections.metrology import GrooveProfile
 from robomill.surface.swept import station_at
 from robomill.toolpath.path import Toolpath
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.simulation.origin.spread import peak_force
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import peak_force
 
 LEFT_OUT = (
     "run-out of the teeth",

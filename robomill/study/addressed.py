@@ -19,8 +19,8 @@ import tomli_w
 from robomill.errors import RobomillError, StudyError
 from robomill.improve.ways import fed
 from robomill.io.materials import material_to_toml
-from robomill.io.projects import setup_from_table, setup_to_toml
-from robomill.io.robots import robot_to_toml
+from robomill.io.robot.robots import robot_to_toml
+from robomill.io.setups.projects import setup_from_table, setup_to_toml
 from robomill.io.tables import parse_toml
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.source import PointsSource

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from robomill.frames import Columns
-from robomill.simulation.assumptions import assumed_of_setup
+from robomill.simulation.origin.assumptions import assumed_of_setup
 from robomill.study.responses import WORDS
 from robomill.study.running import StudyResult
 from robomill.units import format_count, format_si

@@ -6,7 +6,7 @@ from typing import Any
 
 import tomli_w
 
-from robomill.io.projects import setup_to_toml
+from robomill.io.setups.projects import setup_to_toml
 from robomill.io.tables import parse_toml
 from robomill.study.described import FORMAT, VERSION, Study
 from robomill.study.design import DISTRIBUTIONS, Parameter

@@ -9,7 +9,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.tool import Cutter
 from robomill.lazy import cached_property
 from robomill.progress import slices
-from robomill.surface.block_kernels import Blocks
+from robomill.surface.contact.block_kernels import Blocks
 from robomill.surface.outline_kernels import Tracks, floors_left, walls_left
 
 MOST_SQUARES = 1_000_000

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from robomill.compiled import In1, In2, Out1, Out2, OutInt1, kernel, part
 from robomill.cutting.profile_kernels import clip, radius_at, shape_of
-from robomill.surface.block_kernels import NOTHING, Blocks, depth_in, seen_box, span
+from robomill.surface.contact.block_kernels import NOTHING, Blocks, depth_in, seen_box, span
 from robomill.surface.envelope_kernels import Move, move_between, nearest, swept_height, swept_upright
 
 ROUNDS = 6  # of growing the union along a line: a wall seldom stands behind more than two tracks

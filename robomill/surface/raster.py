@@ -11,8 +11,8 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.surface.stock import Cells, Stock
 
 if TYPE_CHECKING:
-    from robomill.surface.material_kernels import Facets
-    from robomill.surface.relief_kernels import Relief
+    from robomill.surface.contact.material_kernels import Facets
+    from robomill.surface.contact.relief_kernels import Relief
 
 SQUARES = 64  # along the longer side of a mesh
 RELIEF, MARGIN = 0.2, 0.12  # of the radius: the side of a square of the relief, and how far about it its bounds hold
@@ -70,7 +70,7 @@ def stock_layers(stock: Stock, cells: Cells, spare: int = 0) -> tuple[FloatArray
     -inf and inf where there are no more layers. Crossings of a mesh that do not pair (an open mesh) reach down to the
     bottom.
     """
-    from robomill.surface.material_kernels import Facets
+    from robomill.surface.contact.material_kernels import Facets
 
     shape, bottom = (cells.nx, cells.ny), float(stock.lower[2])
     if stock.triangles is None:
@@ -92,7 +92,7 @@ def stock_layers(stock: Stock, cells: Cells, spare: int = 0) -> tuple[FloatArray
 def relief_of(stock: Stock, radius: float) -> Relief:
     """Squares over a stock for cutters of up to this ``radius`` m: a block is full up to its top, of a mesh it is known
     only that nothing stands above it."""
-    from robomill.surface.relief_kernels import Relief
+    from robomill.surface.contact.relief_kernels import Relief
 
     many = np.clip(np.round(stock.size[:2] / (RELIEF * radius)), 1, MOST_OF_RELIEF).astype(np.int64)
     top = float(stock.upper[2])
@@ -103,7 +103,7 @@ def relief_of(stock: Stock, radius: float) -> Relief:
 
 def binned(stock: Stock) -> Facets:
     """A mesh with its triangles sorted into squares of its plan, so that few are asked of one point."""
-    from robomill.surface.material_kernels import Facets
+    from robomill.surface.contact.material_kernels import Facets
 
     triangles = np.array(stock.triangles)
     size = float(stock.size[:2].max()) / SQUARES

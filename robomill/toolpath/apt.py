@@ -15,7 +15,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import GCodeError
 from robomill.toolpath.apt_moves import NUMBER, Arc, Drilling, arc_of, drilling_of, feed_of, frame_of, numbers_of
 from robomill.toolpath.gcode.findings import NO_UNITS, Findings
-from robomill.toolpath.gcode.motion_rules import MOST
+from robomill.toolpath.gcode.rules.motion_rules import MOST
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
 from robomill.units import to_si

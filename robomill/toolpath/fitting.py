@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.toolpath.gcode.motion_rules import axes
+from robomill.toolpath.gcode.rules.motion_rules import axes
 
 FEWEST = 3  # points of an arc that is worth fitting
 WIDEST = math.radians(330.0)  # of one arc: nearly closed ones are fitted in halves

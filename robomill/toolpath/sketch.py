@@ -279,7 +279,8 @@ def centre_of(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray | None:
 
 
 def _chords(start: FloatArray, end: FloatArray, centre: FloatArray, *, clockwise: bool) -> FloatArray:
-    from robomill.toolpath.gcode import arcs, motion_rules  # the one place where arcs become chords
+    from robomill.toolpath.gcode import arcs
+    from robomill.toolpath.gcode.rules import motion_rules  # the one place where arcs become chords
 
     def lifted(point: FloatArray) -> FloatArray:
         return np.array([[point[0], point[1], 0.0]])

@@ -39,13 +39,13 @@ Rules of the house:
   ``st.warning``. HTML is a ``markup.Html``: ``ui.note(pieces.badge("paper"), text)``; an f-string is words again.
 """
 
-from robomill.ui.cached import kept_figure
-from robomill.ui.inputs import number
+from robomill.ui.entry.inputs import number
 from robomill.ui.pieces import Tile, attempt, figure, headline, note, split, thirds, tiles
 from robomill.ui.project import Project, View
-from robomill.ui.running import result
 from robomill.ui.shell import begin, dark
 from robomill.ui.verdict import open_question, tip_tile, verdict_sentence, verdict_tiles
+from robomill.ui.work.cached import kept_figure
+from robomill.ui.work.running import result
 
 __all__ = [
     "Project",

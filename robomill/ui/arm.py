@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from robomill.arrays import digest
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, pieces, session, shell
+from robomill.ui import pieces, session, shell
+from robomill.ui.work import cached
 from robomill.units import format_times
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
 from robomill.viz.views import arm_scene

@@ -8,13 +8,15 @@ import numpy as np
 import streamlit as st
 
 from robomill.errors import RobomillError
+from robomill.simulation.judging.verdict_words import TIGHT_FROM, Verdict
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.verdict_words import TIGHT_FROM, Verdict
-from robomill.ui import inputs, job, other, pieces, running, session, verdict
-from robomill.ui.job import Underway
+from robomill.ui import other, pieces, session, verdict
+from robomill.ui.entry import inputs
 from robomill.ui.markup import Html
 from robomill.ui.pieces import Tile
+from robomill.ui.work import job, running
+from robomill.ui.work.job import Underway
 from robomill.units import format_beside, format_limit, format_share, format_si
 
 ENDS_AT, MOST = 1.25, 6.0  # of the tolerance: where the gauge ends, where it ends at most

@@ -12,9 +12,9 @@ from functools import lru_cache
 
 from robomill.arrays import digest
 from robomill.errors import ProjectError
-from robomill.identification.folds import LEAVE_OUT
-from robomill.identification.models import MODELS
-from robomill.identification.treatment import AUTO, BENDING_JOINTS, WEIGHTS, Treatment
+from robomill.identification.fit.folds import LEAVE_OUT
+from robomill.identification.fit.models import MODELS
+from robomill.identification.fit.treatment import AUTO, BENDING_JOINTS, WEIGHTS, Treatment
 from robomill.io.samples import samples_dir
 from robomill.lazy import cached_property
 from robomill.quantities import choice, quantity, settle, switch, whole

@@ -6,8 +6,8 @@ from robomill.errors import RobomillError
 from robomill.paper import Point
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
-from robomill.ui import running
-from robomill.ui.job import Underway
+from robomill.ui.work import running
+from robomill.ui.work.job import Underway
 
 
 def path_there(setup: SimulationSetup) -> Toolpath | None:

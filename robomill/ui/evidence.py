@@ -4,13 +4,14 @@ import dataclasses
 
 import streamlit as st
 
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.paper import SLOT
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import sideways
-from robomill.ui import cached, pieces, running
+from robomill.ui import pieces
 from robomill.ui.project import DEFAULT_PRESET, Project, preset_setup
+from robomill.ui.work import cached, running
 from robomill.units import from_si
 from robomill.viz.evidence import Claim, evidence_figure
 

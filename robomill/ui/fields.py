@@ -18,10 +18,10 @@ from robomill.progress import slices
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.ui import session
-from robomill.ui.cached import commons, name_of, shared
-from robomill.ui.commons import NOTHING
 from robomill.ui.cut import middle_of_cut
 from robomill.ui.project import MapView
+from robomill.ui.work.cached import commons, name_of, shared
+from robomill.ui.work.commons import NOTHING
 from robomill.units import format_count, format_si, from_si, to_si
 from robomill.viz.maps import Scale
 from robomill.viz.planes import Codes, coded

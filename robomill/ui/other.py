@@ -13,12 +13,13 @@ from dataclasses import dataclass, replace
 from robomill.errors import RobomillError
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import cached, job, pieces, running, session
-from robomill.ui.job import Underway
+from robomill.ui import pieces, session
 from robomill.ui.keeping import autosave
 from robomill.ui.keeping.shelf import PLACE
 from robomill.ui.pieces import Tile
 from robomill.ui.project import Project, preset_setup, presets, project_from_toml
+from robomill.ui.work import cached, job, running
+from robomill.ui.work.job import Underway
 
 EXAMPLE, KEPT, HERE = "example", "kept", "here"  # where B is from; "here" is what only this session has
 HELD, READ, RUN = "other.held", "other.read", "other.run"

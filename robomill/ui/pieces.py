@@ -15,9 +15,10 @@ from robomill.errors import RobomillError
 from robomill.progress import slices
 from robomill.provenance import Provenance
 from robomill.report.settled import settled
-from robomill.ui import beside, cached, session
-from robomill.ui.job import Underway
+from robomill.ui import session
 from robomill.ui.markup import Html, as_html, as_markdown, quiet, unparted
+from robomill.ui.work import beside, cached
+from robomill.ui.work.job import Underway
 from robomill.units import split_unit
 
 if TYPE_CHECKING:

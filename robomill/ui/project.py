@@ -1,6 +1,6 @@
 """The project: one frozen value that holds everything a person decided, and its file.
 
-The file is the set-up of ``io.projects`` with the tables ``[view]``, ``[maps]``, ``[experiments]`` and
+The file is the set-up of ``io.setups.projects`` with the tables ``[view]``, ``[maps]``, ``[experiments]`` and
 ``[uncertainty]``; a file that lacks them, or a bare set-up, opens as well.
 """
 
@@ -19,10 +19,10 @@ from robomill.arrays import FloatArray, digest
 from robomill.compliance.components import COMPONENTS
 from robomill.errors import ProjectError
 from robomill.identification.knowledge import Knowledge
-from robomill.io.declared import from_table, to_table
-from robomill.io.knowledge import knowledge_from_table
-from robomill.io.projects import OF_THE_APP, load_setup, open_project, setup_to_toml
 from robomill.io.samples import samples_dir
+from robomill.io.setups.declared import from_table, to_table
+from robomill.io.setups.knowledge import knowledge_from_table
+from robomill.io.setups.projects import OF_THE_APP, load_setup, open_project, setup_to_toml
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.paper import BOX
 from robomill.quantities import choice, quantities, settle, switch
@@ -33,7 +33,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.spelled import Replaceable
 from robomill.ui.bench import Bench
 from robomill.units import in_lengths, unit_label
-from robomill.viz.picture import CAMERAS
+from robomill.viz.rendered.picture import CAMERAS
 from robomill.workspace.quantities import map_quantities
 from robomill.workspace.region import holds_paper_box
 

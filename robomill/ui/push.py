@@ -16,8 +16,9 @@ from robomill.improve.sensitivity import scaled_shares
 from robomill.paper import SLOT
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import declared, inputs, session
+from robomill.ui import session
 from robomill.ui.cut import middle_of_cut
+from robomill.ui.entry import declared, inputs
 from robomill.ui.point import InHand, default_point, holds, in_hand
 from robomill.ui.project import MapView, View
 from robomill.ui.verdict import decides_at

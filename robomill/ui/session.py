@@ -21,12 +21,12 @@ from robomill.identification.knowledge import Knowledge
 from robomill.provenance import GIVEN, Provenance
 from robomill.robot.model import Robot
 from robomill.robot.sources import changed_blocks
+from robomill.simulation.origin.sources import changed_sources
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.sources import changed_sources
 from robomill.ui.bench import Bench
 from robomill.ui.closing import while_open
-from robomill.ui.commons import weight
 from robomill.ui.project import DEFAULT_PRESET, MapView, Project, preset_setup, project_from_toml
+from robomill.ui.work.commons import weight
 
 KEY = "robomill"
 EDITED = Provenance("user", "entered in the app")

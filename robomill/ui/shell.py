@@ -7,14 +7,16 @@ import streamlit as st
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import SETUP
 from robomill.io.texts import read_text
-from robomill.ui import bar, declared, inputs, menu, pieces, preparing, rendered, session
+from robomill.ui import bar, menu, pieces, session
 from robomill.ui.closing import settle
-from robomill.ui.commons import weight
+from robomill.ui.entry import declared, inputs
 from robomill.ui.keeping import against, autosave, snapshots
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
 from robomill.ui.project import MAX_PROJECT_MB, SUFFIX, Project, preset_setup, presets, project_to_toml
 from robomill.ui.sharing import arriving, buttons
+from robomill.ui.work import preparing, rendered
+from robomill.ui.work.commons import weight
 from robomill.viz.theme import palette
 
 BYTE_S = 4e-8  # s that a byte of a project takes to be written

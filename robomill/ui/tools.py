@@ -13,14 +13,16 @@ from robomill.arrays import IntArray
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
 from robomill.errors import CuttingError, RobomillError
-from robomill.io.declared import write_quantity
+from robomill.io.setups.declared import write_quantity
+from robomill.io.setups.tool_tables import UNITS, read_tool_table, tools_from_table, tools_to_tables
 from robomill.io.tables import Table
-from robomill.io.tool_tables import UNITS, read_tool_table, tools_from_table, tools_to_tables
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.tools import cutting_numbers
 from robomill.toolpath.source import PathSource
-from robomill.ui import cached, declared, grid, inputs, pieces, running, session
-from robomill.ui.box import NumberBox, box_of
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, grid, inputs
+from robomill.ui.entry.box import NumberBox, box_of
+from robomill.ui.work import cached, running
 from robomill.units import unit_label
 
 FILE, UNIT, TABLE, ODD = "milling.tools.file", "milling.tools.unit", "milling.tools.table", "milling.tools.odd"

@@ -9,13 +9,14 @@ import streamlit as st
 from robomill.arrays import digest
 from robomill.identification.knowledge import Knowledge
 from robomill.report.ranges import Range, ranges
+from robomill.simulation.judging.verdict_words import TITLES, Reading, Verdict, said, way
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import decides_at as decides_at
 from robomill.simulation.tooth import LEFT_OUT
-from robomill.simulation.verdict_words import TITLES, Reading, Verdict, said, way
-from robomill.ui import cached, other, pieces, session, uncertainty
+from robomill.ui import other, pieces, session, uncertainty
 from robomill.ui.pieces import Tile
 from robomill.ui.project import Project
+from robomill.ui.work import cached
 from robomill.units import format_beside, format_count, format_limit, format_many, format_share, format_si
 
 WORDS = TITLES

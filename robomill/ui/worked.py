@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 import streamlit as st
 
 from robomill.learn.worked import Worked
-from robomill.ui import inputs, pieces
+from robomill.ui import pieces
+from robomill.ui.entry import inputs
 
 OPEN = "worked.open"
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.units import format_many, format_significant, from_si, to_si, unit_label
-from robomill.viz import framing, solids
+from robomill.viz import solids
 from robomill.viz.chart import Chart, Trace, drawn
+from robomill.viz.rendered import framing
 from robomill.viz.theme import axis3d, axis_colours, figure, palette
 
 EYE = (1.30, -0.95, 0.62)

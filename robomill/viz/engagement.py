@@ -4,8 +4,8 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.cutting.force import ForceSpread
+from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import AlloySpread
 from robomill.units import from_si
 from robomill.viz.along import Along, at_feed
 from robomill.viz.chart import Chart

@@ -25,7 +25,7 @@ from robomill.surface.history import history
 from robomill.units import from_si
 from robomill.viz import solids
 from robomill.viz.arm import displacement_scale
-from robomill.viz.scene import best_angle
+from robomill.viz.rendered.scene import best_angle
 
 CELLS = 40_000  # as many as a screen shows of a part 700 pixels wide
 LOWERINGS = 400_000  # of all exaggerations together

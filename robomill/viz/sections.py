@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.surface.section_law import Kind
+from robomill.surface.sections.section_law import Kind
 from robomill.units import format_value
 from robomill.viz.chart import Chart
 from robomill.viz.theme import axis, figure, palette, rgba, say

@@ -9,10 +9,10 @@ from robomill.kinematics.forward import joint_frames
 from robomill.simulation.enlarged import Enlarged
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import place_at
-from robomill.surface.groove import GrooveSection
+from robomill.surface.sections.groove import GrooveSection
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.arm import ArmScene
-from robomill.viz.picture import SurfacePicture
+from robomill.viz.rendered.picture import SurfacePicture
 from robomill.viz.sections import SectionDrawing
 
 

@@ -12,10 +12,10 @@ import numpy as np
 
 import robomill as rm
 from robomill.identification.load_test import LoadTests
-from robomill.identification.models import Model
+from robomill.identification.fit.models import Model
 from robomill.identification.plan import box_candidates
 from robomill.identification.synthesis import three_directions
-from robomill.io.load_test_sheets import load_tests_to_csv
+from robomill.io.measured.load_test_sheets import load_tests_to_csv
 from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.transforms import world_from_pose
 from robomill.units import from_si, to_si

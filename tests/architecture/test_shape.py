@@ -33,8 +33,8 @@ RUNNING = (
     "robomill/toolpath/gcode/",
     "robomill/toolpath/apt.py",
     "robomill/progress.py",
-    "robomill/viz/render_queue.py",
-    "robomill/viz/worker.py",
+    "robomill/viz/rendered/render_queue.py",
+    "robomill/viz/rendered/worker.py",
 )
 # What only readers of the public API, a library or an attribute of somebody else's object uses, with the reason.
 UNUSED = {

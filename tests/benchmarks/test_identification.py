@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import curve_fit
 
 import robomill as rm
-from robomill.identification.models import Model
-from robomill.identification.system import build_system
+from robomill.identification.fit.models import Model
+from robomill.identification.fit.system import build_system
 from robomill.io.samples import samples_dir
 from tests.benchmarks.clock import fastest
 

@@ -9,9 +9,9 @@ import pytest
 import shapely
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.engagement import engage
-from robomill.surface.groove import groove_sections
-from robomill.surface.march import March
+from robomill.surface.contact.engagement import engage
+from robomill.surface.contact.march import March
+from robomill.surface.sections.groove import groove_sections
 from robomill.surface.stock import Stock
 from robomill.surface.swept import CutPath
 from robomill.surface.zmap import cut

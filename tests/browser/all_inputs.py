@@ -8,8 +8,8 @@ from typing import Any
 
 import streamlit as st
 
-from robomill.ui import inputs
-from robomill.ui.box import NumberBox
+from robomill.ui.entry import inputs
+from robomill.ui.entry.box import NumberBox
 
 OPTIONS = {name: name for name in "abc"}
 BROKEN_OFF = (3, 7, 11)  # ticks at which the whole page is drawn anew

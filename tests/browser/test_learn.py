@@ -8,7 +8,7 @@ import pytest
 from screenshots import idle
 
 from robomill.ui.learn.lesson import ASPECT
-from robomill.viz.framing import FILL
+from robomill.viz.rendered.framing import FILL
 
 pytestmark = pytest.mark.browser
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 
 pytestmark = pytest.mark.browser
 

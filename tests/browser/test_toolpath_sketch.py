@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.simulation.run import simulate
 from robomill.toolpath.gcode import read_gcode
 from robomill.toolpath.sketch import Element, Sketch

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from robomill.cli import main
-from robomill.io.robots import load_robot, robot_to_toml
+from robomill.io.robot.robots import load_robot, robot_to_toml
+from robomill.io.robot.urdf_writer import robot_to_urdf
 from robomill.io.samples import samples_dir
-from robomill.io.urdf_writer import robot_to_urdf
 
 FLUTE = samples_dir() / "paper_flute"
 TESTS = samples_dir() / "load_tests" / "nine_points.csv"

@@ -5,7 +5,7 @@ import pytest
 
 from robomill.compliance.gravity import GRAVITY, LinkMasses, gravity_sag, gravity_torques
 from robomill.errors import RobotError
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 from robomill.kinematics.forward import joint_frames, tool_pose
 from tests.robot.written_otherwise import with_blocked
 

@@ -15,7 +15,7 @@ from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.cutting.tool import Cutter
 from robomill.errors import RobotError
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 from robomill.kinematics.forward import joint_frames, tool_pose
 from robomill.kinematics.jacobian import geometric_jacobian
 from tests.identification.cables import Arm

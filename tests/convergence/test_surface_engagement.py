@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from robomill.cutting.tool import Cutter
-from robomill.surface.engagement import engage
-from robomill.surface.march import March
+from robomill.surface.contact.engagement import engage
+from robomill.surface.contact.march import March
 from robomill.surface.stock import Stock
 
 R = 0.004

@@ -97,7 +97,8 @@ def test_every_key_that_a_reader_names_in_the_source_stands_in_the_file_formats(
         "tables",
         "read",
     )
-    for file in ("projects", "robot_reader", "materials", "force_models", "measured_maps", "workpiece", "tool_tables"):
+    setups = [f"setups/{name}" for name in ("projects", "force_models", "workpiece", "tool_tables")]
+    for file in (*setups, "robot/reader", "materials", "measured/measured_maps"):
         tree = ast.parse((ROOT / "robomill" / "io" / f"{file}.py").read_text(encoding="utf-8"))
         for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
             if not (isinstance(call.func, ast.Attribute) and call.func.attr in readers):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from robomill.identification.fit.models import Model
 from robomill.identification.knowledge import Knowledge
-from robomill.identification.models import Model
 from robomill.kinematics.jacobian import geometric_jacobian
 
 

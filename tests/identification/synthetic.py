@@ -7,8 +7,8 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.compliance.deflection import displacement
 from robomill.errors import LoadTestError
+from robomill.identification.fit.models import Model
 from robomill.identification.load_test import LoadTests
-from robomill.identification.models import Model
 from robomill.identification.synthesis import SYNTHETIC
 from robomill.robot.model import Robot
 

@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 import robomill as rm
 from robomill.errors import LoadTestError
 from robomill.identification.configurations import LIMIT_SLACK, checked, pose_of, solved, ways, world_of
+from robomill.identification.fit.models import MODELS, Model
 from robomill.identification.load_test import LoadTests
-from robomill.identification.models import MODELS, Model
 
 FIVE, SIX = rm.load_robot("slavkovic_5r"), rm.load_robot("kuka_kr270")
 RNG = np.random.default_rng(11)

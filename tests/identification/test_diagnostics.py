@@ -11,11 +11,11 @@ from scipy import stats
 
 import robomill as rm
 from robomill.identification import diagnostics
-from robomill.identification.least_squares import robust_fit
+from robomill.identification.fit.least_squares import robust_fit
+from robomill.identification.fit.models import Model, Parameter
+from robomill.identification.fit.system import System, build_system
 from robomill.identification.load_test import LoadTests
-from robomill.identification.models import Model, Parameter
 from robomill.identification.synthesis import three_directions
-from robomill.identification.system import System, build_system
 from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import robomill as rm
+from robomill.identification.fit.models import Model
+from robomill.identification.fit.system import build_system
 from robomill.identification.length_units import BETTER, WELL, length_suspicions
-from robomill.identification.models import Model
-from robomill.identification.system import build_system
 from tests.identification.cables import Arm, Rig, as_csv, make
 
 ARM, ROBOT = Arm.of("kuka_kr500"), rm.load_robot("kuka_kr500")

@@ -10,7 +10,7 @@ from robomill.errors import LoadTestError
 from robomill.identification.load_test import LoadTests
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.synthesis import three_directions
-from robomill.io.load_tests import read_measured_map
+from robomill.io.measured.load_tests import read_measured_map
 from robomill.io.samples import samples_dir
 from robomill.provenance import Provenance
 from tests.identification.synthetic import simulated_tests

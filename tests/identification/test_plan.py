@@ -10,9 +10,9 @@ from scipy import stats
 
 import robomill as rm
 from robomill.errors import LoadTestError
-from robomill.identification.estimate import identify
+from robomill.identification.fit.estimate import identify
 from robomill.identification.plan import MARGIN, Loads, _best, box_candidates, candidates_around, next_best
-from robomill.io.load_test_sheets import measuring_sheet
+from robomill.io.measured.load_test_sheets import measuring_sheet
 from robomill.io.samples import samples_dir
 from tests.identification.synthetic import simulated_tests
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.identification.confidence import quantile
-from robomill.identification.estimate import identify
+from robomill.identification.fit.confidence import quantile
+from robomill.identification.fit.estimate import identify
+from robomill.identification.fit.models import Model
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
-from robomill.identification.models import Model
 from robomill.identification.propagation import length_derivative, uncertain_by_map, uncertain_deflection
 from robomill.io.samples import samples_dir
 from tests.identification.oracles import guessed, monte_carlo

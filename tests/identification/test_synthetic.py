@@ -7,7 +7,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import LoadTestError
-from robomill.identification.models import Model
+from robomill.identification.fit.models import Model
 from robomill.identification.synthesis import three_directions
 from tests.identification.synthetic import simulated_tests, true_parameters
 

@@ -323,8 +323,8 @@ def test_it_is_a_value_and_a_table(slot: Compensation) -> None:
 
 def test_the_band_of_what_remains_is_that_of_the_deflection() -> None:
     """1 % of every compliance, all independent: by brute force over each."""
+    from robomill.identification.fit.models import Model
     from robomill.identification.knowledge import Knowledge
-    from robomill.identification.models import Model
 
     setup = rm.load_setup(SLOT)
     arm = setup.robot

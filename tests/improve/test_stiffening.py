@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from robomill.improve.stiffening import Stiffening, one_stiffer, stiffer_joints
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.simulation.run import simulate
 
 

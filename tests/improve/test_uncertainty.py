@@ -8,9 +8,9 @@ from scipy.stats import binomtest, norm
 
 import robomill as rm
 from robomill.errors import SetupError
+from robomill.identification.fit.model_error import ModelError
+from robomill.identification.fit.models import Model
 from robomill.identification.knowledge import Knowledge
-from robomill.identification.model_error import ModelError
-from robomill.identification.models import Model
 from robomill.improve import uncertainty as module
 from robomill.simulation.band import deviation_band, size_band
 

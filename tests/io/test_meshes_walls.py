@@ -10,7 +10,7 @@ import trimesh
 
 from robomill.cutting.tool import Cutter
 from robomill.io.meshes import mesh_bytes
-from robomill.io.projects import load_setup
+from robomill.io.setups.projects import load_setup
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
 from robomill.surface.zmap import cut

@@ -9,7 +9,7 @@ import pytest
 import robomill as rm
 from robomill.errors import ProjectError, RobomillError
 from robomill.io import samples
-from robomill.io.projects import load_setup
+from robomill.io.setups.projects import load_setup
 
 ROOT = Path(__file__).resolve().parents[2]
 

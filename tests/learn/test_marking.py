@@ -8,7 +8,7 @@ import pytest
 
 from robomill import learn
 from robomill.errors import RobomillError
-from robomill.io.robots import robot_names
+from robomill.io.robot.robots import robot_names
 from robomill.learn.personal import TASKS
 from robomill.units import from_si, to_si
 

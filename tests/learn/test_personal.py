@@ -14,7 +14,7 @@ from truth import SEVEN, axis_of, compliance, jacobian, numbers, theta_of
 import robomill as rm
 from robomill import learn
 from robomill.errors import ArgumentError, LearnError
-from robomill.io.robots import robot_names
+from robomill.io.robot.robots import robot_names
 from robomill.learn.draws import Draws, student_number
 from robomill.learn.personal import TASKS, _made
 

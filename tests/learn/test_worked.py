@@ -12,8 +12,8 @@ import pytest
 
 import robomill as rm
 from robomill.compliance.at_pose import PoseReport
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.learn.worked import Worked, at_the_pose, of_the_run
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import decides_at

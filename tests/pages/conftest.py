@@ -15,13 +15,14 @@ from streamlit.testing.v1 import AppTest
 from streamlit.testing.v1.element_tree import TextInput
 
 from robomill.toolpath.source import SketchSource
-from robomill.ui import beside, inputs, rendered
+from robomill.ui.entry import inputs
 from robomill.ui.project import Project, preset_setup
 from robomill.ui.session import KEY, Store
 from robomill.ui.toolpath.sources import lines_of_path, sketch_of_path
+from robomill.ui.work import beside, rendered
 from robomill.viz.chart import Chart
-from robomill.viz.render_queue import RenderQueue
-from robomill.viz.worker import NO_OPENGL, RenderWorker
+from robomill.viz.rendered.render_queue import RenderQueue
+from robomill.viz.rendered.worker import NO_OPENGL, RenderWorker
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = ("app", *sorted(file.stem for file in (ROOT / "pages").glob("[0-9]_*.py")))

@@ -14,16 +14,16 @@ from streamlit.testing.v1 import AppTest
 from robomill.compliance.springs.joint_bending import JointBending
 from robomill.errors import LoadTestError, ProjectError
 from robomill.files import TABLE
-from robomill.identification.estimate import identify
+from robomill.identification.fit.estimate import identify
+from robomill.identification.fit.models import Model
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.laboratory import MAX_LOAD
 from robomill.identification.load_test import LoadTests
-from robomill.identification.models import Model
-from robomill.io.load_test_sheets import load_test_template, load_tests_to_csv
-from robomill.io.load_tests import read_load_tests
-from robomill.io.projects import load_setup
-from robomill.io.robots import load_robot
+from robomill.io.measured.load_test_sheets import load_test_template, load_tests_to_csv
+from robomill.io.measured.load_tests import read_load_tests
+from robomill.io.robot.robots import load_robot
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.io.texts import read_text
 from robomill.provenance import Kind, Provenance
 from robomill.simulation.run import simulate
@@ -246,7 +246,7 @@ def test_three_more_tests_shrink_joint_4_by_a_third(page: AppTest, goal: str) ->
 
 def test_the_measuring_sheet_is_read_back_after_filling_in(page: AppTest) -> None:
     from robomill.identification.plan import box_candidates, next_best
-    from robomill.io.load_test_sheets import measuring_sheet
+    from robomill.io.measured.load_test_sheets import measuring_sheet
 
     robot = load_robot("slavkovic_5r")
     tests = read_load_tests(sample_text("nine_points"), robot)
@@ -263,7 +263,7 @@ def test_the_measuring_sheet_is_read_back_after_filling_in(page: AppTest) -> Non
 
 def test_a_filled_sheet_joins_the_tests_and_narrows_joint_4(page: AppTest) -> None:
     """The loop closed: plan, measure (here: compute from Table 3), bring the sheet back."""
-    from robomill.io.load_test_sheets import measuring_sheet
+    from robomill.io.measured.load_test_sheets import measuring_sheet
     from robomill.ui.identification.bench import fit_of
     from robomill.ui.identification.plan import joined, plan_of
 

@@ -12,9 +12,9 @@ from streamlit.testing.v1 import AppTest
 import robomill as rm
 from robomill.improve.design import design
 from robomill.improve.stiffening import Stiffening, some_stiffer
-from robomill.io.projects import load_setup
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.simulation.run import simulate
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.improve.stiffen import made_by, meanwhile

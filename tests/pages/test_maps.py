@@ -15,7 +15,7 @@ from streamlit.testing.v1 import AppTest
 import robomill as rm
 from robomill.cutting.forces import model_of
 from robomill.io.materials import sample_materials
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.toolpath.source import GCodeSource

@@ -14,9 +14,10 @@ from streamlit.testing.v1 import AppTest
 
 from robomill.errors import SurfaceError
 from robomill.progress import checkpoint
-from robomill.ui import beside, cached, shell
-from robomill.ui.job import Job
+from robomill.ui import shell
 from robomill.ui.milling import pictures
+from robomill.ui.work import beside, cached
+from robomill.ui.work.job import Job
 
 STL = "milling.get.stl"
 

@@ -9,9 +9,9 @@ import pytest
 from conftest import errors, go, words
 from streamlit.testing.v1 import AppTest
 
-from robomill.ui import rendered
-from robomill.viz.render_queue import RenderQueue
-from robomill.viz.worker import RenderWorker
+from robomill.ui.work import rendered
+from robomill.viz.rendered.render_queue import RenderQueue
+from robomill.viz.rendered.worker import RenderWorker
 
 RENDER = 'which is not installed here; get it with: pip install "robomill[render]"'
 FILM = 'A film as MP4 needs imageio-ffmpeg, which is not installed here; get it with: pip install "robomill[film]"'

@@ -15,8 +15,8 @@ from robomill import progress
 from robomill.errors import SetupError
 from robomill.progress import checkpoint
 from robomill.simulation.run import simulate
-from robomill.ui import beside, cached, job, running
-from robomill.ui.job import Job
+from robomill.ui.work import beside, cached, job, running
+from robomill.ui.work.job import Job
 
 
 class Slow:

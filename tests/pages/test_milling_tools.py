@@ -6,8 +6,8 @@ import pytest
 from conftest import errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.toolpath.source import GCodeSource
 
 PROGRAM = """G21 G90

@@ -7,7 +7,7 @@ import pytest
 from conftest import errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 from robomill.simulation.run import deviation_over_spin
 from robomill.simulation.samples import sampled
 from robomill.ui import session

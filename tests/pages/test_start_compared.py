@@ -13,10 +13,11 @@ from conftest import PAGES, go, store, words
 from streamlit.testing.v1 import AppTest
 
 import robomill as rm
-from robomill.ui import other, running
+from robomill.ui import other
 from robomill.ui.maps.sides import SIDES, WHOSE
 from robomill.ui.project import Project, View, preset_setup, project_from_toml, project_to_toml
 from robomill.ui.session import Store
+from robomill.ui.work import running
 from robomill.units import format_si, to_si
 
 WITH_TILES = ("app", "1_Robot", "2_Workspace", "3_Compliance", "5_Toolpath", "6_Milling")

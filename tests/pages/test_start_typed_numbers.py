@@ -10,8 +10,8 @@ from conftest import WAYS, Grid, errors, go, put, store
 from streamlit.testing.v1 import AppTest
 from test_start_odd_numbers import PAGES
 
-from robomill.ui.box import NumberBox
-from robomill.ui.grid import Sheet
+from robomill.ui.entry.box import NumberBox
+from robomill.ui.entry.grid import Sheet
 from robomill.ui.tools import TABLE
 
 REFUSED = {
@@ -115,7 +115,7 @@ def number_cells(grid: Grid, sheets: dict[str, Sheet]) -> list[tuple[str, int, s
 @pytest.fixture
 def sheets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Sheet]:
     """The sheets of the tables that are shown, by their names."""
-    import robomill.ui.grid as module
+    import robomill.ui.entry.grid as module
 
     seen: dict[str, Sheet] = {}
     real = module.table

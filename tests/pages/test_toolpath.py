@@ -11,8 +11,8 @@ from conftest import box, errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.toolpath.source import GCodeSource, LinesSource
-from robomill.ui import beside, running
 from robomill.ui.toolpath.reading import BACKGROUND_CHARACTERS
+from robomill.ui.work import beside, running
 
 
 def type_program(app: AppTest, text: str) -> None:

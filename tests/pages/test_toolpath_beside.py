@@ -15,8 +15,8 @@ from robomill.errors import GCodeError
 from robomill.progress import checkpoint
 from robomill.toolpath.gcode import interpreter
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import beside
-from robomill.ui.job import Job
+from robomill.ui.work import beside
+from robomill.ui.work.job import Job
 
 ENDLESS = "o100 while [1 GT 0]\n G1 X1 F100\n G1 X0\no100 endwhile\nM2\n"
 NUMBER = itertools.count()

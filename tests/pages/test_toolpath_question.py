@@ -6,7 +6,7 @@ import pytest
 from conftest import box, errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
-from robomill.io.projects import setup_from_toml, setup_to_toml
+from robomill.io.setups.projects import setup_from_toml, setup_to_toml
 from robomill.simulation.run import simulate
 from robomill.toolpath.source import GCodeSource
 

@@ -7,11 +7,11 @@ import pytest
 from scipy.optimize import curve_fit
 
 import robomill as rm
-from robomill.identification.estimate import identify
+from robomill.identification.fit.estimate import identify
+from robomill.identification.fit.system import build_system
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.propagation import uncertain_deflection
-from robomill.identification.system import build_system
-from robomill.io.load_tests import read_measured_map
+from robomill.io.measured.load_tests import read_measured_map
 from robomill.io.samples import samples_dir
 
 FILES = samples_dir() / "load_tests"

@@ -10,7 +10,7 @@ from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.materials import alternatives
 from robomill.cutting.tool import Cutter
 from robomill.io.materials import load_material, sample_materials
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 

@@ -19,18 +19,18 @@ from functools import cache
 from pathlib import Path
 
 from robomill.errors import RobomillError
-from robomill.io.drawings import drawing_from_bytes
-from robomill.io.forces import read_forces
-from robomill.io.load_tests import read_load_tests, read_measured_map
+from robomill.io.drawing.drawings import drawing_from_bytes
 from robomill.io.materials import material_from_toml
+from robomill.io.measured.forces import read_forces
+from robomill.io.measured.load_tests import read_load_tests, read_measured_map
+from robomill.io.measured.profiles import read_profile
 from robomill.io.meshes import read_stl_stock
 from robomill.io.point_tables import points_from_bytes
-from robomill.io.profiles import read_profile
-from robomill.io.projects import load_setup, setup_from_toml, setup_to_toml
-from robomill.io.robots import load_robot, robot_from_toml
+from robomill.io.robot.robots import load_robot, robot_from_toml
+from robomill.io.robot.urdf import read_urdf
 from robomill.io.samples import samples_dir
-from robomill.io.tool_tables import read_tool_table
-from robomill.io.urdf import read_urdf
+from robomill.io.setups.projects import load_setup, setup_from_toml, setup_to_toml
+from robomill.io.setups.tool_tables import read_tool_table
 from robomill.toolpath.apt import read_apt
 from robomill.toolpath.gcode import read_gcode
 from robomill.toolpath.sketch import Sketch

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 import robomill as rm
 from robomill.errors import LoadTestError
-from robomill.identification.estimate import identify
+from robomill.identification.fit.estimate import identify
 from robomill.identification.load_test import LoadTests
-from robomill.io.load_tests import read_load_tests
+from robomill.io.measured.load_tests import read_load_tests
 from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r")

@@ -16,7 +16,7 @@ import robomill as rm
 from robomill.cli import main
 from robomill.errors import ProjectError
 from robomill.report.html import MARK
-from robomill.simulation.verdict_words import TITLES
+from robomill.simulation.judging.verdict_words import TITLES
 
 SLOT = rm.load_setup("paper_flute")
 AIR = "G21 G90\nG0 X0 Y0 Z50\nG0 X50\nG1 Z49 F100\nM2\n"

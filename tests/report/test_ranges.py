@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from robomill.compliance.springs.tool_bending import ToolBending
+from robomill.identification.fit.models import Model
 from robomill.identification.knowledge import Knowledge
-from robomill.identification.models import Model
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.report.ranges import ranges
+from robomill.simulation.origin.spread import peak_force
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.spread import peak_force
 
 
 @pytest.fixture(scope="module")

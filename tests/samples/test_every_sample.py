@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from robomill.io.projects import load_setup, setup_from_toml, setup_to_toml
-from robomill.io.robots import load_robot, robot_names
+from robomill.io.setups.projects import load_setup, setup_from_toml, setup_to_toml
+from robomill.io.robot.robots import load_robot, robot_names
 from robomill.io.samples import samples_dir
 from robomill.report.records import jsonable
 from robomill.report.simulation_record import simulation_record

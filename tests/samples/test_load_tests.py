@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.identification.comparison import compare_models
-from robomill.identification.estimate import identify
-from robomill.io.load_tests import read_findings
+from robomill.identification.fit.comparison import compare_models
+from robomill.identification.fit.estimate import identify
+from robomill.io.measured.load_tests import read_findings
 from robomill.io.samples import samples_dir
 from robomill.units import from_si, to_si
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 

@@ -9,8 +9,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.provenance import Finding
 from robomill.simulation.cut import (
     SEEN,

@@ -8,7 +8,7 @@ import pytest
 import robomill as rm
 from robomill.cutting.forces.along_path import PathForce
 from robomill.io.samples import samples_dir
-from robomill.surface.march import March
+from robomill.surface.contact.march import March
 from robomill.toolpath.source import GCodeSource
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(cell=5e-4, step=5e-3)

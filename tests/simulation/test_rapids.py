@@ -7,8 +7,8 @@ import pytest
 
 import robomill as rm
 from robomill.cutting.tool import Cutter
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.simulation.rapids import crashes
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath, toolpath_from_lines

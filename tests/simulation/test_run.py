@@ -9,8 +9,8 @@ from robomill.compliance.cartesian import cartesian_compliance
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.forces.constant import ConstantForce
 from robomill.errors import SurfaceError, ToolpathError
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.kinematics.forward import tool_pose
 from robomill.simulation.given import part_frame
 from robomill.simulation.run import simulate

@@ -12,8 +12,8 @@ import pytest
 
 import robomill as rm
 from robomill.progress import Cancelled, Progress, watched
+from robomill.simulation.origin.spread import alloy_spread, peak_force
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.surface.mesh import to_mesh
 from tests.telling import told
 

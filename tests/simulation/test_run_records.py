@@ -8,9 +8,9 @@ import pytest
 import robomill as rm
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.errors import SetupError
-from robomill.io.forces import read_forces
-from robomill.io.projects import load_setup, setup_from_toml, setup_to_toml
+from robomill.io.measured.forces import read_forces
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup, setup_from_toml, setup_to_toml
 from robomill.simulation.given import part_frame
 from robomill.toolpath.source import GCodeSource
 

@@ -13,8 +13,8 @@ from robomill.cutting.forces.constant import ConstantForce
 from robomill.io.samples import samples_dir
 from robomill.kinematics.forward import joint_frames
 from robomill.report.simulation_record import simulation_record
-from robomill.surface.engagement import engage
-from robomill.surface.march import March
+from robomill.surface.contact.engagement import engage
+from robomill.surface.contact.march import March
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(step=10e-3, cell=4e-4)
 PROCESS = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(cell=4e-4)

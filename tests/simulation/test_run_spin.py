@@ -5,8 +5,8 @@ import pytest
 
 import robomill as rm
 from robomill.errors import ProjectError, SetupError
-from robomill.io.projects import load_setup, setup_from_toml, setup_to_toml
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup, setup_from_toml, setup_to_toml
 from robomill.kinematics.transforms import translation
 from robomill.simulation.reach import path_reach
 from robomill.simulation.run import configurations, deviation_over_spin

@@ -9,8 +9,8 @@ from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import SetupError
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.surface.stock import BESIDE
 from robomill.toolpath.source import GCodeSource
 

@@ -9,12 +9,12 @@ import pytest
 
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.io.materials import sample_materials
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.simulation import stations
+from robomill.simulation.origin.spread import AlloySpread, alloy_spread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
-from robomill.simulation.spread import AlloySpread, alloy_spread
 from robomill.simulation.stations import (
     force_components,
     largest_deviations,
@@ -23,7 +23,7 @@ from robomill.simulation.stations import (
     place_at,
     sideways,
 )
-from robomill.surface.metrology import groove_profile
+from robomill.surface.sections.metrology import groove_profile
 from robomill.toolpath.path import Toolpath
 
 

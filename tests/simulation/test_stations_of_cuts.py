@@ -11,7 +11,7 @@ import robomill as rm
 from robomill.io.samples import samples_dir
 from robomill.simulation import stations
 from robomill.simulation.given import part_frame
-from robomill.simulation.spread import alloy_spread
+from robomill.simulation.origin.spread import alloy_spread
 from robomill.toolpath.source import GCodeSource, LinesSource
 
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml")
@@ -118,7 +118,7 @@ def test_rows_of_the_alloy_are_runs_of_their_own():
 
 
 def test_only_forces_from_a_material_have_rows_and_a_peak():
-    from robomill.simulation.spread import peak_force
+    from robomill.simulation.origin.spread import peak_force
 
     stated, computed = rm.simulate(SETUP), rm.simulate(PROCESS)
     assert alloy_spread(stated) is None

@@ -3,8 +3,8 @@
 import pytest
 
 import robomill as rm
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.toolpath.source import GCodeSource
 
 SETUP = load_setup(samples_dir() / "pocket_arcs" / "setup.toml").replace(cell=5e-4)

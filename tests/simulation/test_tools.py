@@ -9,8 +9,8 @@ import robomill as rm
 from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import CuttingError, RobomillError, SetupError
-from robomill.io.projects import setup_from_toml, setup_to_toml
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import setup_from_toml, setup_to_toml
 from robomill.kinematics.forward import tool_pose
 from robomill.simulation.run import simulate
 from robomill.simulation.tools import cutting_numbers, farther, feed_notes, held, tool_notes, tooling

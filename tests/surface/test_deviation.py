@@ -6,9 +6,9 @@ import pytest
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
 from robomill.surface.deviation import deviation
-from robomill.surface.groove import groove_sections
-from robomill.surface.metrology import compare_profile, fit_groove, fit_line, groove_profile
 from robomill.surface.removal import EdgeCells
+from robomill.surface.sections.groove import groove_sections
+from robomill.surface.sections.metrology import compare_profile, fit_groove, fit_line, groove_profile
 from robomill.surface.stock import Stock
 from robomill.surface.swept import CutPath
 from robomill.surface.zmap import ZMap, cut

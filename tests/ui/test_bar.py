@@ -13,9 +13,10 @@ from robomill.cutting.unjudged import Unjudged
 from robomill.provenance import Provenance
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import bar, cached, session
+from robomill.ui import bar, session
 from robomill.ui.project import preset_setup
 from robomill.ui.session import Store
+from robomill.ui.work import cached
 
 WALL = 0.22953  # mm, from Table 2 and 100 N
 

@@ -7,8 +7,8 @@ import dataclasses
 import pytest
 
 from robomill.errors import ProjectError
-from robomill.io.projects import load_setup, setup_to_toml
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup, setup_to_toml
 from robomill.ui.bench import MOST_KEPT, OWN, SAMPLE_ROBOT, SAMPLES, Bench, sample_text
 from robomill.ui.project import Project, project_from_toml, project_to_toml
 

@@ -11,9 +11,9 @@ from streamlit.runtime.scriptrunner import get_script_run_ctx
 from streamlit.testing.v1 import AppTest
 
 from robomill.ui import closing
-from robomill.ui.job import Job
 from robomill.ui.project import Project, preset_setup
 from robomill.ui.session import KEY, Store
+from robomill.ui.work.job import Job
 
 
 def visit() -> None:

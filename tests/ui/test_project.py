@@ -9,9 +9,9 @@ import pytest
 
 from robomill.arrays import digest
 from robomill.errors import CuttingError, ProjectError
-from robomill.io.projects import load_setup, setup_to_toml
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup, setup_to_toml
 from robomill.quantities import quantities
 from robomill.ui.project import MapView, Project, View, project_from_toml, project_to_toml, read_field, with_field
 from robomill.workspace.quantities import map_quantities

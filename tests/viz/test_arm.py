@@ -11,7 +11,7 @@ import robomill as rm
 from robomill.kinematics.forward import joint_frames
 from robomill.simulation.result import SimulationResult
 from robomill.viz.arm import ArmScene, arm_figure, displacement_scale
-from robomill.viz.framing import screen
+from robomill.viz.rendered.framing import screen
 from robomill.viz.solids import yardstick
 from robomill.viz.views import arm_scene
 

@@ -7,7 +7,7 @@ import pytest
 
 import robomill as rm
 from robomill.io.samples import samples_dir
-from robomill.simulation.spread import alloy_spread, peak_force
+from robomill.simulation.origin.spread import alloy_spread, peak_force
 from robomill.viz.engagement import COMPONENTS, force_figure
 
 

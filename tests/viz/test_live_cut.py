@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from robomill.arrays import FloatArray
-from robomill.io.projects import load_setup
 from robomill.io.samples import samples_dir
+from robomill.io.setups.projects import load_setup
 from robomill.simulation.enlarged import enlarged, so_far
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate

@@ -7,7 +7,7 @@ import pytest
 
 from robomill.cutting.tool import Cutter
 from robomill.simulation.result import SimulationResult
-from robomill.surface.groove import groove_sections
+from robomill.surface.sections.groove import groove_sections
 from robomill.surface.stock import Stock
 from robomill.surface.swept import CutPath
 from robomill.viz.sections import section_figure

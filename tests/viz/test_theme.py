@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from robomill.simulation.enlarged import enlarged
+from robomill.simulation.origin.spread import alloy_spread, peak_force
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import alloy_spread, peak_force
 from robomill.viz.arm import arm_figure
 from robomill.viz.chart import Chart
 from robomill.viz.deviation import components_figure, shares_figure

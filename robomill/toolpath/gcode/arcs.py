@@ -12,7 +12,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode.motion_rules import axes
+from robomill.toolpath.gcode.rules.motion_rules import axes
 from robomill.units import from_si
 
 CHORD_ERROR = 1e-6

@@ -4,10 +4,10 @@ import math
 
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
-from robomill.toolpath.gcode.cycle_rules import is_cycle
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion_rules import MOST, implied_motion, is_arc, keep_motion
+from robomill.toolpath.gcode.rules.cycle_rules import is_cycle
+from robomill.toolpath.gcode.rules.motion_rules import MOST, implied_motion, is_arc, keep_motion
 from robomill.toolpath.gcode.tool_axis import UNIT, angles_of
 from robomill.toolpath.gcode.words import Block
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from robomill.toolpath.gcode.corners import joined
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion_rules import ARC, CLOCKWISE, COUNTERCLOCKWISE, FEED, LINE
 from robomill.toolpath.gcode.program import Move
+from robomill.toolpath.gcode.rules.motion_rules import ARC, CLOCKWISE, COUNTERCLOCKWISE, FEED, LINE
 from robomill.toolpath.gcode.words import Block
 
 BETWEEN = "a corner is rounded or chamfered between two straight cuts (G1) alone."

@@ -13,9 +13,9 @@ from typing import Any
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.held_moves import BESIDE_ARC, SHARPEST, HeldMove
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion_rules import arc_length, axes, feed_speed, inverse_time, swept, turns_of
 from robomill.toolpath.gcode.moves import centre_of_arc, plain_words
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
+from robomill.toolpath.gcode.rules.motion_rules import arc_length, axes, feed_speed, inverse_time, swept, turns_of
 from robomill.toolpath.gcode.words import Block
 
 CORNER = 0.05

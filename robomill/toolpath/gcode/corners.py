@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.motion_rules import ARC, FEED, axes
 from robomill.toolpath.gcode.program import Move
+from robomill.toolpath.gcode.rules.motion_rules import ARC, FEED, axes
 from robomill.units import format_si
 
 ROUND, LEGS, BEVEL, EACH = "round", "legs", "bevel", "each"

@@ -9,13 +9,13 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.corners import LEGS, ROUND
-from robomill.toolpath.gcode.fanuc_cycles import bolt_holes
+from robomill.toolpath.gcode.fanuc.cycles import bolt_holes
+from robomill.toolpath.gcode.fanuc.scaling import scales
 from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import UNITS, Machine
-from robomill.toolpath.gcode.motion_rules import LINE
 from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
-from robomill.toolpath.gcode.scaling import scales
-from robomill.toolpath.gcode.sinumerik import translated
+from robomill.toolpath.gcode.rules.motion_rules import LINE
+from robomill.toolpath.gcode.sinumerik.lines import translated
 from robomill.toolpath.gcode.words import Block
 from robomill.units import to_si
 

@@ -6,11 +6,11 @@ from typing import Any
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode import moves, offsets, splines, threads
 from robomill.toolpath.gcode.codes import g_name
-from robomill.toolpath.gcode.cycle_rules import is_cycle
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.mode_rules import set_modes, set_plane, set_rates, switch
-from robomill.toolpath.gcode.motion_rules import MOST, dwell
 from robomill.toolpath.gcode.program import PROBE
+from robomill.toolpath.gcode.rules.cycle_rules import is_cycle
+from robomill.toolpath.gcode.rules.mode_rules import set_modes, set_plane, set_rates, switch
+from robomill.toolpath.gcode.rules.motion_rules import MOST, dwell
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool
 

@@ -5,11 +5,11 @@ import re
 from collections.abc import Callable
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import operator_rules as rules
-from robomill.toolpath.gcode import value_rules
 from robomill.toolpath.gcode.foreign import said_of
 from robomill.toolpath.gcode.parameters import COUNT, Parameters
-from robomill.toolpath.gcode.value_rules import MAX_DEPTH
+from robomill.toolpath.gcode.rules import operator_rules as rules
+from robomill.toolpath.gcode.rules import value_rules
+from robomill.toolpath.gcode.rules.value_rules import MAX_DEPTH
 
 SENTENCES = {
     rules.NOT_A_NUMBER: "{number!r} is not a number; expected digits with one point.",

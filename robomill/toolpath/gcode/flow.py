@@ -10,12 +10,12 @@ import numpy as np
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode import flow_rules as rules
-from robomill.toolpath.gcode.flow_rules import KEYWORDS
-from robomill.toolpath.gcode.line_rules import MAX_LINE
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.parameters import ARGUMENTS, LEVELS
-from robomill.toolpath.gcode.records import OWORD, Flow
+from robomill.toolpath.gcode.rules import flow_rules as rules
+from robomill.toolpath.gcode.rules.flow_rules import KEYWORDS
+from robomill.toolpath.gcode.rules.line_rules import MAX_LINE
+from robomill.toolpath.gcode.rules.records import OWORD, Flow
 from robomill.toolpath.gcode.words import normalise
 
 _MAYBE = re.compile(rb"^(?:[/\dNn.\x00-\x09\x0b-\x20\x80-\xff]*[oO]|:\d)", re.MULTILINE)

@@ -9,15 +9,15 @@ from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
-from robomill.toolpath.gcode.fanuc_cycles import as_bored, repeats
-from robomill.toolpath.gcode.klartext import Klartext
-from robomill.toolpath.gcode.line_rules import MAX_LINE
+from robomill.toolpath.gcode.fanuc.cycles import as_bored, repeats
+from robomill.toolpath.gcode.fanuc.macro import with_brackets
+from robomill.toolpath.gcode.fanuc.scaling import scale_words
+from robomill.toolpath.gcode.klartext.lines import Klartext
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.macro import with_brackets
-from robomill.toolpath.gcode.motion_rules import keep_motion
 from robomill.toolpath.gcode.owords import File
-from robomill.toolpath.gcode.scaling import scale_words
-from robomill.toolpath.gcode.sinumerik import parted, spaced
+from robomill.toolpath.gcode.rules.line_rules import MAX_LINE
+from robomill.toolpath.gcode.rules.motion_rules import keep_motion
+from robomill.toolpath.gcode.sinumerik.lines import parted, spaced
 from robomill.toolpath.gcode.stretches import Stretches
 from robomill.toolpath.gcode.subprograms import CALLS
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number

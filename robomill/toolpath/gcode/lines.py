@@ -8,7 +8,7 @@ import numpy as np
 
 from robomill.arrays import IntArray
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode.records import Text
+from robomill.toolpath.gcode.rules.records import Text
 
 _PERCENT = re.compile(rb"^[ \t]*%(?!_N_)", re.MULTILINE)
 

@@ -15,10 +15,10 @@ from robomill.provenance import Level
 from robomill.toolpath.gcode.codes import LETTERS
 from robomill.toolpath.gcode.corners import EACH, joined
 from robomill.toolpath.gcode.findings import Findings
-from robomill.toolpath.gcode.mode_rules import system_code
-from robomill.toolpath.gcode.motion_rules import feed_speed, rotate, write_arc, write_straight
 from robomill.toolpath.gcode.parameters import Parameters
 from robomill.toolpath.gcode.program import ARC, FEED, TAP, TRAVERSE, Move, Recorder
+from robomill.toolpath.gcode.rules.mode_rules import system_code
+from robomill.toolpath.gcode.rules.motion_rules import feed_speed, rotate, write_arc, write_straight
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool, Tools, own_copy
 from robomill.units import from_si, to_si

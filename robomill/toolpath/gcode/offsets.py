@@ -5,8 +5,8 @@ from dataclasses import replace
 from robomill.toolpath.gcode.codes import COMPENSATION, g_name
 from robomill.toolpath.gcode.compensation import Compensation
 from robomill.toolpath.gcode.machine import XYZABC, Machine
-from robomill.toolpath.gcode.mode_rules import system_code
-from robomill.toolpath.gcode.motion_rules import MOST, rotate
+from robomill.toolpath.gcode.rules.mode_rules import system_code
+from robomill.toolpath.gcode.rules.motion_rules import MOST, rotate
 from robomill.toolpath.gcode.standing import begins, stand
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool

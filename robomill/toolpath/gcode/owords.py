@@ -6,8 +6,6 @@ from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.files import FileKind, read_file
-from robomill.toolpath.gcode import flow_rules as rules
-from robomill.toolpath.gcode import value_rules
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import restore_modes
 from robomill.toolpath.gcode.expressions import Reader
@@ -15,7 +13,9 @@ from robomill.toolpath.gcode.flow import Calls, OWord, Structure, scan
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.parameters import ARGUMENTS, LEVELS
-from robomill.toolpath.gcode.records import Flow
+from robomill.toolpath.gcode.rules import flow_rules as rules
+from robomill.toolpath.gcode.rules import value_rules
+from robomill.toolpath.gcode.rules.records import Flow
 from robomill.toolpath.gcode.words import Block
 
 SUBROUTINE = FileKind("a subroutine beside the program", 10)

@@ -9,9 +9,9 @@ import numpy as np
 
 from robomill.compiled import Out1, OutInt1
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import value_rules as rules
 from robomill.toolpath.gcode.codes import WIDTH
-from robomill.toolpath.gcode.value_rules import STACK
+from robomill.toolpath.gcode.rules import value_rules as rules
+from robomill.toolpath.gcode.rules.value_rules import STACK
 
 COUNT = 5602
 """Numbered parameters run from 1 to COUNT - 1."""

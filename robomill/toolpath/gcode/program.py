@@ -14,8 +14,8 @@ from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.toolpath.gcode import arcs
-from robomill.toolpath.gcode.motion_rules import ARC, FEED, PROBE, TAP, TRAVERSE
-from robomill.toolpath.gcode.records import MOVE
+from robomill.toolpath.gcode.rules.motion_rules import ARC, FEED, PROBE, TAP, TRAVERSE
+from robomill.toolpath.gcode.rules.records import MOVE
 
 __all__ = ["ARC", "FEED", "KINDS", "PLANES", "PROBE", "TAP", "TRAVERSE", "Move", "Program", "Recorder", "Rows"]
 

@@ -13,12 +13,12 @@ from robomill.toolpath.gcode.arcs import CHORD_ERROR
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, Dialect, choose_dialect
 from robomill.toolpath.gcode.doubts import doubt, doubt_all_points, doubt_points, doubt_second_table
+from robomill.toolpath.gcode.fanuc.macro_calls import begin_empty
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.foreign import language_of
 from robomill.toolpath.gcode.interpreter import Interpreter
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.macro_calls import begin_empty
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program, most_moves
 from robomill.toolpath.path import TABLES, Toolpath

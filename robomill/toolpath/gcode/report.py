@@ -7,8 +7,8 @@ from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.files import written
-from robomill.toolpath.gcode.motion_rules import axes
 from robomill.toolpath.gcode.program import ARC, KINDS, PLANES, Program
+from robomill.toolpath.gcode.rules.motion_rules import axes
 from robomill.units import from_si
 
 

@@ -1,7 +1,7 @@
 """Where a machine stands before its first move: where G92 says, on controls that are not LinuxCNC."""
 
 from robomill.toolpath.gcode.machine import XYZABC, Machine
-from robomill.toolpath.gcode.motion_rules import to_frame
+from robomill.toolpath.gcode.rules.motion_rules import to_frame
 from robomill.toolpath.gcode.words import Block
 from robomill.units import to_si
 

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from robomill.toolpath.gcode import flow_rules
 from robomill.toolpath.gcode.flow import Structure
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.program import Rows
-from robomill.toolpath.gcode.records import STATE
+from robomill.toolpath.gcode.rules import flow_rules
+from robomill.toolpath.gcode.rules.records import STATE
 
 LONG = 20_000
 """Lines to execute that are worth loading the compiled rules for."""
@@ -23,7 +23,7 @@ COMPILED_CHUNK = 16_384
 """Lines that are done together in compiled code,"""
 CHARACTERS = 2_000_000
 """of so many characters at most: some hundredths of a second."""
-_KERNELS = "robomill.toolpath.gcode.kernels"
+_KERNELS = "robomill.toolpath.gcode.rules.kernels"
 _FIELDS = STATE.names or ()
 _state_of = attrgetter(*_FIELDS)
 
@@ -47,7 +47,7 @@ class Stretches:
         """
         machine, recorder, began = self._machine, self._machine.recorder, thread_time()
         if self._kernels is None and max(len(lines), executed) >= (LOADED_LONG if _KERNELS in sys.modules else LONG):
-            from robomill.toolpath.gcode import kernels
+            from robomill.toolpath.gcode.rules import kernels
 
             self._kernels = kernels
         if self._kernels is None:

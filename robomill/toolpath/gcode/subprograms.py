@@ -5,8 +5,8 @@ import re
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode import flow_rules as rules
 from robomill.toolpath.gcode.owords import SENTENCES, Call, OWords
+from robomill.toolpath.gcode.rules import flow_rules as rules
 from robomill.toolpath.gcode.words import Block
 
 _LINE_NUMBER = re.compile(rb"^[/ \t]*N[ \t]*0*(\d{1,9})(?![\d.])", re.MULTILINE | re.IGNORECASE)

@@ -4,9 +4,9 @@ import math
 from dataclasses import dataclass
 
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.motion_rules import spindle_speed
 from robomill.toolpath.gcode.moves import find_end
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
+from robomill.toolpath.gcode.rules.motion_rules import spindle_speed
 from robomill.toolpath.gcode.words import Block
 
 MAX_PASSES = 10_000

@@ -8,14 +8,14 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode import flow_rules
 from robomill.toolpath.gcode.dialects import SAMPLE, choose_dialect
 from robomill.toolpath.gcode.interpreter import Interpreter
 from robomill.toolpath.gcode.lines import Lines
-from robomill.toolpath.gcode.motion_rules import INVERSE_TIME, PER_TURN, rotate
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program, Rows
 from robomill.toolpath.gcode.reading import _machine, _program
+from robomill.toolpath.gcode.rules import flow_rules
+from robomill.toolpath.gcode.rules.motion_rules import INVERSE_TIME, PER_TURN, rotate
 from robomill.toolpath.text import as_plain_bytes
 from robomill.toolpath.tools import Tools
 

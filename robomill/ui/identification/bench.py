@@ -6,19 +6,21 @@ from functools import partial
 from typing import Any, TypeVar
 
 from robomill.errors import LoadTestError
-from robomill.identification.comparison import Comparison, compare_models
-from robomill.identification.estimate import identify
-from robomill.identification.lines_of_pull import LinesOfPull, lines_of_pull
+from robomill.identification.fit.comparison import Comparison, compare_models
+from robomill.identification.fit.estimate import identify
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.measured_field import MeasuredField
+from robomill.identification.pull.lines_of_pull import LinesOfPull, lines_of_pull
 from robomill.identification.result import IdentificationResult
-from robomill.io.load_tests import read_load_tests, read_measured_map
-from robomill.io.robots import load_robot
+from robomill.io.measured.load_tests import read_load_tests, read_measured_map
+from robomill.io.robot.robots import load_robot
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.ui import beside, declared, session
+from robomill.ui import session
 from robomill.ui.bench import Bench
-from robomill.ui.inputs import PLAIN, Look
+from robomill.ui.entry import declared
+from robomill.ui.entry.inputs import PLAIN, Look
+from robomill.ui.work import beside
 
 Value = TypeVar("Value")
 

@@ -8,18 +8,20 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError
-from robomill.identification.confidence import LEVEL
+from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.simulation.band import deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import inputs, pieces, running, session, uncertainty
+from robomill.ui import pieces, session, uncertainty
 from robomill.ui.bench import Bench
+from robomill.ui.entry import inputs
 from robomill.ui.identification.bench import field
 from robomill.ui.identification.inputs import adopted, knowledge
-from robomill.ui.job import Underway
+from robomill.ui.work import running
+from robomill.ui.work.job import Underway
 from robomill.units import format_si, from_si
 from robomill.viz.deviation import band_figure
 

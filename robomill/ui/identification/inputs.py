@@ -7,19 +7,20 @@ import streamlit as st
 
 from robomill.errors import LoadTestError, RobomillError
 from robomill.files import TABLE
+from robomill.identification.fit.models import Model
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.models import Model
 from robomill.identification.result import IdentificationResult
-from robomill.io.load_test_sheets import TEMPLATES, load_test_template
-from robomill.io.load_tests import read_findings
-from robomill.io.robots import robot_titles
+from robomill.io.measured.load_test_sheets import TEMPLATES, load_test_template
+from robomill.io.measured.load_tests import read_findings
+from robomill.io.robot.robots import robot_titles
 from robomill.io.texts import read_text
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import inputs, pieces, session
+from robomill.ui import pieces, session
 from robomill.ui.bench import MOST_KEPT, OWN, SAMPLES, THE_PROJECTS, Bench
+from robomill.ui.entry import inputs
 from robomill.ui.identification.bench import decide, decided, field, put_sample, put_tests
 from robomill.ui.identification.words import summary
 from robomill.units import format_count

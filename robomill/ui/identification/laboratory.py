@@ -12,15 +12,16 @@ from robomill.errors import LoadTestError, RobomillError
 from robomill.identification.laboratory import MAX_LOAD, Laboratory
 from robomill.identification.load_test import LoadTests
 from robomill.identification.result import IdentificationResult
-from robomill.io.load_test_sheets import load_tests_to_csv
+from robomill.io.measured.load_test_sheets import load_tests_to_csv
 from robomill.kinematics.forward import joint_frames, tool_pose
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world, world_from_pose
 from robomill.paper import SLOT
 from robomill.quantities import choice, quantities, quantity, settle, whole
 from robomill.robot.model import Robot
-from robomill.ui import declared, inputs, pieces, session
+from robomill.ui import pieces, session
 from robomill.ui.bench import Bench
+from robomill.ui.entry import declared, inputs
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import robot_of
 from robomill.ui.identification.plan import theta_columns

@@ -6,14 +6,15 @@ import numpy as np
 import streamlit as st
 
 from robomill.errors import RobomillError
-from robomill.identification.comparison import OVERFIT, Comparison
-from robomill.identification.models import MODELS
+from robomill.identification.fit.comparison import OVERFIT, Comparison
+from robomill.identification.fit.models import MODELS
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import of_joint
 from robomill.robot.stiffness import shown as shown_in
-from robomill.ui import inputs, pieces
+from robomill.ui import pieces
 from robomill.ui.bench import Bench
+from robomill.ui.entry import inputs
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import comparison_of, decided
 from robomill.units import format_si, from_si, unit_label

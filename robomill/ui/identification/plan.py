@@ -10,12 +10,13 @@ from robomill.arrays import FloatArray
 from robomill.identification.plan import MARGIN, Loads, Plan, candidates_around, next_best
 from robomill.identification.result import IdentificationResult
 from robomill.io.columns import append_rows
-from robomill.io.load_test_columns import LAYOUT
-from robomill.io.load_test_sheets import measuring_sheet
-from robomill.io.load_tests import read_load_tests
+from robomill.io.measured.load_test_columns import LAYOUT
+from robomill.io.measured.load_test_sheets import measuring_sheet
+from robomill.io.measured.load_tests import read_load_tests
 from robomill.robot.model import Robot
-from robomill.ui import inputs, pieces, session
+from robomill.ui import pieces, session
 from robomill.ui.bench import Bench
+from robomill.ui.entry import inputs
 from robomill.ui.identification.bench import decided, field, put_tests, remembered, tests_of
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import upload

@@ -6,15 +6,16 @@ import numpy as np
 import streamlit as st
 
 from robomill.errors import RobomillError
-from robomill.identification.found_points import TITLES, FoundPoint
-from robomill.identification.lines_of_pull import LinesOfPull
-from robomill.identification.pull_words import pull_report
+from robomill.identification.pull.found_points import TITLES, FoundPoint
+from robomill.identification.pull.lines_of_pull import LinesOfPull
+from robomill.identification.pull.pull_words import pull_report
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
-from robomill.ui import inputs, pieces
+from robomill.ui import pieces
 from robomill.ui.bench import Bench
+from robomill.ui.entry import inputs
 from robomill.ui.identification.bench import decided, lines_of, used_tests
-from robomill.ui.job import Underway
+from robomill.ui.work.job import Underway
 from robomill.units import format_many, format_si, from_si, unit_label
 from robomill.viz.identification import gaps_figure
 

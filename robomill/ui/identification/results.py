@@ -7,8 +7,9 @@ import streamlit as st
 
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
-from robomill.ui import inputs, pieces, session
+from robomill.ui import pieces, session
 from robomill.ui.bench import Bench
+from robomill.ui.entry import inputs
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import decide, decided
 from robomill.ui.markup import Html, as_html

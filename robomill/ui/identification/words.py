@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.identification.fit.models import Parameter
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.models import Parameter
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import is_stiffness, of_joint, shown

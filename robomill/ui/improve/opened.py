@@ -15,7 +15,8 @@ from robomill.improve.placed import Place, Placement
 from robomill.improve.turning import Turning
 from robomill.provenance import Finding
 from robomill.simulation.result import SimulationResult
-from robomill.ui import inputs, pieces
+from robomill.ui import pieces
+from robomill.ui.entry import inputs
 from robomill.ui.improve import lab, stiffen
 from robomill.ui.improve.remedies import Both, Found, Left, Stiffened, error_at, error_words, take, use
 from robomill.ui.shell import dark

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from robomill.errors import RobomillError, SetupError
-from robomill.identification.confidence import LEVEL
+from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.advice import Advice, advise
 from robomill.improve.compensation import Compensation
@@ -20,14 +20,16 @@ from robomill.improve.placement import place
 from robomill.improve.turning import Turning, turn
 from robomill.io.compensated import compensate
 from robomill.simulation.estimate import run_seconds
+from robomill.simulation.judging.verdict_words import TIGHT_FROM, Level
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.verdict_words import TIGHT_FROM, Level
-from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.improve import sure
-from robomill.ui.job import Underway
 from robomill.ui.sharing import report
 from robomill.ui.verdict import WORDS
+from robomill.ui.work import cached
+from robomill.ui.work.job import Underway
 from robomill.units import (
     format_count,
     format_many,

@@ -9,12 +9,14 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.improve.stiffening import Stiffening, some_stiffer, stiffer_joints
 from robomill.simulation.estimate import run_seconds
+from robomill.simulation.judging.verdict_words import Verdict
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
-from robomill.simulation.verdict_words import Verdict
-from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.verdict import WORDS, decides_at, previous
+from robomill.ui.work import cached
 from robomill.units import format_percent, format_share, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 

@@ -23,11 +23,13 @@ from robomill.study.local import processors
 from robomill.study.running import StudyResult, run_study
 from robomill.study.usual import Usual, usual_parameters
 from robomill.study.writing import study_to_toml
-from robomill.ui import cached, inputs, pieces, session
-from robomill.ui.box import NumberBox
-from robomill.ui.inputs import Look
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
+from robomill.ui.entry.box import NumberBox
+from robomill.ui.entry.inputs import Look
 from robomill.ui.shell import dark
 from robomill.ui.verdict import WORDS
+from robomill.ui.work import cached
 from robomill.units import (
     format_count,
     format_percent,

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from robomill.identification.confidence import LEVEL
+from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.draws import Uncertainty
 from robomill.improve.uncertainty import FULL, uncertainty
@@ -15,9 +15,11 @@ from robomill.quantities import quantities
 from robomill.simulation.estimate import run_seconds
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import cached, inputs, pieces, session
-from robomill.ui.box import NumberBox
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
+from robomill.ui.entry.box import NumberBox
 from robomill.ui.shell import dark
+from robomill.ui.work import cached
 from robomill.units import format_beside, format_count, format_percent, format_si, from_si
 from robomill.viz.unsure import distribution, tornado_bars
 

@@ -7,7 +7,8 @@ import streamlit as st
 from robomill.errors import ProjectError
 from robomill.files import SETUP
 from robomill.io.texts import read_text
-from robomill.ui import inputs, other, pieces, session
+from robomill.ui import other, pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.keeping import autosave
 from robomill.ui.project import MAX_PROJECT_MB, preset_setup, presets, project_from_toml
 

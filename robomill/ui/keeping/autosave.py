@@ -21,14 +21,15 @@ from typing import Any
 import streamlit as st
 
 from robomill.errors import ProjectError, RobomillError
-from robomill.ui import inputs, session
+from robomill.ui import session
+from robomill.ui.entry import inputs
+from robomill.ui.entry.typed import HEARD
 from robomill.ui.keeping.settings import Settings
 from robomill.ui.keeping.shelf import KEY, Head, Shelf
 from robomill.ui.keeping.writer import Line, Work, Writer
 from robomill.ui.markup import as_markdown
 from robomill.ui.project import DEFAULT_PRESET, SUFFIX, Project, preset_setup, presets, project_from_toml
 from robomill.ui.session import Store
-from robomill.ui.typed import HEARD
 
 LINE, NOTICE = "autosave.line", "autosave.notice"
 KEY_COOKIE, TAB_COOKIE = "robomill_key", "robomill_tab"

@@ -10,16 +10,18 @@ import numpy as np
 import streamlit as st
 
 from robomill.errors import ProjectError, RobomillError
-from robomill.io.projects import setup_to_toml
+from robomill.io.setups.projects import setup_to_toml
 from robomill.io.tables import parse_toml
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import cached, inputs, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.keeping import autosave
 from robomill.ui.keeping.shelf import Head, place_of
 from robomill.ui.markup import as_markdown
 from robomill.ui.project import project_from_toml, project_to_toml
 from robomill.ui.verdict import WORDS
+from robomill.ui.work import cached
 from robomill.units import format_si, unit_label
 
 NAME, CHOSEN, DELETED, OPENED = (f"snapshots.{word}" for word in ("name", "chosen", "deleted", "opened"))

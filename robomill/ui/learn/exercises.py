@@ -8,13 +8,14 @@ from functools import partial
 import streamlit as st
 
 from robomill.errors import LearnError
-from robomill.io.robots import robot_names
+from robomill.io.robot.robots import robot_names
 from robomill.learn.answers import answers_text
 from robomill.learn.draws import student_number
 from robomill.learn.exercise import Exercise
 from robomill.learn.marking import check
 from robomill.learn.personal import ROBOT, exercises
-from robomill.ui import inputs, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.markup import as_markdown
 
 WHO, GIVEN, HINTS = "learn.student", "learn.answers", "learn.hints"

@@ -18,11 +18,13 @@ from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.deflection import displacement
 from robomill.learn.push import ASIDE, Push, side
-from robomill.ui import fields, inputs, pieces, push, running, session
+from robomill.ui import fields, pieces, push, session
 from robomill.ui.arm import arm
+from robomill.ui.entry import inputs
 from robomill.ui.point import InHand, default_point, in_hand, place
 from robomill.ui.project import Project
 from robomill.ui.push import FORCE
+from robomill.ui.work import running
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, displacement_scale
 

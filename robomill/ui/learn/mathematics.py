@@ -5,19 +5,20 @@ import html
 import streamlit as st
 
 from robomill.compliance.at_pose import PoseReport
-from robomill.identification.estimate import identify
-from robomill.io.load_tests import read_load_tests
+from robomill.identification.fit.estimate import identify
 from robomill.io.materials import sample_materials
-from robomill.io.robots import load_robot
+from robomill.io.measured.load_tests import read_load_tests
+from robomill.io.robot.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.learn.equations import component, product
 from robomill.learn.push import Push
 from robomill.report.paper import Statement
 from robomill.report.reproduction import reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
-from robomill.ui import cached, pieces
+from robomill.ui import pieces
 from robomill.ui.markup import Html
 from robomill.ui.project import DEFAULT_PRESET, preset_setup
+from robomill.ui.work import cached
 from robomill.units import unit_label
 
 TONE = {"reproduced": "computed", "assumed": "assumed", "gap": "user", "not computed": "computed"}

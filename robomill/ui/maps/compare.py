@@ -8,9 +8,10 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.errors import RobomillError, WorkspaceError
 from robomill.improve.sensitivity import stiffened
-from robomill.io.robots import load_robot, robot_names
+from robomill.io.robot.robots import load_robot, robot_names
 from robomill.robot.model import USER_SET, Robot
-from robomill.ui import fields, inputs, pieces, session
+from robomill.ui import fields, pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.maps.board import Planes
 from robomill.ui.project import MapView
 from robomill.units import UNITS, format_percent, format_value, from_si

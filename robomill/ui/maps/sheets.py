@@ -12,7 +12,8 @@ from robomill.arrays import FloatArray
 from robomill.compliance.components import COMPONENTS, CROSS, DIRECT, symmetric
 from robomill.paper import Point
 from robomill.robot.model import Robot
-from robomill.ui import declared, inputs, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, inputs
 from robomill.ui.maps import board, compare, lines, plane, sides
 from robomill.ui.maps.board import Planes
 from robomill.ui.maps.plane import Region

@@ -8,7 +8,8 @@ from typing import Any
 from robomill.arrays import FloatArray
 from robomill.improve.sensitivity import stiffened
 from robomill.robot.model import Robot
-from robomill.ui import fields, inputs, other, pieces, session
+from robomill.ui import fields, other, pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.maps.board import Planes
 from robomill.units import format_count, unit_label
 from robomill.viz.maps import Scale

@@ -8,7 +8,9 @@ from robomill.errors import RobomillError
 from robomill.io.meshes import UNITS_OF_STL, read_stl_stock
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.stock import Stock
-from robomill.ui import declared, inputs, pieces, running, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, inputs
+from robomill.ui.work import running
 from robomill.units import format_count, format_many, format_short
 
 STOCKS = {"path": "Around the path", "block": "Block", "stl": "From a solid"}

@@ -8,11 +8,13 @@ import streamlit as st
 
 from robomill.progress import checkpoint
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, inputs, pieces, rendered, session
-from robomill.ui import job as jobs
-from robomill.ui.job import Job
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
+from robomill.ui.work import cached, rendered
+from robomill.ui.work import job as jobs
+from robomill.ui.work.job import Job
 from robomill.units import format_times
-from robomill.viz.animation import FRAMES, Kind, absent, encode, film_frame, film_samples
+from robomill.viz.rendered.animation import FRAMES, Kind, absent, encode, film_frame, film_samples
 from robomill.viz.views import headroom, surface_picture
 
 KEY, COUNT = "milling.film", "milling.film.pictures"

@@ -15,13 +15,15 @@ from robomill.cutting.forces.measured import PAPER_CUTOFF, ForceRecord, Measured
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.errors import RobomillError
-from robomill.io.forces import read_forces
+from robomill.io.measured.forces import read_forces
 from robomill.paper import SLOT
 from robomill.quantities import declared_types
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import cached, declared, inputs, pieces, running, session
-from robomill.ui.job import Underway
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, inputs
 from robomill.ui.milling import materials as material_panel
+from robomill.ui.work import cached, running
+from robomill.ui.work.job import Underway
 from robomill.units import format_count
 
 PENDING = "milling.force.pending"

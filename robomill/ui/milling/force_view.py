@@ -5,8 +5,8 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.cutting.force import ForceSpread
 from robomill.simulation.coupling import COUPLING
+from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components, largest_deviations
 from robomill.surface.stock_unit import OUTSIDE
 from robomill.ui import pieces, session

@@ -14,10 +14,11 @@ import streamlit as st
 
 from robomill.arrays import digest
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.work import cached
 from robomill.units import decimals, format_limit, format_times, from_si, to_si, unit_label
 from robomill.viz.live_cut import Parcel, parcel
-from robomill.viz.picture import CAMERAS
+from robomill.viz.rendered.picture import CAMERAS
 from robomill.viz.theme import diverging, palette
 
 KEY, SENT, SEQ = "milling.live", "milling.live.sent", "milling.live.seq"

@@ -17,8 +17,9 @@ from robomill.io.materials import material_from_toml, material_to_toml, sample_m
 from robomill.io.texts import read_text
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
-from robomill.ui import grid, inputs, pieces, session
-from robomill.ui.box import box_of
+from robomill.ui import pieces, session
+from robomill.ui.entry import grid, inputs
+from robomill.ui.entry.box import box_of
 from robomill.units import unit_label
 
 OWN, NEW = "milling.materials", "milling.material"

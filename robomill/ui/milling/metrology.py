@@ -8,18 +8,19 @@ import streamlit as st
 
 from robomill.arrays import IntArray
 from robomill.errors import RobomillError
-from robomill.io.profiles import MeasuredProfile, read_profile
-from robomill.simulation.gauge import Gauge
+from robomill.io.measured.profiles import MeasuredProfile, read_profile
+from robomill.simulation.judging.gauge import Gauge
+from robomill.simulation.judging.verdict_words import way
+from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import offset_band
-from robomill.simulation.verdict_words import way
 from robomill.surface.deviation import Deviation
-from robomill.surface.groove import GrooveSection
-from robomill.surface.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
-from robomill.ui import inputs, pieces, session
-from robomill.ui.cached import by_result, shared
+from robomill.surface.sections.groove import GrooveSection
+from robomill.surface.sections.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.milling.scrubber import station_m
+from robomill.ui.work.cached import by_result, shared
 from robomill.units import format_beside, format_limit, format_many, format_percent, format_si, from_si
 from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figure
 

@@ -11,13 +11,15 @@ from robomill.report.tables import csv_text
 from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.surface.zmap import ZMap
-from robomill.ui import cached, inputs, pieces, rendered, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.milling import live_cut
 from robomill.ui.milling import scrubber as linked
+from robomill.ui.work import cached, rendered
 from robomill.units import format_si
-from robomill.viz import worker
-from robomill.viz.picture import SurfacePicture
-from robomill.viz.posed import posed
+from robomill.viz.rendered import worker
+from robomill.viz.rendered.picture import SurfacePicture
+from robomill.viz.rendered.posed import posed
 from robomill.viz.views import surface_picture
 
 PLACE = "milling.picture"

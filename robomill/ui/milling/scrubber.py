@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
+from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import nearest_judged
 from robomill.ui import pieces, session, uncertainty
 from robomill.units import format_many, from_si

@@ -15,9 +15,10 @@ from robomill.compliance.springs import SPRINGS
 from robomill.errors import RobotError
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.result import SimulationResult
-from robomill.ui import declared, grid, inputs, pieces, session
-from robomill.ui.box import box_of
-from robomill.ui.cells import Cells
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, grid, inputs
+from robomill.ui.entry.box import box_of
+from robomill.ui.entry.cells import Cells
 from robomill.units import format_si, unit_label
 
 WEIGHT = Cells(("kg", "x mm", "y mm", "z mm"), ["kg", "mm", "mm", "mm"], RobotError)

@@ -6,14 +6,16 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
+from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.spread import AlloySpread
 from robomill.simulation.stations import force_components
 from robomill.simulation.tools import cutting_numbers
-from robomill.surface.groove import GrooveSection
-from robomill.ui import cached, declared, inputs, other, pieces, session, shell
+from robomill.surface.sections.groove import GrooveSection
+from robomill.ui import other, pieces, session, shell
+from robomill.ui.entry import declared, inputs
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling.scrubber import station_m
+from robomill.ui.work import cached
 from robomill.units import format_si, from_si, unit_label
 from robomill.viz.deviation import shares_figure
 from robomill.viz.dial import Dial, dial_figure

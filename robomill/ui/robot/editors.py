@@ -7,10 +7,11 @@ from typing import Any
 import pandas as pd
 import streamlit as st
 
-from robomill.io.robots import load_robot, robot_titles
+from robomill.io.robot.robots import load_robot, robot_titles
 from robomill.provenance import Provenance
 from robomill.robot.model import USER_SET, Robot
-from robomill.ui import grid, inputs, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import grid, inputs
 from robomill.ui.project import Project
 from robomill.ui.robot import files, frames, joints, tables
 from robomill.units import unit_label

@@ -12,9 +12,11 @@ from robomill.kinematics.transforms import rotation_from_turns, transform, turns
 from robomill.quantities import Quantity
 from robomill.robot.model import TOOL_TIP, Robot
 from robomill.simulation.given import SPIN
-from robomill.ui import cached, declared, inputs, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, inputs
 from robomill.ui.project import Project
 from robomill.ui.robot import tables
+from robomill.ui.work import cached
 from robomill.units import format_many, format_si
 
 MINUS, GIVEN = "−", "given"

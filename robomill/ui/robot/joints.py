@@ -14,7 +14,8 @@ from robomill.robot.joints import (
     with_new_joint,
 )
 from robomill.robot.model import Robot
-from robomill.ui import inputs, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.robot import files
 
 CHOSEN = "robot.joint"

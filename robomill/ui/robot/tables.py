@@ -10,8 +10,8 @@ from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import COMPLIANCE, is_stiffness, meant, of_joint, shown
-from robomill.ui.box import NumberBox
-from robomill.ui.cells import Cells
+from robomill.ui.entry.box import NumberBox
+from robomill.ui.entry.cells import Cells
 from robomill.units import in_lengths, unit_label
 
 TOOL_AXES = ("-z", "+z", "-y", "+y", "-x", "+x")

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import streamlit as st
 
 from robomill.errors import RobomillError
-from robomill.ui import inputs, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.keeping import autosave
 from robomill.ui.markup import as_markdown
 from robomill.ui.project import Project

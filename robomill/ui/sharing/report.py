@@ -7,8 +7,9 @@ import streamlit as st
 
 from robomill.identification.knowledge import Knowledge
 from robomill.simulation.result import SimulationResult
-from robomill.ui import cached, pieces, session
+from robomill.ui import pieces, session
 from robomill.ui.project import Project
+from robomill.ui.work import cached
 
 REMEDIES = "handing.remedies"  # kept by who computes them: (fingerprint of the set-up, what was made)
 A_REPORT, A_SAMPLE = 0.1, 0.4e-3  # s, about

@@ -12,7 +12,7 @@ import numpy as np
 
 from robomill.arrays import digest
 from robomill.errors import RobomillError
-from robomill.io.robots import load_robot, robot_names
+from robomill.io.robot.robots import load_robot, robot_names
 from robomill.io.tables import exactly
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui.project import Project, preset_setup, presets

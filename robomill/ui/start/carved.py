@@ -9,8 +9,9 @@ from pathlib import Path
 import streamlit as st
 
 from robomill.lazy import cached_property
-from robomill.simulation.verdict_words import Level
-from robomill.ui import inputs, pieces, session
+from robomill.simulation.judging.verdict_words import Level
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.markup import Html, unparted
 from robomill.ui.project import preset_setup
 from robomill.ui.verdict import WORDS

@@ -10,16 +10,18 @@ import streamlit as st
 
 from robomill.files import PROGRAM
 from robomill.paper import SLOT
-from robomill.simulation.origins import sources
+from robomill.simulation.origin.origins import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import cached, evidence, inputs, pieces, rendered, session
+from robomill.ui import evidence, pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.markup import unparted
 from robomill.ui.project import Project, View
 from robomill.ui.push import decided
 from robomill.ui.verdict import verdict_sentence
+from robomill.ui.work import cached, rendered
 from robomill.units import format_beside, format_count, format_si, format_times
-from robomill.viz.picture import SurfacePicture
+from robomill.viz.rendered.picture import SurfacePicture
 from robomill.viz.surfaces import surface_figure
 from robomill.viz.theme import DIVERGING
 from robomill.viz.views import surface_picture

@@ -3,9 +3,11 @@
 from pathlib import PurePath
 
 from robomill.files import PROGRAM
-from robomill.io import drawings, point_tables
+from robomill.io import point_tables
+from robomill.io.drawing import drawings
 from robomill.toolpath.text import SUFFIXES
-from robomill.ui import inputs, session
+from robomill.ui import session
+from robomill.ui.entry import inputs
 from robomill.ui.toolpath import drawing, points
 from robomill.ui.toolpath.program import brought, take_program
 

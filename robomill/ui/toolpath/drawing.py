@@ -8,13 +8,14 @@ import pandas as pd
 import streamlit as st
 
 from robomill.errors import RobomillError, ToolpathError, UnitAskedError
-from robomill.io.drawings import ASKED, drawing_from_bytes
+from robomill.io.drawing.drawings import ASKED, drawing_from_bytes
 from robomill.quantities import quantities
 from robomill.toolpath.drawing import ORIGINS, SIDES, Drawing, LayerCut
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.source import SketchSource
-from robomill.ui import declared, grid, inputs, pieces, session
-from robomill.ui.box import box_of
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, grid, inputs
+from robomill.ui.entry.box import box_of
 from robomill.ui.toolpath.sources import put_dropped
 from robomill.units import format_count, format_many, unit_label
 

@@ -5,8 +5,9 @@ import pandas as pd
 
 from robomill.errors import ToolpathError
 from robomill.toolpath.source import LinesSource
-from robomill.ui import declared, grid, pieces, session
-from robomill.ui.cells import Cells
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, grid
+from robomill.ui.entry.cells import Cells
 from robomill.ui.project import View
 from robomill.ui.toolpath.sources import put
 from robomill.units import unit_label

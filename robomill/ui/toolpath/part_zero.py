@@ -9,8 +9,9 @@ from robomill.errors import ToolpathError
 from robomill.kinematics.transforms import transform
 from robomill.simulation.given import PART_TURN, PART_ZERO, part_frame
 from robomill.toolpath.part_zero import frame_from_points, points_of_frame
-from robomill.ui import declared, grid, inputs, pieces, session
-from robomill.ui.cells import Cells
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, grid, inputs
+from robomill.ui.entry.cells import Cells
 from robomill.units import format_si, unit_label
 from robomill.vectors import angle_between
 

@@ -7,8 +7,9 @@ import streamlit as st
 from robomill.errors import ToolpathError
 from robomill.io.point_tables import ASKED, points_from_bytes
 from robomill.toolpath.path import FEED
-from robomill.ui import declared, inputs, pieces, session
-from robomill.ui.box import box_of
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, inputs
+from robomill.ui.entry.box import box_of
 from robomill.ui.toolpath.sources import put_dropped
 from robomill.units import unit_label
 

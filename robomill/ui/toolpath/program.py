@@ -14,8 +14,9 @@ from robomill.toolpath.gcode.dialects import NAMES, choose_dialect
 from robomill.toolpath.path import ROTARY_ASKED, TABLES, Toolpath
 from robomill.toolpath.source import LEANS, GCodeSource
 from robomill.toolpath.text import SUFFIXES
-from robomill.ui import inputs, pieces, session, typed
-from robomill.ui.box import NumberBox
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs, typed
+from robomill.ui.entry.box import NumberBox
 from robomill.ui.toolpath import reading
 from robomill.ui.toolpath.details import DIALECTS
 from robomill.ui.toolpath.program_view import program_view, select_line, selected_line

@@ -14,12 +14,13 @@ from robomill.errors import ToolpathError
 from robomill.io.materials import sample_materials
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
+from robomill.simulation.origin.sources import changed_sources
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.sources import changed_sources
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import declared, inputs, pieces, session, typed
-from robomill.ui.box import NumberBox, box_of
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, inputs, typed
+from robomill.ui.entry.box import NumberBox, box_of
 from robomill.units import format_many, format_si
 
 KEY, MATERIAL = "toolpath.question", "material"

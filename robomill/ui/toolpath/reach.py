@@ -8,7 +8,7 @@ from robomill.arrays import FloatArray
 from robomill.robot.model import Robot
 from robomill.simulation import reach
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui.cached import by_setup, shared
+from robomill.ui.work.cached import by_setup, shared
 from robomill.units import from_si
 
 BOARD_CELLS = (80, 80)

@@ -8,9 +8,10 @@ import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import beside, job, session
-from robomill.ui.job import Job
+from robomill.ui import session
 from robomill.ui.toolpath.sources import read_with
+from robomill.ui.work import beside, job
+from robomill.ui.work.job import Job
 from robomill.units import format_percent
 
 KEY = "toolpath.reading"

@@ -8,8 +8,9 @@ import streamlit as st
 from robomill.quantities import quantities
 from robomill.toolpath.sketch import SHAPES, Sketch
 from robomill.toolpath.sketch_presets import PRESETS, preset
-from robomill.ui import declared, grid, inputs, pieces, session
-from robomill.ui.box import NumberBox
+from robomill.ui import pieces, session
+from robomill.ui.entry import declared, grid, inputs
+from robomill.ui.entry.box import NumberBox
 from robomill.ui.toolpath.sketch_table import sketch_frame, sketch_from_frame
 from robomill.ui.toolpath.sources import put_sketch, sketch_source
 from robomill.units import format_si, unit_label

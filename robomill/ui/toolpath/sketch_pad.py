@@ -13,8 +13,9 @@ import streamlit as st
 from robomill.arrays import digest
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.source import SketchSource
-from robomill.ui import inputs, session
+from robomill.ui import session
 from robomill.ui.component import component
+from robomill.ui.entry import inputs
 from robomill.ui.project import Project
 from robomill.ui.toolpath.sketch_table import in_unit, pad_elements, sketch_from_pad
 from robomill.ui.toolpath.sources import put_sketch

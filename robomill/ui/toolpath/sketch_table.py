@@ -10,7 +10,7 @@ import pandas as pd
 from robomill.errors import ToolpathError
 from robomill.toolpath.sketch import SHAPES, Element, Sketch
 from robomill.typed_numbers import read_number, write_number
-from robomill.ui.grid import empty
+from robomill.ui.entry.grid import empty
 from robomill.units import from_si, to_si, unit_label
 
 COLUMNS = ("line", "shape", "points", "depth", "feed")

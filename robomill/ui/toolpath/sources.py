@@ -17,8 +17,10 @@ from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Element, Sketch
 from robomill.toolpath.sketch_presets import preset
 from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
-from robomill.ui import inputs, pieces, running, session
+from robomill.ui import pieces, session
+from robomill.ui.entry import inputs
 from robomill.ui.toolpath import program_view, question
+from robomill.ui.work import running
 from robomill.units import format_count
 
 KINDS = {"program": "Program", "lines": "Table of lines", "sketch": "Sketch"}

@@ -5,10 +5,10 @@ import dataclasses
 import numpy as np
 
 from robomill.provenance import Finding
+from robomill.simulation.judging.verdict_words import said
 from robomill.simulation.reach import PathReach
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.tools import feed_notes
-from robomill.simulation.verdict_words import said
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
 from robomill.ui import other, pieces

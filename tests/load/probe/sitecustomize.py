@@ -25,9 +25,9 @@ def _count(*_: object) -> None:
     gc.collect()
     after = counts()
     told = {name: [before[name], after[name]] for name in NAMES}
-    if "robomill.ui.commons" in sys.modules:
-        from robomill.ui.commons import Commons, weight
+    if "robomill.ui.work.commons" in sys.modules:
         from robomill.ui.session import Store
+        from robomill.ui.work.commons import Commons, weight
 
         commons = [dict(one._held) for one in gc.get_objects() if isinstance(one, Commons)]
         stores = [one for one in gc.get_objects() if isinstance(one, Store)]

@@ -12,7 +12,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.parameters import Parameters
-from robomill.toolpath.gcode.value_rules import MAX_DEPTH
+from robomill.toolpath.gcode.rules.value_rules import MAX_DEPTH
 
 ARITHMETIC = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "**": operator.pow}
 LOGIC = {

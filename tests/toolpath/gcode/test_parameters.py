@@ -9,8 +9,8 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.expressions import Reader
-from robomill.toolpath.gcode.flow_rules import enter_names
 from robomill.toolpath.gcode.parameters import COUNT, LEVELS, MAX_NAMED, READ_ONLY, RETURNED, Parameters
+from robomill.toolpath.gcode.rules.flow_rules import enter_names
 
 PROVIDED = {"_x": 4.5, "_y": -2.0}
 

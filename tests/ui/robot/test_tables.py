@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import ProjectError, RobotError
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 from robomill.robot.model import Robot
 from robomill.ui.robot import tables
 from robomill.units import to_si

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from robomill.cli import main
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.project import Project, preset_setup, presets, project_to_toml, with_field
 from robomill.ui.sharing.spoken import spoken

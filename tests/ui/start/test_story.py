@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robomill.io.robots import load_robot
+from robomill.io.robot.robots import load_robot
 from robomill.simulation.run import simulate
 from robomill.ui.project import preset_setup
 from robomill.ui.push import whole

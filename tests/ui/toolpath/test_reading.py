@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robomill.errors import GCodeError
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.job import Job
+from robomill.ui.work.job import Job
 
 
 def program(lines: int) -> str:

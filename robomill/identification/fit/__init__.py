@@ -1,0 +1,1 @@
+"""Equations from measurements, fitted, and judged on what was left out."""

@@ -1,0 +1,1 @@
+"""Drawings as lines by layer: DXF and SVG."""

@@ -1,0 +1,340 @@
+"""SVG drawings as lines by layer: read by svgelements, after a look of our own at what an untrusted file may hold.
+
+Layers are those of Inkscape, else the groups of the page. Y points up from the lower edge of the page, X from its left.
+"""
+
+import io
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from robomill.arrays import FloatArray
+from robomill.errors import ToolpathError
+from robomill.extras import needed
+from robomill.io.drawing.dxf import PER_INCH, STUMBLES, Read, Reading, metres
+from robomill.io.drawing.svg_viewports import (
+    ABSOLUTE,
+    NOT_DRAWN,
+    SIZE,
+    SVG,
+    XLINK,
+    Viewports,
+    box_of,
+    kind_of,
+    pixels,
+    target_of,
+)
+from robomill.toolpath.gcode.arcs import CHORD_ERROR
+from robomill.units import format_count
+
+DEEPEST = 200  # elements in elements, twice as many where some are used by others
+MOST_TAGS = 100_000  # beginnings, ends and comments of elements
+MOST_ELEMENTS, OF_ONE = 20_000, 50  # drawn, each time they are used; so many characters of a path count as one,
+STRETCHES = 5  # and so many lines and curves of it
+MOST_STYLE, MOST_TRANSFORM = 20_000_000, 1_000  # characters: of styles, times elements; of any other attribute
+INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
+LAYER, NO_LAYER = "robomill-layer", "drawing"
+PLACED = 60  # characters of the transform that a viewport or a use comes to
+WORDS = ("text", "image", "foreignObject")
+# All that says where a line is; the rest would be handed down to every element below.
+PLACES = "d points x y x1 y1 x2 y2 cx cy r rx ry width height viewBox preserveAspectRatio transform"
+STYLED = frozenset((*PLACES.split(), "display"))
+KEPT = STYLED | {"style", "class", "id", "href", XLINK, LAYER}
+LONG = {"d", "points", "style"}  # attributes that may be
+COMMANDS = "MLTHVCSQAZmlthvcsqaz"
+_NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
+
+
+class Svg:
+    """An SVG document; ``unit`` is that of the size of its page, "" where that is in pixels, or nowhere."""
+
+    def __init__(self, data: bytes, name: str) -> None:
+        with needed("An SVG drawing"):
+            import svgelements  # noqa: F401 (before anything is read)
+        self.name, self.left_out = name, Counter[str]()
+        self.root = self._parsed(_text_of(data, name))
+        self._look()
+        self.unit = self._sized()
+
+    def _parsed(self, text: str) -> ElementTree.Element:
+        if re.search(r"<!\s*ENTITY", text):
+            raise ToolpathError(
+                f"{self.name}: it declares entities (<!ENTITY), which no plain drawing needs; save it as plain SVG."
+            )
+        if text.count("<") > MOST_TAGS:
+            raise self._too_many()
+        try:
+            root = ElementTree.fromstring(text)
+        except ElementTree.ParseError as exc:
+            raise ToolpathError(
+                f"{self.name}: this is no SVG file, or one that is damaged or cut off ({exc}); export it again as SVG."
+            ) from None
+        level = [root]
+        for _ in range(DEEPEST):
+            level = [child for element in level for child in element]
+        if level:
+            raise self._refuse(f"its elements are nested deeper than {DEEPEST}")
+        if root.tag not in ("svg", f"{SVG}svg"):
+            raise ToolpathError(f"{self.name}: the file holds <{root.tag:.60}>, expected <svg>; export it as SVG.")
+        return root
+
+    def _refuse(self, why: str) -> ToolpathError:
+        return Reading(self.name).refuse(why)
+
+    def _too_many(self) -> ToolpathError:
+        return self._refuse(f"it holds more than {format_count(MOST_ELEMENTS)} elements, each as often as it is used")
+
+    # ---- a look at everything before it is drawn -------------------------------------------------------------------
+    def _look(self) -> None:
+        """Names layers, puts away what is drawn only where it is used, and counts what all uses come to."""
+        self.known = known = {e.attrib["id"]: e for e in self.root.iter() if "id" in e.attrib}
+        for parent in list(self.root.iter()):
+            for place, child in enumerate(parent):
+                self._look_at(parent, place, child)
+        for element in self.root.iter():
+            for key in [key for key in element.attrib if key not in KEPT]:
+                del element.attrib[key]
+            for key in element.attrib.keys() - LONG:
+                if len(element.attrib[key]) > MOST_TRANSFORM:
+                    raise self._refuse(
+                        f"the {key:.20} of an element has more than {format_count(MOST_TRANSFORM)} characters"
+                    )
+            if "href" in element.attrib:  # of two it is the one that holds
+                element.attrib.pop(XLINK, None)
+            self._reduce(element)
+        drawn, turned = self._count_of(self.root, known, {}, set())
+        style = sum(len(e.text or "") for e in self.root.iter() if kind_of(e) == "style")
+        if style * drawn > MOST_STYLE:
+            raise self._refuse(f"its styles are {format_count(style)} characters long")
+        if turned > MOST_STYLE:
+            raise self._refuse("its transforms, one in another, are too long")
+
+    def _reduce(self, element: ElementTree.Element) -> None:
+        """Leave of words and styles what says where a line is, and whether it is drawn."""
+        element.text = _rules(element.text or "") if kind_of(element) == "style" else None
+        if "style" in element.attrib:
+            element.set("style", _placing(element.attrib["style"]))
+        if "class" in element.attrib:
+            element.set("class", " ".join(dict.fromkeys(element.attrib["class"].split())))
+
+    def _look_at(self, parent: ElementTree.Element, place: int, child: ElementTree.Element) -> None:
+        kind = kind_of(child)
+        if kind == "g" and (parent is self.root or child.get(f"{INKSCAPE}groupmode") == "layer"):
+            label = child.get(f"{INKSCAPE}label") or child.get("id")
+            if label:
+                child.set(LAYER, label[:200])
+        if kind in NOT_DRAWN and kind_of(parent) != "defs":
+            put_away = ElementTree.Element(f"{SVG}defs")
+            parent[place] = put_away
+            put_away.append(child)
+        if kind in WORDS:
+            self.left_out[kind] += 1
+
+    def _count_of(
+        self,
+        element: ElementTree.Element,
+        known: dict[str, ElementTree.Element],
+        counted: dict[ElementTree.Element, tuple[int, int]],
+        around: set[ElementTree.Element],
+    ) -> tuple[int, int]:
+        """Elements that it comes to with all that it uses, and characters of the transforms around all of them.
+
+        Raises ToolpathError for too many, and for a circle.
+        """
+        if element in around or len(around) > 2 * DEEPEST:
+            raise self._refuse("an element uses itself (<use>), or others do deeper than can be followed")
+        if element not in counted:
+            around.add(element)
+            inside = list(element)
+            kind = kind_of(element)
+            if kind == "use" and (target := target_of(element, known)) is not None:
+                inside.append(target)
+            if kind == "use" and not element.get("href", element.get(XLINK, "")).strip().startswith("#"):
+                self.left_out["use of another file"] += 1
+            count, turned = 1 + _weight(element), 0
+            for each in inside:
+                of_each = self._count_of(each, known, counted, around)
+                count, turned = count + of_each[0], turned + of_each[1]
+            if count > MOST_ELEMENTS:
+                raise self._too_many()
+            placed = PLACED if kind in ("use", "symbol", "svg") else 0
+            counted[element] = count, turned + count * (placed + len(element.get("transform", "")))
+            around.discard(element)
+        return counted[element]
+
+    def _sized(self) -> str:
+        """Whether the page has a size in a unit of length; one of the two follows from the other by the view box."""
+        sizes = {key: SIZE.fullmatch(self.root.get(key, "")) for key in ("width", "height")}
+        box = box_of(self.root)
+        good = {key: m for key, m in sizes.items() if m and m[2] != "%" and float(m[1]) > 0.0}
+        if box and len(good) == 1:
+            (key, m), ratio = *good.items(), box[3] / box[2]
+            other, times = ("height", ratio) if key == "width" else ("width", 1.0 / ratio)
+            self.root.set(other, f"{float(m[1]) * times!r}{m[2]}")
+        elif len(good) < 2:
+            for key in sizes:
+                self.root.attrib.pop(key, None)
+        said = [unit for m in good.values() if (unit := m[2].lower()) in ABSOLUTE]
+        for key in sizes:  # in pixels, to the last digit
+            read = SIZE.fullmatch(self.root.get(key, ""))
+            if read and (unit := read[2].lower()) in ABSOLUTE:
+                self.root.set(key, repr(float(read[1]) * pixels(unit)))
+        return ABSOLUTE[said[0]] if said else ""  # one that says it fixes the other, whose pixels are 1/96 in
+
+    def scale(self, unit: str) -> float:
+        """m: a pixel, which is a ``unit`` where the page does not say how large it is. Raises ToolpathError."""
+        if self.unit and unit != self.unit:
+            raise ToolpathError(
+                f"{self.name}: the page says its size in {self.unit}, which fixes every length; leave the unit out.",
+                where="unit",
+            )
+        return metres("px" if self.unit else unit)
+
+    # ---- the lines -------------------------------------------------------------------------------------------------
+    def read(self, scale: float) -> Read:
+        """Its lines, with ``scale`` (m) for a pixel."""
+        import svgelements
+
+        reading = Reading(self.name)
+        reading.found.left_out.update(self.left_out)
+        try:
+            written = ElementTree.tostring(Viewports(self.name, self.known).written_out(self.root), encoding="unicode")
+            page = svgelements.SVG.parse(io.StringIO(written), ppi=PER_INCH["px"], on_error="raise")
+            height = float(page.height) if page.viewbox is not None or "height" in self.root.attrib else 0.0
+            for element in page.elements():
+                if not isinstance(element, svgelements.Shape):
+                    continue
+                layer = str(element.values.get(LAYER, NO_LAYER))
+                for shape, line in _lines(abs(svgelements.Path(element)), scale, reading):
+                    reading.take(layer, shape, line * [1.0, -1.0] + [0.0, height * scale])
+        except ToolpathError:
+            raise
+        except (*STUMBLES, RecursionError) as exc:
+            # svgelements has no error of its own: what a broken path or transform makes it stumble over.
+            raise ToolpathError(
+                f"{self.name}: a path or a transform in it cannot be read ({type(exc).__name__}: {str(exc)[:80]}); "
+                "export it again as SVG."
+            ) from None
+        return reading.found
+
+
+def _weight(element: ElementTree.Element) -> int:
+    """How many elements more one counts as, of whose path or style there is much."""
+    d, points = element.get("d", ""), element.get("points", "")
+    weight = (len(d) + len(points) + len(element.get("style", ""))) // OF_ONE
+    if weight > MOST_ELEMENTS:
+        return weight
+    stretches = max(sum(map(d.count, COMMANDS)), len(_NUMBER.findall(d + points)) // 2)
+    return max(weight, stretches // STRETCHES)
+
+
+def _placing(style: str) -> str:
+    """The part of a style that says where a line is, and whether it is drawn."""
+    return ";".join(each for each in style.split(";") if each.partition(":")[0].strip() in STYLED)
+
+
+def _rules(sheet: str) -> str:
+    """The rules of a style sheet that do."""
+    first, *rest = sheet.split("/*")
+    found = []
+    for rule in "".join([first, *(each.partition("*/")[2] for each in rest)]).split("}"):
+        names, _, style = rule.partition("{")
+        if placing := _placing(style):
+            found.append(f"{','.join(dict.fromkeys(name.strip() for name in names.split(',')))}{{{placing}}}")
+    return "\n".join(found)
+
+
+def _text_of(data: bytes, name: str) -> str:
+    """The text without its declaration: what is looked at is what is parsed, whatever encoding it names."""
+    try:
+        text = data.decode("utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    if "\0" in text:
+        raise ToolpathError(f"{name}: this is a binary file; expected an SVG drawing in text.")
+    return re.sub(r"^\s*<\?xml[^>]*\?>", "", text)
+
+
+def _lines(path: Any, scale: float, to: Reading) -> Iterator[tuple[Any, FloatArray]]:
+    """Shape and points (r, 2) m of every stretch of a path that is drawn without lifting."""
+    run: list[Any] = []
+    for segment in path:
+        if type(segment).__name__ == "Move" and run:
+            yield _line(run, scale, to)
+            run = []
+        if type(segment).__name__ != "Move":
+            run.append(segment)
+            if type(segment).__name__ == "Close":
+                yield _line(run, scale, to)
+                run = []
+    if run:
+        yield _line(run, scale, to)
+
+
+def _line(run: list[Any], scale: float, to: Reading) -> tuple[Any, FloatArray]:
+    """One stretch: a circle where all of it is, else a line or a polyline."""
+    arcs = [each for each in run if type(each).__name__ == "Arc"]
+    others = [each for each in run if each not in arcs and abs(each.end - each.start) * scale > CHORD_ERROR]
+    begin = _at(run[0].start)
+    if arcs and not others and _one_circle(arcs, scale):
+        return "circle", np.array([_at(arcs[0].center), begin]) * scale
+    found, count = [begin[None]], 1
+    for each in run:
+        found.append(_corners(each, scale, to, count))
+        count += len(found[-1])
+    points = np.vstack(found) * scale
+    if not np.isfinite(points).all():
+        raise ValueError("a point is no number")
+    return ("line" if len(points) == 2 else "polyline"), points
+
+
+def _at(point: Any) -> FloatArray:
+    return np.array([float(point.x), float(point.y)])
+
+
+def _one_circle(arcs: list[Any], scale: float) -> bool:
+    first = arcs[0]
+    turn = sum(float(arc.sweep) for arc in arcs)
+    alike = all(
+        abs(arc.rx - arc.ry) * scale < CHORD_ERROR
+        and abs(arc.rx - first.rx) * scale < CHORD_ERROR
+        and abs(arc.center - first.center) * scale < CHORD_ERROR
+        for arc in arcs
+    )
+    return alike and math.isclose(abs(turn), 2.0 * math.pi, rel_tol=1e-9)
+
+
+def _corners(segment: Any, scale: float, to: Reading, before: int) -> FloatArray:
+    """(r, 2) px: the corners behind the start of a segment, within ``CHORD_ERROR`` of it; ``before`` come before."""
+    kind = type(segment).__name__
+    if kind == "Arc":
+        largest = max(float(segment.rx), float(segment.ry)) * scale
+        step = 2.0 * math.acos(max(1.0 - CHORD_ERROR / max(largest, CHORD_ERROR), 0.5))
+        count = max(2, math.ceil(abs(float(segment.sweep)) / step))
+    elif kind in ("QuadraticBezier", "CubicBezier"):
+        count = _bezier_chords([_at(p) * scale for p in _controls(segment)])
+    else:
+        count = 1
+    to.look(before + count)
+    if count == 1:
+        return _at(segment.end)[None]
+    return np.vstack([np.asarray(segment.npoint(np.arange(1, count) / count)), _at(segment.end)])
+
+
+def _controls(segment: Any) -> list[Any]:
+    if type(segment).__name__ == "QuadraticBezier":
+        return [segment.start, segment.control, segment.end]
+    return [segment.start, segment.control1, segment.control2, segment.end]
+
+
+def _bezier_chords(controls: list[FloatArray]) -> int:
+    """How many equal steps of the parameter keep the chords of a Bezier curve within ``CHORD_ERROR``: its second
+    derivative is at most n (n - 1) times the largest second difference of its control points."""
+    n = len(controls) - 1
+    most = max(float(np.linalg.norm(a - 2.0 * b + c)) for a, b, c in zip(controls, controls[1:], controls[2:]))
+    return max(1, math.ceil(math.sqrt(n * (n - 1) * most / (8.0 * CHORD_ERROR))))

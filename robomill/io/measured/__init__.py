@@ -1,0 +1,1 @@
+"""What was measured: load tests, forces, profiles and maps."""

@@ -1,0 +1,1 @@
+"""Robots as TOML and URDF files."""

@@ -1,0 +1,1 @@
+"""Set-ups as TOML files, and the tables in them."""

@@ -1,0 +1,1 @@
+"""What a gauge would read on the part, and what is said of it."""

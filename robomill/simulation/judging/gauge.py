@@ -1,0 +1,291 @@
+"""What a gauge would read on the part: how far its walls, floors and ends stand from where they were commanded.
+
+The deviation of the tip shows where the tool leaves a surface: beside it where material stays, under it where nothing
+cuts deeper. So each sample of a run is asked for its walls (to the left and right of the feed; all around in a plunge;
+ahead and behind too where the path turns), and for its floor, and every one is measured on the surface that is left in
+the end, by all passes that come by: what a later pass removes is not on the part. Where a cut begins or ends in the
+material the wall across its end is moved by the deviation along the feed; that is its own quantity (``ends``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.simulation.judging.leaning import lies
+from robomill.simulation.judging.places import Places, places
+from robomill.simulation.judging.seen import Run
+from robomill.surface.outline import Walls
+from robomill.values import ReadOnly
+
+CORNER = np.radians(45.0)
+TURNS = np.radians(5.0)  # where the path turns more, walls ahead and behind are looked for too
+AROUND = np.radians(np.arange(0.0, 360.0, 22.5))
+LOOK = np.radians(np.arange(0.0, 360.0, 10.0))  # for anything that stands
+ACROSS = (0.0, -0.3, 0.3, -0.6, 0.6)  # of the flat radius: where a floor is looked for,
+RIM = 0.98  # and at this share of what the tool cuts flat although it goes aside: a ledge beside a wall is narrow
+HEIGHTS = (0.05, 0.9)  # of the depth, above the nose: where a wall is measured
+ON_NOSE = 0.95  # of the depth, where the nose alone cuts
+BESIDE = 20e-6  # m: material this far beyond the rim makes a wall
+LEVEL = 1e-6  # what the share of the feed across the axis lacks of 1 where a move is level
+SLENDER = 0.125  # of its height: a wall as thin gives way to a cutter as the arm does
+ALIKE = 2e-6  # m: readings that differ by less are one
+LEAST = 1e-4  # share that a single place stands for
+SAME = 2e-6  # m: what other passes go beyond a wall by no more is the same wall
+
+
+@dataclass(frozen=True, eq=False)
+class Readings(ReadOnly):
+    """Places on the part: samples (q,) of the path that made them, signed errors (q,) m, lengths (q,) m along the path
+    and heights (q,) m that they stand for. Walls: left of the feed +; floors: up +; ends: along the feed +. ``own``
+    (q,) m is the deviation of the sample itself: where several passes come by, one of them has made the surface.
+    ``way`` (q, 3) is how far the error goes with the tip there, by feed, feed-normal and axial deviation.
+    """
+
+    sample: IntArray
+    error: FloatArray
+    length: FloatArray
+    height: FloatArray
+    own: FloatArray
+    way: FloatArray
+
+    @property
+    def worst(self) -> int:
+        """Which is largest, -1 where there is none; among equals the one whose sample is off by as much itself."""
+        if not len(self.error):
+            return -1
+        size = np.abs(self.error)
+        equal = np.flatnonzero(size >= size.max() - ALIKE)
+        return int(equal[np.argmin(np.abs(self.error - self.own)[equal] + (size.max() - size[equal]))])
+
+    def share_out(self, tolerance: float) -> float:
+        """Share of the length that is out of ``tolerance`` (m): 0 where nothing is, and never 0 where something is,
+        however short."""
+        return self._share(tolerance, self.length)
+
+    def area_out(self, tolerance: float) -> tuple[float, float]:
+        """(out of ``tolerance`` (m), all) m^2, by length and height; the first is never 0 where something is out."""
+        area = self.length * self.height
+        return self._share(tolerance, area) * float(area.sum()), float(area.sum())
+
+    def histogram(self, edges: FloatArray) -> FloatArray:
+        """(bins,) m^2, by length and height, between ``edges`` (bins + 1,) m; the outer bins hold what is beyond."""
+        inside = np.clip(self.error, edges[0], edges[-1])
+        return np.histogram(inside, bins=edges, weights=self.length * self.height)[0]
+
+    @property
+    def squares(self) -> float:
+        """m^4: the squares of the errors over the area that they stand for."""
+        return float(np.sum(self.error**2 * self.length * self.height))
+
+    def _share(self, tolerance: float, weight: FloatArray) -> float:
+        out, total = np.abs(self.error) > tolerance, float(weight.sum())
+        if not out.any():
+            return 0.0
+        return max(float(weight[out].sum()) / total if total > 0.0 else 1.0, LEAST)
+
+
+@dataclass(frozen=True, eq=False)
+class Gauge(ReadOnly):
+    """All that a gauge would find on the part; samples (g,) beside which a wall should stand and does not, and samples
+    (t,) beside which one is so ``thin`` that it gives way to the cut."""
+
+    walls: Readings
+    floors: Readings
+    ends: Readings
+    gone: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    thin: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+
+def gauge(result: Run, most: int | None = None) -> Gauge:
+    """Everything that can be measured on the part that a run leaves, at so ``most`` of its samples; nothing where a
+    tool that lies leaves no surface to be read from above."""
+    if lies(result.path).any() or not (result.judged.any() and result.removes.any()):
+        none = np.zeros(0)
+        nothing = Readings(none.astype(np.int64), none, none, none, none, np.zeros((0, 3)))
+        return Gauge(nothing, nothing, nothing)
+    at = places(result, most)
+    walls, gone, thin = _walls(at)
+    return Gauge(walls, _floors(at), _ends(at), gone, thin)
+
+
+@dataclass(frozen=True, eq=False)
+class Rims:
+    """Points of tools' rims where material stood beside them: at places q (m,), in direction u (m, 3), ``sign`` (m,) of
+    what lies outwards, ``length`` (m,) m of wall; measured at a ``height`` (m,) above the tip where the tool has a
+    ``radius`` (m,), on a wall ``deep`` (m,) m.
+    """
+
+    q: IntArray
+    u: FloatArray
+    sign: FloatArray
+    length: FloatArray
+    height: FloatArray
+    radius: FloatArray
+    deep: FloatArray
+
+    def only(self, keep: BoolArray) -> Rims:
+        """Some of them."""
+        return Rims(*(getattr(self, each.name)[keep] for each in fields(self)))
+
+
+def _rims(at: Places, q: IntArray, u: FloatArray, sign: FloatArray, length: FloatArray) -> Rims:
+    """Every rim at each of ``HEIGHTS``, which share its length."""
+    share = np.repeat(HEIGHTS, len(q))
+    q, u, sign = np.tile(q, len(HEIGHTS)), np.tile(u, (len(HEIGHTS), 1)), np.tile(sign, len(HEIGHTS))
+    length = np.tile(length, len(HEIGHTS)) / len(HEIGHTS)
+    R, nose = at.number("radius")[q], at.number("nose_height")[q]
+    deep = at.depth(q, at.c[q] + (R + BESIDE)[:, None] * u)
+    low = np.maximum(nose, at.below[q])
+    height = np.where(deep > low, low + share * (deep - low), ON_NOSE * deep)
+    radius = at.radius_at(q, height)
+    stands = at.stands(q, at.c[q] + (radius + BESIDE)[:, None] * u, height)
+    return Rims(q, u, sign, length, height, radius, deep - at.below[q]).only((deep > at.below[q] + SAME) & stands)
+
+
+def _standing(at: Places, rims: Rims) -> Walls:
+    """The walls that stand beyond rims; infinitely far where none was told."""
+    found = at.outline.walls(np.hstack([at.c[rims.q], at.axial[rims.q], rims.u]), rims.height, rims.radius)
+    return found._replace(told=np.nan_to_num(found.told, nan=np.inf))
+
+
+def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
+    """Walls at every place and direction where material stands beside the tool in the end; samples beside which one
+    should stand and does not, and beside which it is thin."""
+    steep, (begin, end), turn = at.steep, at.begins_or_ends, at.turn
+    rims = _directions(at, (turn > TURNS) & ~begin & ~end | steep)
+    told, left, one, carried = _standing(at, rims)
+    # Chords of an arc overlap on its inner side by no more than this.
+    gentle = (rims.length > 0.0) & (turn[rims.q] < CORNER) & ~steep[rims.q]
+    same = SAME + np.where(gentle, rims.radius * (1.0 - np.cos(turn[rims.q])), 0.0)
+    # A tool lifted above the height at which a wall is measured leaves metal over its whole width: the floor's error.
+    keep = (told <= same) & (at.d[rims.q, 2] < rims.height) & (one | np.isnan(left))
+    rims, told, left, carried = rims.only(keep), told[keep], left[keep], carried[keep]
+    q = rims.q
+    ahead, aside = _dot(rims.u, at.feed[q]), _dot(rims.u, at.left_of[q])
+    own = at.d[q, 0] * ahead + at.d[q, 1] * aside
+    # Beside a corner one looks along the wall of another pass: it is off by what that one has carried it, no more.
+    carried = np.where(left > told, np.maximum(np.maximum(carried, own), 0.0), carried)
+    error = np.where(np.abs(carried) < np.abs(left - told), carried, left - told)
+    error = np.where(np.isnan(left) | steep[q] | begin[q] | end[q], own, error)
+    upright = _upright(at, q, rims.height)
+    level, up = np.hypot(at.d[:, 0], at.d[:, 1]).max(), np.abs(at.d[:, 2]).max()
+    slanting = np.sqrt(1.0 - upright**2)
+    most = level * upright + up * slanting  # no wall moves further
+    error = np.clip(error * upright, -most, most)
+    reached = at.c[q] + (rims.radius + np.nan_to_num(left) + BESIDE)[:, None] * rims.u
+    lost = _nothing_stands(at, rims, (left - told > most + SAME) | ~at.stands(q, reached, rims.height))
+    way = rims.sign[:, None] * np.column_stack([ahead * upright, aside * upright, -slanting])
+    readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * rims.sign, way)
+    along = rims.only(rims.length > 0.0)
+    return readings, np.unique(at.i[q[lost]]), np.unique(at.i[along.q[_thin(at, along)]])
+
+
+def _thin(at: Places, rims: Rims) -> BoolArray:
+    """(m,) bool: walls that were told to be thinner than ``SLENDER`` of their height over at least that height; shorter
+    ones are the tips between two cuts that cross."""
+    behind = at.c[rims.q] + (rims.radius + SLENDER * rims.deep)[:, None] * rims.u
+    lines = np.hstack([behind, at.axial[rims.q], rims.u])
+    cut = np.isfinite(at.outline.walls(lines, rims.height, np.zeros(len(rims.q))).told)
+    thin = cut | ~at.stands(rims.q, behind, rims.height)
+    i, there = at.i[rims.q], np.zeros(len(at.result.path), dtype=bool)
+    there[i[thin]] = True
+    stretch, goes_on = np.cumsum(~there), there & np.append(False, there[:-1])
+    length = np.bincount(stretch, np.where(goes_on, at.result.path.step_length, 0.0))
+    return np.asarray(thin & (length[stretch[i]] >= rims.deep))
+
+
+def _nothing_stands(at: Places, rims: Rims, suspects: BoolArray) -> BoolArray:
+    """(m,) bool: whether nothing stands any more around where the wall beyond a rim was told to be, whichever way one
+    looks; asked of ``suspects`` (m,), where one looks through it."""
+    lost = np.zeros(len(suspects), dtype=bool)
+    some = np.flatnonzero(suspects)
+    if not len(some):
+        return lost
+    n = len(LOOK)
+    q, height = np.repeat(rims.q[some], n), np.repeat(rims.height[some], n)
+    wall = np.repeat((at.c[rims.q] + rims.radius[:, None] * rims.u)[some], n, axis=0)
+    way = (
+        np.tile(np.cos(LOOK), len(some))[:, None] * at.feed[q]
+        + np.tile(np.sin(LOOK), len(some))[:, None] * at.left_of[q]
+    )
+    left = at.outline.walls(np.hstack([wall, at.axial[q], way]), height, np.zeros(len(q))).left
+    near = np.isnan(left) | (left < at.outline.reach) & at.stands(q, wall + (left + BESIDE)[:, None] * way, height)
+    lost[some] = ~near.reshape(-1, n).any(axis=1)
+    return lost
+
+
+def _directions(at: Places, around: BoolArray) -> Rims:
+    """To the left and right of the feed at every place, and all around where asked for; left of the feed counts +."""
+    every, turning = np.arange(len(at.i)), np.flatnonzero(around)
+    ahead, aside = np.tile(np.cos(AROUND), len(turning)), np.tile(np.sin(AROUND), len(turning))
+    q = np.repeat(turning, len(AROUND))
+    u = [at.left_of, -at.left_of, ahead[:, None] * at.feed[q] + aside[:, None] * at.left_of[q]]
+    sign = [np.ones(len(every)), -np.ones(len(every)), np.where(aside < -1e-9, -1.0, 1.0)]
+    length = at.length
+    lengths = [length, length, np.zeros(len(q))]
+    return _rims(at, np.concatenate([every, every, q]), *map(np.concatenate, (u, sign, lengths)))
+
+
+def _upright(at: Places, q: IntArray, height: FloatArray) -> FloatArray:
+    """How upright the cutter's side is at a height: 1 on a cylinder, less on a nose or a cone, where an error across
+    the axis is further than one normal to the surface."""
+    step = 1e-6
+    spread = at.radius_at(q, height + step) - at.radius_at(q, height - step)
+    return np.asarray(1.0 / np.hypot(1.0, spread / (2.0 * step)))
+
+
+def _floors(at: Places) -> Readings:
+    """The floor under every place, where there is one left: lowest over the width that the tool cuts flat."""
+    aside = np.hypot(at.d[:, 0], at.d[:, 1])
+    q, offset, u = _under(at, at.number("flat_radius"), aside)
+    inside = at.depth(q, at.c[q] + offset[:, None] * u) > SAME
+    inside &= at.below[q] <= SAME  # there is no floor beneath a cut through the stock
+    q, offset, u = q[inside], offset[inside], u[inside]
+    lines = np.hstack([at.c[q], at.axial[q], u])
+    told, error, found = at.outline.floors(lines, offset, (at.slope * aside)[q])
+    found &= ~(at.bottoms[q] & (told < -SAME))  # a peck's end is drilled away
+    deepest = at.bottoms[q] & (told > -SAME)  # a hole is as deep as its lowest point, wherever its cone has gone
+    error[deepest] = np.fmin(error, at.d[q, 2])[deepest]
+    q, error = q[found], error[found]
+    length = at.length[q] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]
+    return Readings(
+        at.i[q], error, length, 2.0 * at.number("radius")[q], at.d[q, 2], np.tile([0.0, 0.0, 1.0], (len(q), 1))
+    )
+
+
+def _under(at: Places, flat: FloatArray, aside: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Where a floor is looked for: places q (m,), offsets (m,) m along unit directions u (m, 3). Beneath the axis;
+    where the tool cuts flat across its feed, to both sides too; and at the bottom of a plunge all around."""
+    every, bottom = np.arange(len(at.i)), np.flatnonzero(at.bottoms & at.steep & (flat > 0.0))
+    rim = RIM * np.maximum(flat - aside, 0.0)
+    level = at.result.conditions.across[at.i] > 1.0 - LEVEL  # else the heel rounds the floor across the feed
+    beneath = every[~at.steep | at.bottoms]
+    wide = np.flatnonzero((flat > 0.0) & level & ~at.steep)
+    aims = [(beneath, np.zeros(len(beneath)))]
+    for at_side in (*(share * flat for share in ACROSS if share), rim, -rim):
+        some = wide[(np.abs(at_side) + aside < flat)[wide]]  # else metal left there is the wall's error
+        aims.append((some, at_side[some]))
+    turned = np.repeat(bottom, len(AROUND))
+    ahead, left = np.tile(np.cos(AROUND), len(bottom)), np.tile(np.sin(AROUND), len(bottom))
+    around = ahead[:, None] * at.feed[turned] + left[:, None] * at.left_of[turned]
+    q, offset = (np.concatenate(parts) for parts in zip(*aims, strict=True))
+    u = np.concatenate([at.left_of[q], around])
+    return np.concatenate([q, turned]), np.concatenate([offset, rim[turned]]), u
+
+
+def _ends(at: Places) -> Readings:
+    """Walls across the end of a cut, where material stands ahead of its last sample or behind its first."""
+    begin, end = (np.flatnonzero(chosen) for chosen in at.begins_or_ends)
+    q = np.concatenate([begin, end])
+    way = np.concatenate([-np.ones(len(begin)), np.ones(len(end))])
+    rims = _rims(at, q, way[:, None] * at.feed[q], way, np.zeros(len(q)))
+    rims = rims.only(_standing(at, rims).told <= SAME)
+    way = np.tile([1.0, 0.0, 0.0], (len(rims.q), 1))
+    return Readings(at.i[rims.q], at.d[rims.q, 0], rims.length, rims.deep, at.d[rims.q, 0], way)
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("qi,qi->q", a, b))

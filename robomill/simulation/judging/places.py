@@ -1,0 +1,164 @@
+"""Where a gauge is put on the part: the judged samples of a run, with the axes of their cut and the outlines there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.cutting.tool import Cutter
+from robomill.simulation.judging.seen import Run
+from robomill.surface.outline import Outline
+from robomill.surface.raster import stock_heights
+from robomill.surface.stock import stock_grid
+from robomill.vectors import angle_between
+
+STEEP = 0.5  # share of the feed across the tool below which a move is a plunge: its wall is a hole's
+APART = 10e-6  # m: samples that differ by more are looked at in between,
+BETWEEN = (0.25, 0.5, 0.75)  # at these shares of the way
+REACH = 1.5e-3  # m: walls are looked for so far from where they were commanded, and no further than the radius allows
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Judged samples i (q,) of a run, and places ``between`` (q,) one and the one before: tip c and axes of the cut
+    (feed, left, axial) in {W}, the deviation d along those axes, all (q, 3); ``outline`` holds the surfaces commanded
+    and left, ``of`` (q,) says which cutter cuts."""
+
+    result: Run
+    i: IntArray
+    between: BoolArray
+    c: FloatArray
+    feed: FloatArray
+    left_of: FloatArray
+    axial: FloatArray
+    d: FloatArray
+    cutters: tuple[Cutter, ...]
+    of: IntArray
+    outline: Outline
+
+    def radius_at(self, q: IntArray, height: FloatArray) -> FloatArray:
+        """Radius (m) of the cutters at places q, at a height (m) above their tips."""
+        every = np.stack([cutter.radius_at(np.maximum(height, 0.0)) for cutter in self.cutters])
+        return np.asarray(every[self.of[q], np.arange(len(q))])
+
+    @property
+    def length(self) -> FloatArray:
+        """(q,) m along the path that a place stands for."""
+        return np.where(self.between, 0.0, self.result.path.step_length[self.i])
+
+    def number(self, name: str) -> FloatArray:
+        """(q,) a number of each place's cutter."""
+        return np.array([getattr(cutter, name) for cutter in self.cutters])[self.of]
+
+    def depth(self, q: IntArray, points: FloatArray) -> FloatArray:
+        """How high (m) the stock stood over points (m, 3) m along the axes of places q; 0 beside it."""
+        stock = self.result.setup.stock_block
+        inside = ((points[:, :2] >= stock.lower[:2]) & (points[:, :2] <= stock.upper[:2])).all(axis=1)
+        top = np.full(len(points), float(stock.upper[2]))
+        if stock.triangles is not None:
+            cells = stock_grid(stock, self.result.setup.cell)
+            at = (points[:, :2] - [cells.x0, cells.y0]) / [cells.dx, cells.dy]
+            x, y = np.clip(np.rint(at).astype(int), 0, [cells.nx - 1, cells.ny - 1]).T
+            top = stock_heights(stock, cells.x, cells.y)[x, y]
+        return np.where(inside, np.maximum(top - points[:, 2], 0.0) / self.axial[q, 2], 0.0)
+
+    def stands(self, q: IntArray, points: FloatArray, height: FloatArray) -> BoolArray:
+        """(m,) bool: whether the stock stood higher than ``height`` (m,) m above the tips of places q there."""
+        return np.asarray(self.depth(q, points) > height)
+
+    @property
+    def below(self) -> FloatArray:
+        """(q,) m along the axis: how far the tip stands below the bottom of the stock, where walls begin, or 0."""
+        bottom = float(self.result.setup.stock_block.lower[2])
+        return np.asarray(np.maximum(bottom - self.c[:, 2], 0.0) / self.axial[:, 2])
+
+    @property
+    def steep(self) -> BoolArray:
+        """(q,): plunges, whose wall is a hole's."""
+        return self.result.conditions.across[self.i] < STEEP
+
+    @property
+    def begins_or_ends(self) -> tuple[BoolArray, BoolArray]:
+        """(q,) (q,): where cutting along the part begins, and where it ends: beside rapids, plunges and nothing."""
+        result = self.result
+        level = result.path.cutting & (result.conditions.across >= STEEP)
+        before, after = np.append(False, level[:-1]), np.append(level[1:], False)
+        return (level & ~before)[self.i] & ~self.between, (level & ~after)[self.i] & ~self.between
+
+    @property
+    def bottoms(self) -> BoolArray:
+        """(q,): where a plunge ends, at the floor of a hole."""
+        conditions, path = self.result.conditions, self.result.path
+        down = path.cutting & (conditions.across < STEEP) & (conditions.along < 0.0)
+        return np.asarray((down & ~np.append(down[1:], False))[self.i] & ~self.between)
+
+    @property
+    def turn(self) -> FloatArray:
+        """(q,) rad: the sharpest turn of the path at each place, towards the sample before or after it."""
+        path, R = self.result.path, self.result.R_MF[..., 0]
+        angle = angle_between(R[1:], R[:-1])
+        angle[~(path.cutting[1:] & path.cutting[:-1])] = 0.0
+        return np.where(self.between, 0.0, np.maximum(np.append(0.0, angle), np.append(angle, 0.0))[self.i])
+
+    @property
+    def slope(self) -> FloatArray:
+        """(q,) how far the path rises or sinks on its way across the tool; a plunge counts as two for one."""
+        conditions = self.result.conditions
+        return np.asarray((np.abs(conditions.along) / np.maximum(conditions.across, STEEP))[self.i])
+
+
+def places(result: Run, most: int | None = None) -> Places:
+    """The judged samples of a run that cuts; where one is off otherwise than the one before, places between them.
+    ``most`` samples: as many in even steps, and a tenth of those as far off as any, where there are more."""
+    path, tooling = result.path, result.tooling
+    some = np.flatnonzero(result.judged)
+    if most is not None and len(some) > most:
+        some = some[_chosen(np.cumsum(path.step_length[some]), result.delta_in_cut[some, 1:], most)]
+    after = some[(result.removes & np.append(False, result.judged[:-1] & (_changes(result) > APART)))[some]]
+    i = np.concatenate([some, *[after] * len(BETWEEN)])
+    share = np.repeat([1.0, *BETWEEN], [len(some), *[len(after)] * len(BETWEEN)])[:, None]
+    before = np.maximum(i - 1, 0)
+    moves, of = np.flatnonzero(result.removes), np.asarray(tooling.of_step)
+    reach = min(REACH, max(cutter.radius for cutter in tooling.cutters))
+    axes, lift = _upright_balls(result)
+    to_W = result.setup.T_MW[:3, :3]
+    off = np.where(share < 1.0, share * result.delta[i] + (1.0 - share) * result.delta[before], result.delta[i])
+    d: FloatArray = np.einsum("mij,mj->mi", axes[i], np.asarray(off @ to_W))
+    tips = path.p + lift
+
+    told, left = (np.hstack([p[moves - 1], p[moves]]) for p in (path.p + lift, result.p_machined + lift))
+    outline = Outline(told, left, tooling.cutters, of[moves], reach)
+    feed, left_of, axial = np.moveaxis(axes[i], 1, 0)
+    c = share * tips[i] + (1.0 - share) * tips[before]
+    return Places(result, i, share[:, 0] < 1.0, c, feed, left_of, axial, d, tooling.cutters, of[i], outline)
+
+
+def _chosen(s: FloatArray, off: FloatArray, most: int) -> IntArray:
+    """So ``most`` of samples that stand at s (n,) m, in even steps, and a tenth of those that are most ``off`` (n, 2)
+    m."""
+    size = np.linalg.norm(np.nan_to_num(off), axis=1)
+    worst = np.argpartition(size, len(size) - most // 10)[len(size) - most // 10 :]
+    even = np.searchsorted(s, np.linspace(0.0, s[-1], most))
+    return np.unique(np.concatenate([np.minimum(even, len(s) - 1), worst]))
+
+
+def _changes(result: Run) -> FloatArray:
+    """(m - 1,) m: how much each sample is off otherwise than the one before."""
+    return np.asarray(np.linalg.norm(np.diff(np.nan_to_num(result.delta), axis=0), axis=1))
+
+
+def _upright_balls(result: Run) -> tuple[FloatArray, FloatArray]:
+    """Axes of the cut (m, 3, 3), rows feed, left, axial in {W}, and how far (m, 3) m from the tip the lowest point is:
+    a ball cuts the same however it leans, so it is taken upright; other tools have their own axes and their tip."""
+    to_W, path = result.setup.T_MW[:3, :3], result.path
+    axes = np.einsum("ji,mjk->mki", to_W, result.R_MF)
+    ball = np.array([cutter.flat_radius == 0.0 and not cutter.conical for cutter in result.tooling.cutters])
+    leans = ball[result.tooling.of_step] & (path.k[:, 2] < 1.0 - 1e-12)
+    up = np.array([0.0, 0.0, 1.0])
+    feed = axes[:, 0] * [1.0, 1.0, 0.0]
+    length = np.linalg.norm(feed, axis=1, keepdims=True)
+    leans &= length[:, 0] > STEEP
+    feed = feed / np.where(length > 0.0, length, 1.0)
+    upright = np.stack([feed, np.cross(up, feed), np.broadcast_to(up, feed.shape)], axis=1)
+    lift = result.tooling.each("radius")[:, None] * (path.k - up)
+    return np.where(leans[:, None, None], upright, axes), np.where(leans[:, None], lift, 0.0)

@@ -1,0 +1,80 @@
+"""The verdict of a milled part: its walls and floors against their tolerances, as a gauge would read them."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from robomill.arrays import IntArray
+from robomill.provenance import Finding, named
+from robomill.simulation.judging.gauge import Gauge, Readings
+from robomill.simulation.judging.premise import premise
+from robomill.simulation.judging.seen import Run
+from robomill.simulation.judging.verdict_words import Level, Reading, Verdict, said
+from robomill.simulation.origin.assumed import far_share
+
+
+def judge(result: Run, gauge: Gauge) -> Verdict:
+    """The verdict of a run. What has no model or no answer is counted and never green."""
+    readings = _readings(result, gauge)
+    wall, floor, feed, _ = readings
+    deciding = [reading.share for reading in readings if reading.decides]
+    share = max(deciding, default=float("nan"))
+    if not deciding and result.worst >= 0:  # nothing is left that could be measured: the tip's own deviation decides
+        share = result.max_deviation / wall.tolerance
+    far = far_share(result, gauge, (wall.tolerance, floor.tolerance, feed.tolerance if feed.stated else float("inf")))
+    gone = tuple(result.path.block[gauge.gone].tolist())
+    found = Verdict("ok", share, "", *readings, far, gone, *premise(result, bool(deciding)))
+    found = replace(found, level=_level(result, found))
+    return replace(found, sentence=" ".join(words for words in said(result, found) if words))
+
+
+def _level(result: Run, verdict: Verdict) -> Level:
+    """What the judgement is: what was measured counts where all of the cut has a number."""
+    unknown = bool(result.not_judged.any())
+    if result.worst < 0:
+        if unknown or result.rapids:
+            return "unjudged"
+        return "missed" if result.answered[result.path.cutting].any() else "unreached"
+    if result.missed.any():
+        return "unreached"
+    if verdict.premise or (unknown and not verdict.decides):
+        return "unjudged"
+    if (unknown or result.rapids) and verdict.grade != "out":
+        return "unjudged"
+    return verdict.grade
+
+
+def _readings(result: Run, gauge: Gauge) -> tuple[Reading, Reading, Reading, Reading]:
+    setup, i = result.setup, result.judged
+    wall_tolerance = setup.tolerance
+    floor_tolerance, feed_tolerance = (
+        wall_tolerance if own is None else own for own in (setup.floor_tolerance, setup.feed_tolerance)
+    )
+    stated = setup.feed_tolerance is not None
+    along = np.where(i, np.abs(result.delta_in_cut[:, 0]), -np.inf)
+    feed = int(np.argmax(along)) if i.any() else -1
+    value = float(result.delta_in_cut[feed, 0]) if feed >= 0 else float("nan")
+    return (
+        _reading(gauge.walls, wall_tolerance),
+        _reading(gauge.floors, floor_tolerance),
+        Reading(feed, value, feed_tolerance, stated=stated),
+        _reading(gauge.ends, feed_tolerance, stated),
+    )
+
+
+def _reading(found: Readings, tolerance: float, stated: bool = True) -> Reading:
+    q = found.worst
+    if q < 0:
+        return Reading(-1, float("nan"), tolerance, stated=stated)
+    return Reading(int(found.sample[q]), float(found.error[q]), tolerance, found.share_out(tolerance), stated)
+
+
+def thin_wall_notes(block: IntArray) -> tuple[Finding, ...]:
+    """Walls that bend under the cut, by the source lines (t,) that leave them."""
+    if not len(block):
+        return ()
+    text = (
+        f"a wall is left that is thinner than an eighth of its height (line {named(block.tolist())}); that it gives "
+        "way to the cutter is not in the numbers."
+    )
+    return (Finding("warning", text, int(block.min()), code="thin-wall"),)

@@ -1,0 +1,1 @@
+"""Sections of what was cut, with the measures that a gauge has for them."""

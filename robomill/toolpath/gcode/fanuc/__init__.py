@@ -1,0 +1,1 @@
+"""What Fanuc and Haas say otherwise."""

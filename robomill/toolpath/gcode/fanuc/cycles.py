@@ -1,0 +1,73 @@
+"""Canned cycles as Fanuc and Haas count them: K or L times, no time at all, without a dwell, and fine boring (G76).
+
+Haas's G70 and G71 drill the cycle in force around a circle whose centre the tool stands at, or that their line says.
+"""
+
+import math
+
+from robomill.toolpath.gcode import codes as modal
+from robomill.toolpath.gcode.codes import P
+from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.moves import drill
+from robomill.toolpath.gcode.rules.cycle_rules import is_cycle, pecks, takes_dwell
+from robomill.toolpath.gcode.rules.motion_rules import axes
+from robomill.toolpath.gcode.words import Block
+
+_THOUSANDTHS = 100.0
+"""Nobody pecks so deep: controls count a Q without a point in steps of 0.001 mm (0.0001 in)."""
+MOST_BOLTS = 10_000
+_FINE_BORING, _BORING, _BACK_BORING = 760, 860, 870
+
+
+def as_bored(machine: Machine, block: Block) -> None:
+    """G76 bores with a stopped spindle, as G86 does, and moves aside by Q in the hole, where it cuts nothing."""
+    words, motion = block.words, block.g.get(modal.MOTION)
+    if motion == _BACK_BORING and "q" in words:
+        raise block.refuse("G87 bores from below on a Fanuc control, which is not read; write the moves out.")
+    if motion == _FINE_BORING and {"z", "r"} <= words.keys() and not {"i", "k"} <= words.keys():
+        block.g[modal.MOTION] = _BORING
+        words.pop("q", None)
+        machine.note("fine-boring", "info", "G76 is read as boring (G86); its step aside in the hole is left out")
+
+
+def bolt_holes(machine: Machine, block: Block, code: int) -> bool:
+    """G70 I radius J angle L holes, G71 with K, the angle between them; False for other words, and without a cycle."""
+    words, needs = block.words, {700: {"i", "j", "l"}, 710: {"i", "j", "k", "l"}}.get(code)
+    if needs is None or not needs <= words.keys() or not is_cycle(machine.motion):
+        return False
+    count = round(words["l"])
+    absolute = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 900
+    if machine.plane != 17 or not absolute or not 1 <= count <= MOST_BOLTS:
+        raise block.refuse(f"G{code // 10} is read in G17 and G90, for 1 to {MOST_BOLTS} holes.")
+    u, v = words.pop("x", machine.p[0]), words.pop("y", machine.p[1])
+    radius, angle, between = words.pop("i"), words.pop("j"), words.pop("k", 360.0 / count)
+    del words["l"]
+    for k in range(count):
+        t = math.radians(angle + k * between)
+        place = {"x": u + radius * math.cos(t), "y": v + radius * math.sin(t)}
+        drill(machine, Block(block.line, place, motion=machine.motion))
+    return True
+
+
+def repeats(machine: Machine, block: Block) -> None:
+    """K is how often a cycle is made, as L, and a dwell that is not given is none."""
+    words, motion = block.words, block.motion
+    if not is_cycle(motion) or motion == _BACK_BORING:
+        return
+    if "k" in words and "l" not in words:
+        words["l"] = words.pop("k")
+    if pecks(motion) and words.get("q", 0.0) >= _THOUSANDTHS and words["q"] == round(words["q"]):
+        words["q"] /= 1000.0 if machine.unit == "mm" else 10_000.0
+        machine.note("peck-thousandths", "info", "a depth per peck (Q) of 100 and more counts in the control's steps")
+    kept = machine.motion == motion or (machine.is_fanuc and is_cycle(machine.motion))
+    if takes_dwell(motion) and "p" not in words and (not kept or math.isnan(machine.cycle[P])):
+        words["p"] = 0.0
+    steps = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 910
+    given = {"r", "xyz"[axes(machine.plane)[2]]} & words.keys()
+    if not steps or machine.is_fanuc or not machine.keeps_heights or machine.motion != motion or machine.kept_steps:
+        return
+    if len(given) == 1:  # who gives one of them anew counts on the other's being added, too
+        machine.keeps_heights = False
+    elif not given:
+        text = "holes in G91 are as deep as was said in G90, as on Fanuc and Haas; LinuxCNC adds R and Z at each anew"
+        machine.note("cycle-heights", "suspicious", text)

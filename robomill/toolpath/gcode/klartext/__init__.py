@@ -1,0 +1,1 @@
+"""Heidenhain's dialogue (Klartext)."""

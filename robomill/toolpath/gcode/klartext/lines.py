@@ -1,0 +1,377 @@
+"""Heidenhain's dialogue (Klartext, ``.h``): its lines in LinuxCNC's words, with the labels and jumps between them.
+
+A line becomes G0, G1, G2 or G3 to an absolute place and is then read as any other. What is not read is refused by its
+first words. (HEIDENHAIN, TNC 640, User's Manual for Conversational Programming.)
+"""
+
+import math
+import re
+
+from robomill.errors import GCodeError
+from robomill.lazy import cached_property
+from robomill.toolpath.gcode.corners import LEGS, ROUND
+from robomill.toolpath.gcode.dialects import plain_numbers
+from robomill.toolpath.gcode.klartext.approach import KlartextApproach, centre_of
+from robomill.toolpath.gcode.klartext.values import NUMBER
+from robomill.toolpath.gcode.rules.motion_rules import axes
+from robomill.toolpath.gcode.sinumerik.lines import named_tool
+from robomill.toolpath.gcode.tool_axis import angles_of
+from robomill.toolpath.gcode.words import Block
+
+_NUMBERED = re.compile(r"^\s*(/?)\s*(?:N?\d+(?![\d.,])\s*)?(/?)\s*")
+_LABEL = re.compile(r"^[ \t]*N?\d*[ \t]*LBL[ \t]+(\"[^\"\n]+\"|\d+)", re.MULTILINE | re.IGNORECASE)
+_WORD = re.compile(rf"(?<![A-Z])(I?)(PR|PA|T[XYZ]|[XYZABC])[ \t]*({NUMBER})")
+_FEED = re.compile(rf"(?<![A-Z])F[ \t]*(MAX|AUTO|{NUMBER})")
+_RADIUS = re.compile(rf"(?<![A-Z])R[ \t]*({NUMBER})")
+_NORMAL = re.compile(rf"N[XYZ] ?{NUMBER}")
+_WITH_M = re.compile(
+    rf"(M128|M140 ?MB ?(?:MAX|{NUMBER})|M120|M124|M103|M138)(?: ?(?:F|LA|T) ?(?:MAX|{NUMBER})| [ABC]\b)*"
+)
+_SIDE = re.compile(r"(?<![A-Z])R(0|L|R)(?![\d.,])")
+_SENSE = re.compile(r"DR[ \t]*([-+])")
+_M = re.compile(r"(?<![A-Z])M[ \t]*(\d+)")
+_CALL = re.compile(r"CALL LBL (\"[^\"]+\"|\d+)(?: REP(?: ?(\d+)(?:/\d+)?)?)?")
+_TOOL = re.compile(rf"TOOL CALL ?(\d+|\"[^\"]*\"|Q[LR]?\d+)?(?: ([XYZ])\b)?((?: ?(?:S|F|DL|DR2?) ?{NUMBER})*)")
+_REPEAT = re.compile(r"REP(\d)")
+_CORNER = re.compile(rf"(RND ?R?|CHF ?L?) ?({NUMBER})(?: ?F.*)?")
+_SILENT = re.compile(
+    r"BLK FORM|TOOL DEF|FUNCTION (?:RESET )?TCPM|FUNCTION MODE MILL|PLANE RESET|M1(?:07|08|16|17|20|24|26|27|38)\b"
+)
+_UPRIGHT = re.compile(r"PLANE SPATIAL(?: SP[ABC][-+]?0*\.?0*(?![\d.]))+(?: (?:STAY|SEQ[-+]|TABLE ROT|COORD ROT))*$")
+MAX_CODE, MAX_LINES = 1000, 100
+"""Characters of a line and lines of a block that can be read."""
+_PLANES = {frozenset({0, 1}): 17, frozenset({0, 2}): 18, frozenset({1, 2}): 19}
+_KEPT_M = (0, 1, 2, 3, 4, 5, 7, 8, 9, 30)
+_PAIRS = {13: "M3 M8", 14: "M4 M8"}
+
+
+Words = dict[str, tuple[str, float]]
+"""By letter: "I" where it counts as a step, and the value."""
+
+
+class Klartext(KlartextApproach):
+    """Reads what stands in a dialogue; what is left of a line goes on to the reader of words."""
+
+    heading: tuple[float, float] | None = None
+    leaving: tuple[float, float] | None = None
+    modal_cycle = False
+
+    def klartext_line(self, index: int) -> str | None:
+        """Line ``index``, and those that continue it, in LinuxCNC's words; None where it is done."""
+        line = index + 1
+        code, self.pc, skipped = self.joined_block(index)
+        if skipped:
+            self.machine.findings.add("block-delete", "info", line, "block delete (/) is off: these lines are executed")
+        if not code or code[0] in "*(":
+            return None
+        first = code.split(" ", 1)[0]
+        if first in ("L", "LN", "LP", "C", "CR", "CP", "CT") or _FEED.match(code) or _M.match(code):
+            return self._move("L" if first[0] in "FM" else first, code, line)
+        if first == "CC":
+            self.set_pole(code, line)
+            return None
+        if first in ("APPR", "DEP"):
+            return self.approach(code, line)
+        if first in ("RND", "CHF") or re.match(r"RND|CHF", first):
+            raise GCodeError.at(line, f"{first[:3]} is read behind a straight cut (L) alone.")
+        if code.startswith("TOOL CALL"):
+            return self._tool_call(code, line)
+        if code.startswith("LBL"):
+            if re.fullmatch(r"LBL ?0", code) and self.machine.store.level > 0:
+                self._repeat_or_leave()
+            return None
+        if code.startswith("CALL LBL"):
+            self._call_label(code, index)
+            return None
+        if code.startswith(("CYCL", "TRANS DATUM")):
+            return self.cycle_words(code, line)
+        if code.startswith("BEGIN PGM"):
+            return f"G17 G90 G94 {'G20' if code.endswith('INCH') else 'G21'}"
+        if code.startswith("END PGM"):
+            return "M2"
+        if first == "STOP":
+            return "M0"
+        if self.tool_defined(code, line):
+            return None
+        if _UPRIGHT.match(code):
+            for number in (120, 121, 122):
+                self.set_q(f"Q{number}", 0.0, line)
+        if _SILENT.match(code) or _UPRIGHT.match(code):
+            name = " ".join(code.split(" ")[:2])
+            self.machine.findings.add("harmless-word", "ignored", line, f"{name} is left out: it moves nothing")
+            return None
+        if self.values_line(code, line):
+            return None
+        if code.startswith("CALL PGM"):
+            text = f'{code[:40]} calls another program; paste it in behind M30 as LBL "NAME" ... LBL 0, and call that.'
+            raise GCodeError.at(line, text)
+        raise GCodeError.at(line, f"{' '.join(code.split(' ')[:3])} is of Heidenhain's and is not read; {_LET}.")
+
+    def joined_block(self, index: int) -> tuple[str, int, bool]:
+        """The block at ``index`` in capitals, without number and comment; what comes next; whether / stands before."""
+        lines, skipped = self.file.lines, False
+        parts: list[str] = []
+        while index < len(lines):
+            raw = plain_numbers(lines[index], index + 1, self.machine.findings)
+            text = raw.partition(";")[0].rstrip().removesuffix("~")
+            if not parts:
+                found = _NUMBERED.match(text)
+                skipped = found is not None and "/" in found[0]
+                text = text[found.end() :] if found is not None else text
+            parts.append(text.strip())
+            index += 1
+            if len(text) > MAX_CODE or len(parts) > MAX_LINES:
+                raise GCodeError.at(index, f"a block is over {MAX_CODE} characters or {MAX_LINES} lines; split it.")
+            if not raw.rstrip().endswith("~"):
+                break
+        code = re.sub(r"(?<=[-+\dXYZABC]),(?=\d)", ".", " ".join(parts).upper())
+        return " ".join(code.split()), index, skipped
+
+    # --- moves
+    def here(self) -> list[float]:
+        """The programmed point, in the coordinates in force."""
+        compensation = self.machine.compensation
+        if compensation is not None and compensation.programmed is not None:
+            return list(compensation.programmed_point(self.machine))
+        return self.machine.said_point()
+
+    def set_pole(self, code: str, line: int) -> None:
+        """CC: a centre or pole in the plane of its two axes; one that is not given stays, without any it is here."""
+        at, said = self.here(), {}
+        for step, letter, value in _WORD.findall(code):
+            axis = "XYZABC".find(letter)
+            said[axis] = self.number(value, line) + (at[axis] if step else 0.0)
+        plane, old = (17, None) if self.pole is None else (self.pole[0], self.pole[1:])
+        plane = _PLANES.get(frozenset(said), plane if len(said) < 2 else 0)
+        if plane == 0 or not said.keys() <= set(axes(plane)[:2]) or (len(said) == 1 and old is None):
+            raise GCodeError.at(line, "CC needs two of X, Y and Z, the centre or pole in their plane.")
+        first, second, _ = axes(plane)
+        u, v = (at[first], at[second]) if old is None or not said else old
+        self.pole = plane, said.get(first, u), said.get(second, v)
+
+    def _pole(self, line: int) -> tuple[int, float, float]:
+        if self.pole is None:
+            raise GCodeError.at(line, "a circle or polar coordinates need their centre; give CC X Y before.")
+        return self.pole
+
+    def pole_in_plane(self, line: int) -> tuple[float, float]:
+        """The centre or pole in the plane XY."""
+        plane, *pole = self._pole(line)
+        if plane != 17:
+            raise GCodeError.at(line, "APPR is read before contours in the plane XY alone.")
+        return pole[0], pole[1]
+
+    def straight(self, code: str, line: int) -> str | None:
+        """A straight move in LinuxCNC's words."""
+        return self._move("L", code, line)
+
+    def _move(self, kind: str, code: str, line: int) -> str | None:
+        """A line that moves, or that holds F and M alone."""
+        machine = self.machine
+        rest = _WITH_M.sub(lambda found: found[1][:4], code)
+        feed, side = _FEED.search(rest), _SIDE.search(rest)
+        self._check_left_over(kind, rest, line)
+        words = {letter: (step, self.number(value, line)) for step, letter, value in _WORD.findall(rest)}
+        codes = [int(number[:6]) for number in _M.findall(rest)]
+        where, arc = self._end(kind, words, rest, line)
+        out = [self._compensated(side[1] if side else self.side)]
+        if not arc and machine.plane != 17:
+            out.append("G17")
+        if feed is not None and feed[1] not in ("MAX", "AUTO"):
+            out.append(f"F{self.number(feed[1], line) / (10.0 if machine.unit == 'in' else 1.0):.9f}")
+        machine.machine_word = "M140" if 140 in codes else "M91" if 91 in codes else "M92"
+        if where:
+            if 91 in codes or 92 in codes:
+                out.append("G53")
+            places = " ".join(f"{letter}{value:.12f}" for letter, value in where.items())
+            out.append(f"{arc or ('G0' if feed is not None and feed[1] == 'MAX' else 'G1')} {places}")
+            self._look_ahead(kind)
+        out += [f"M{m}" if m in _KEPT_M else _PAIRS[m] for m in codes if m in _KEPT_M or m in _PAIRS]
+        self._say_m([m for m in codes if m not in _KEPT_M and m not in _PAIRS], line)
+        if 140 in codes:
+            if where:
+                raise GCodeError.at(line, "M140 beside a move is not read; put it on a line of its own.")
+            out.append(self._retract(code, line))
+        self.modal_cycle = self.modal_cycle or 89 in codes
+        self.due = 99 in codes or (self.modal_cycle and bool(where))
+        self.modal_cycle = self.modal_cycle and 99 not in codes
+        return " ".join(word for word in out if word) or ("G90" if self.due else None)
+
+    def _check_left_over(self, kind: str, code: str, line: int) -> None:
+        """Refuse what no rule of a line that moves has a use for."""
+        left = code.removeprefix(kind)
+        for pattern in (_FEED, _SENSE, _SIDE, _WORD, _NORMAL, _M, *((_RADIUS,) if kind == "CR" else ())):
+            left = pattern.sub("", left)
+        if left.strip():
+            raise GCodeError.at(line, f"found {left.strip()[:20]!r} in a line that begins with {kind}; {_LET}.")
+
+    def _say_m(self, codes: list[int], line: int) -> None:
+        for m in codes:
+            if m == 136:
+                raise GCodeError.at(line, "M136 counts feeds per turn, which is not read; write them per minute.")
+            if m not in (89, 91, 92, 99, 140):
+                self.machine.findings.add("unknown-m", "ignored", line, f"M{m} is left out: it moves nothing")
+
+    def _retract(self, code: str, line: int) -> str:
+        found = re.search(rf"MB ?(MAX|{NUMBER})", code)
+        if found is None or found[1] == "MAX":
+            return "G53 G0 Z0"
+        if self.machine.away[2]:
+            return ""
+        return f"G0 Z{self.here()[2] + self.number(found[1], line):.9f}"
+
+    def _compensated(self, side: str) -> str:
+        before, self.side = self.side, side
+        return "" if side == before else {"0": "G40", "L": "G41", "R": "G42"}[side]
+
+    def _end(self, kind: str, words: Words, code: str, line: int) -> tuple[dict[str, float], str]:
+        """Where a line leads, by letter, and the words of its arc ("" for a straight move)."""
+        at = self.here()
+        end = list(at)
+        for axis, letter in enumerate("XYZABC"):
+            if letter in words:
+                step, value = words[letter]
+                if step and axis < 3 and self.machine.away[axis]:
+                    text = f"I{letter} counts from a place that only the machine knows; give {letter} before."
+                    raise GCodeError.at(line, text)
+                end[axis] = value + (at[axis] if step else 0.0)
+        if kind == "LN" and {"TX", "TY", "TZ"} <= words.keys():
+            axis3 = words["TX"][1], words["TY"][1], words["TZ"][1]
+            if max(map(abs, axis3)) < 1e-9:
+                raise GCodeError.at(line, "the tool axis TX TY TZ is 0; expected a direction.")
+            end[3], end[4] = angles_of(axis3, (at[3], at[4]))
+        if kind in ("LP", "CP"):
+            self.polar_place(words, at, end, line)
+        moved = {letter for letter in "XYZABC" if letter in words}
+        if kind in ("LP", "CP", "C"):
+            moved |= {"XYZ"[axis] for axis in axes(self._pole(line)[0])[:2]}
+        moved |= {"X", "Y"} if kind in ("CR", "CT") else {"A", "B"} if "TX" in words else set()
+        places = {letter: end["XYZABC".index(letter)] for letter in sorted(moved)}
+        arc = "" if kind[0] == "L" else self._arc(kind, words, code, at, end, line)
+        if places:
+            self.heading = self.leaving if arc else (end[0] - at[0], end[1] - at[1])
+            if self.heading is None or any(self.heading):
+                self.course = self.heading
+        return places, arc
+
+    def polar_place(self, places: Words, at: list[float], end: list[float], line: int) -> None:
+        plane, *pole = self._pole(line)
+        first, second, _ = axes(plane)
+        radius = math.hypot(at[first] - pole[0], at[second] - pole[1])
+        angle = math.degrees(math.atan2(at[second] - pole[1], at[first] - pole[0]))
+        if "PR" in places:
+            radius = places["PR"][1] + (radius if places["PR"][0] else 0.0)
+        if "PA" in places:
+            angle = places["PA"][1] + (angle if places["PA"][0] else 0.0)
+        end[first] = pole[0] + radius * math.cos(math.radians(angle))
+        end[second] = pole[1] + radius * math.sin(math.radians(angle))
+
+    def _arc(self, kind: str, words: Words, code: str, at: list[float], end: list[float], line: int) -> str:
+        """G2 or G3 with what says its form; ``leaving`` is its direction at its end."""
+        sense = _SENSE.search(code)
+        if kind == "CT":
+            return self._tangent(at, end, line)
+        if sense is None:
+            raise GCodeError.at(line, f"{kind} needs DR+ or DR-, the way round.")
+        turn, name = (1.0, "G3") if sense[1] == "+" else (-1.0, "G2")
+        if kind == "CR":
+            radius = _RADIUS.search(_SIDE.sub("", _SENSE.sub("", code)))
+            if radius is None:
+                raise GCodeError.at(line, "CR needs R, its radius.")
+            size = self.number(radius[1], line)
+            middle = centre_of((at[0], at[1]), (end[0], end[1]), size, turn)
+            self.leaving = -turn * (end[1] - middle[1]), turn * (end[0] - middle[0])
+            return f"G17 {name} R{size:.12f}"
+        plane, *pole = self._pole(line)
+        first, second, _ = axes(plane)
+        self.leaving = (-turn * (end[1] - pole[1]), turn * (end[0] - pole[0])) if plane == 17 else None
+        centre = f"{'IJK'[first]}{pole[0] - at[first]:.12f} {'IJK'[second]}{pole[1] - at[second]:.12f}"
+        out = f"G{plane} {name} {centre}"
+        if "PA" in words and words["PA"][0]:
+            step = words["PA"][1]
+            if step * turn < 0.0:
+                raise GCodeError.at(line, "CP has IPA against its DR; give both the same sign.")
+            out += f" P{max(math.ceil(abs(step) / 360.0 - 1e-9), 1)}"
+        return out
+
+    def _tangent(self, at: list[float], end: list[float], line: int) -> str:
+        """CT goes on in the direction of the line before."""
+        if self.heading is None or math.hypot(*self.heading) < 1e-9:
+            raise GCodeError.at(line, "CT goes on tangentially, and the line before has no direction in the plane.")
+        size = math.hypot(*self.heading)
+        u, v = self.heading[0] / size, self.heading[1] / size
+        dx, dy = end[0] - at[0], end[1] - at[1]
+        across = u * dy - v * dx
+        if abs(across) < 1e-9:
+            raise GCodeError.at(line, "CT ends straight ahead; write it as L.")
+        radius = (dx * dx + dy * dy) / (2.0 * across)
+        centre = at[0] - v * radius, at[1] + u * radius
+        turn = 1.0 if radius > 0.0 else -1.0
+        self.leaving = -turn * (end[1] - centre[1]), turn * (end[0] - centre[0])
+        return f"G17 {'G3' if turn > 0.0 else 'G2'} I{centre[0] - at[0]:.12f} J{centre[1] - at[1]:.12f}"
+
+    def _look_ahead(self, kind: str) -> None:
+        """A corner that the next line rounds or chamfers."""
+        code, after, _ = self.joined_block(self.pc)
+        while not code and after < min(len(self.file.lines), self.pc + MAX_LINES):
+            code, after, _ = self.joined_block(after)
+        found = _CORNER.fullmatch(code)
+        if found is not None:
+            line = self.pc + 1
+            if kind != "L":
+                raise GCodeError.at(line, f"{code[:3]} is read between two straight cuts (L) alone.")
+            self.machine.corner = (ROUND if code[0] == "R" else LEGS), self.number(found[2], line)
+            self.pc = after
+
+    # --- tools, labels
+    def _tool_call(self, code: str, line: int) -> str:
+        found = _TOOL.fullmatch(code)
+        if found is None or found[2] in ("X", "Y"):
+            raise GCodeError.at(line, f"{code[:30]} is not read; expected a tool, Z and S, as TOOL CALL 1 Z S2000.")
+        out = []
+        for name, value in re.findall(rf"(S|F|DL|DR2?) ?({NUMBER})", found[3] or ""):
+            size = self.number(value, line)
+            if name[0] == "D" and size != 0.0:
+                raise GCodeError.at(
+                    line, f"TOOL CALL has {name}{size:+g}, which is not read; put it in the tool table."
+                )
+            if name in "SF":
+                out.append(f"{name}{size / (10.0 if name == 'F' and self.machine.unit == 'in' else 1.0):.9f}")
+        if found[1] is not None:
+            quoted = found[1].startswith('"')
+            tool = named_tool(found[1][1:-1], line, self.machine) if quoted else f"T{self.number(found[1], line):.0f}"
+            out.append(f"{tool} M6")
+        return " ".join(out)
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        """Labels, each with the line behind it."""
+        lines = self.main.lines
+        found = _LABEL.finditer(lines.data.decode("latin-1"))
+        return {each[1].upper().lstrip("0") or "0": lines.index_at(each.start(1)) + 1 for each in found}
+
+    def label(self, name: str, line: int) -> int:
+        """The index of the line behind a label."""
+        start = self._places.get(name.lstrip("0"))
+        if start is None:
+            raise GCodeError.at(line, f"LBL {name} is called, but there is no such label in the program; add it.")
+        return start
+
+    def _call_label(self, code: str, index: int) -> None:
+        code = _REPEAT.sub(r"REP \1", code)
+        found = _CALL.fullmatch(code)
+        if found is None:
+            raise GCodeError.at(index + 1, f"{code[:40]} is not read; expected CALL LBL 1 or CALL LBL 1 REP 2.")
+        start = self.label(found[1], index + 1)
+        if found[2] is None:
+            self._enter(Block(index + 1), found[1], start, 1)
+            return
+        key = (self.machine.store.level, index)
+        left = self.rounds.get(key, int(found[2][:6]))
+        if left > 0:
+            self.rounds[key], self.pc = left - 1, start
+        else:
+            self.rounds.pop(key, None)
+
+
+_LET = "let the CAM system write its moves out with L, C and CC"

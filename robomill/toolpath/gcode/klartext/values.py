@@ -1,0 +1,375 @@
+"""Q parameters, jumps, datum shifts and drilling cycles of Heidenhain's dialogue."""
+
+import math
+import re
+from dataclasses import replace
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.machine import Scale
+from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
+from robomill.toolpath.gcode.program import TRAVERSE
+from robomill.toolpath.gcode.sinumerik.procs import SinumerikProcs
+from robomill.toolpath.gcode.sinumerik.words import Hole
+from robomill.toolpath.gcode.words import Block, normalise
+
+NUMBER = r"[-+]? ?(?:\d+(?:\.\d*)?|\.\d+|Q[LR]?\d+)"
+FIRST_Q = {"Q": 1000, "QL": 3000, "QR": 4000}
+MOST_Q = {"Q": 1999, "QL": 499, "QR": 499}
+MAX_PECKS = 10_000
+_Q = re.compile(r"(Q[LR]?)(\d+)")
+_SET = re.compile(r"(?:FN ?(\d+) ?: ?)?(Q[LR]?\d+) ?= ?(.+)")
+_JUMP = re.compile(
+    r"FN ?(9|10|11|12) ?: ?IF ?(.+?) ?(?<![A-Z])(EQU|NEQU|NEQ(?!\d)|NE|GT|LT)(?![A-PR-Z]) ?(.+?) ?"
+    r"GOTO ?LBL ?(\"[^\"]+\"|\d+)"
+)
+_COMPARES = {"9": ("EQU",), "10": ("NE", "NEQ", "NEQU"), "11": ("GT",), "12": ("LT",)}
+_SIGNS = {0: "", 1: "+", 2: "-", 3: "*", 4: "/"}
+_TWO = {
+    0: r"(.+)",
+    1: r"(.+?) ?\+ ?(.+)",
+    2: r"(.+?) ?- ?(.+)",
+    3: r"(.+?) ?\* ?(.+)",
+    4: r"(.+?) ?(?:DIV|/) ?(.+)",
+    8: r"(.+?) ?LEN ?(.+)",
+    13: r"(.+?) ?ANG ?(.+)",
+}
+_ONE = {5: "SQRT", 6: "SIN", 7: "COS"}
+_FUNCTION = re.compile(
+    r"\b(SQRT|SQ|SIN|COS|TAN|ASIN|ACOS|ATAN|ABS|INT|FRAC|SGN|NEG|LN|LOG|EXP) ?([-+]?(?:#\d+|[\d.]+)|(?=\[))"
+)
+_WRITTEN_OUT = {
+    "SQ": "[{0}**2]",
+    "ATAN": "ATAN{0}/[1]",
+    "FRAC": "[{0}-FIX{0}]",
+    "SGN": "[[{0} GT 0]-[{0} LT 0]]",
+    "NEG": "[0-{0}]",
+    "LOG": "[LN{0}/LN[10]]",
+}
+"""Functions that LinuxCNC has by another name; {0} is their argument in its brackets."""
+_OWN = re.compile(rf"\b({'|'.join(_WRITTEN_OUT)})\[")
+_CYCLE = re.compile(r"CYCL DEF ?(\d+)(?: ?\.(\d+))?(.*)")
+_AXIS = re.compile(rf"(I?)([XYZ]) ?({NUMBER})")
+_DRILLS = {
+    200: "drilling",
+    201: "reaming",
+    203: "drilling",
+    205: "drilling",
+    206: "tapping",
+    207: "tapping",
+    209: "tapping",
+    240: "centring",
+}
+_PATTERNS = (220, 221)
+
+
+class KlartextValues(SinumerikProcs):
+    """Reads what computes, shifts and drills; moves are those of ``klartext``."""
+
+    drill: int = 0
+    due = False
+    raised = 0.0
+    pole: tuple[int, float, float] | None = None
+    preset: float | None = None
+
+    # --- values
+    def number(self, text: str, line: int) -> float:
+        """The value of a number, a Q parameter or an expression."""
+
+        def known(found: re.Match[str]) -> str:
+            at = self._place(found[1], int(found[2][:6]), line)
+            if at not in self.machine.r_set:
+                raise GCodeError.at(line, f"{found[0]} is read before the program sets it; set it at the start.")
+            return f"#{at}"
+
+        plain = _Q.sub(known, text.replace("PI", f"{math.pi:.15f}"))
+        plain = plain.replace("(", "[").replace(")", "]").replace("^", "**")
+        plain = _FUNCTION.sub(
+            lambda found: ("FIX" if found[1] == "INT" else found[1]) + (f"[{found[2]}]" if found[2] else ""), plain
+        )
+        plain = _written_out(re.sub(r"(?<=[-+*/]) ?\+ ?", " ", re.sub(r"^ ?\+ ?", "", plain)))
+        reader = Reader(normalise(f"[{plain}]", line), line, self.machine.store)
+        value = reader.value()
+        if reader.at < len(reader.text):
+            raise reader.refuse(f"found {reader.rest()!r} behind a value; expected an expression such as Q1 + 5.")
+        return value
+
+    def _place(self, kind: str, number: int, line: int) -> int:
+        if number > MOST_Q[kind]:
+            raise GCodeError.at(line, f"{kind}{number} does not exist; {kind} parameters run up to {MOST_Q[kind]}.")
+        return FIRST_Q[kind] + number
+
+    def set_q(self, name: str, value: float, line: int) -> None:
+        """Set a Q parameter."""
+        found = _Q.fullmatch(name)
+        assert found is not None
+        at = self._place(found[1], int(found[2][:6]), line)
+        self.machine.store.set(at, value)
+        self.machine.r_set.add(at)
+
+    def q(self, number: int, default: float = 0.0) -> float:
+        """The value of a Q parameter; ``default`` where nobody has set it."""
+        at = FIRST_Q["Q"] + number
+        return self.machine.store.get(at) if at in self.machine.r_set else default
+
+    def label(self, name: str, line: int) -> int:
+        """The index of the line behind a label."""
+        raise NotImplementedError
+
+    def values_line(self, code: str, line: int) -> bool:
+        """Set Q parameters, or jump; False for other lines."""
+        jump = _JUMP.fullmatch(code)
+        if jump is not None:
+            if jump[3] not in (said := _COMPARES[jump[1]]):
+                raise GCodeError.at(
+                    line, f"FN {jump[1]} compares by {said[0]}, found {jump[3]}; mend the one or other."
+                )
+            a, b = self.number(jump[2], line), self.number(jump[4], line)
+            same = abs(a - b) <= 1e-9
+            if {"9": same, "10": not same, "11": a > b and not same, "12": a < b and not same}[jump[1]]:
+                self.pc = self.label(jump[5], line)
+            return True
+        found = _SET.fullmatch(code)
+        if found is None:
+            return False
+        if found[1] is None:
+            self.set_q(found[2], self.number(found[3], line), line)
+            return True
+        kind = int(found[1])
+        if kind in _ONE:
+            self.set_q(found[2], self.number(self._of_one(kind, found[3], line), line), line)
+            return True
+        terms = re.fullmatch(_TWO[kind], found[3]) if kind in _TWO else None
+        if terms is None:
+            raise GCodeError.at(line, f"FN {kind} is not read; expected FN 0 to 13.")
+        if kind in (8, 13):
+            a, b = (self.number(each, line) for each in terms.groups())
+            self.set_q(found[2], math.hypot(a, b) if kind == 8 else math.degrees(math.atan2(a, b)) % 360.0, line)
+            return True
+        text = _SIGNS[kind].join(f"({each})" for each in terms.groups())
+        self.set_q(found[2], self.number(text, line), line)
+        return True
+
+    def _of_one(self, kind: int, said: str, line: int) -> str:
+        """The expression of FN 5 to 7, which write their function out themselves, as in SQRT +16."""
+        name = _ONE[kind]
+        value = said.removeprefix(name).strip()
+        if re.match("[A-Z]{2}", value) and not _Q.match(value):
+            raise GCodeError.at(line, f"FN {kind} is {name}, found {said[:20]}; expected {name} and a value.")
+        return f"{name}({value})"
+
+    # --- cycles
+    def cycle_words(self, code: str, line: int) -> str | None:
+        """CYCL DEF, CYCL CALL and TRANS DATUM."""
+        if code.startswith("CYCL CALL"):
+            return self._cycle_call(code, line)
+        if code.startswith("TRANS DATUM"):
+            reset = "RESET" in code
+            self._shift({} if reset else self._axes_of(code, line), line, every=reset)
+            return None
+        found = _CYCLE.match(code)
+        if found is None:
+            raise GCodeError.at(line, f"{code[:30]} is not read; expected CYCL DEF and its number.")
+        number, part, rest = int(found[1][:4]), found[2], found[3]
+        if number in _DRILLS or number in _PATTERNS:
+            self.drill = number if number in _DRILLS else self.drill
+            for name, value in re.findall(r"(Q\d+) ?= ?(\S+)", rest):
+                if name == "Q208" and value in ("MAX", "FMAX"):
+                    self.set_q(name, 0.0, line)
+                    continue
+                if not re.fullmatch(NUMBER, value):
+                    raise GCodeError.at(line, f"CYCL DEF {number} has {name}={value}, which is not read.")
+                self.set_q(name, self.number(value, line), line)
+            if number in _PATTERNS:
+                self._pattern(number, line)
+            return None
+        return self._other_cycle(number, part, rest.strip(), line)
+
+    def _other_cycle(self, number: int, part: str | None, rest: str, line: int) -> str | None:
+        if number == 7 and part != "0":
+            if "#" in rest:
+                raise GCodeError.at(line, "CYCL DEF 7 takes its shift from a table, which is not read; write X, Y, Z.")
+            self._shift(self._axes_of(rest, line), line)
+        elif number == 10 and part != "0":
+            found = re.fullmatch(rf"(I?)ROT ?({NUMBER})", rest)
+            if found is None:
+                raise GCodeError.at(line, f"CYCL DEF 10.{part} {rest[:20]} is not read; expected ROT and an angle.")
+            self._turn(self.number(found[2], line), bool(found[1]), line)
+        elif number == 9 and part != "0":
+            found = re.search(rf"({NUMBER}) ?$", rest)
+            return f"G4 P{max(self.number(found[1], line), 0.0):.6f}" if found else None
+        elif number == 247:
+            preset = float(next(iter(re.findall(r"Q339 ?= ?\+?(\d+)", rest)), "0"))
+            if self.preset is not None and self.preset != preset:
+                raise GCodeError.at(line, "CYCL DEF 247 chooses a second preset; split the program there.")
+            self.preset = preset
+        elif number == 8 and part != "0":
+            self._mirror(rest, line)
+        elif number in (19, 11) and part != "0":
+            values = [float(v) for v in re.findall(r"[-+]?[\d.]+", rest)]
+            if any(v != (1.0 if number == 11 else 0.0) for v in values):
+                raise GCodeError.at(line, f"CYCL DEF {number}.{part} {rest[:20]} tilts or scales: not read.")
+        elif number not in (7, 8, 9, 10, 11, 13, 19, 32, 247, *_TUNING):
+            raise GCodeError.at(line, f"CYCL DEF {number} {rest[:20]} is a cycle that is not read; {_LET}.")
+        return None
+
+    def _axes_of(self, text: str, line: int) -> dict[str, tuple[bool, float]]:
+        return {letter.lower(): (bool(step), self.number(value, line)) for step, letter, value in _AXIS.findall(text)}
+
+    def _shift(self, said: dict[str, tuple[bool, float]], line: int, every: bool = False) -> None:
+        """A datum shift: an axis that is not given stays as it is, ``every`` ends them all."""
+        shift, angle = frame_of(self.machine)
+        for axis, letter in enumerate("xyz"):
+            step, value = said.get(letter, (True, 0.0))
+            shift[axis] = 0.0 if every else value + (shift[axis] if step else 0.0)
+        if any(shift) and angle != 0.0:
+            raise GCodeError.at(line, "a datum shift inside of a rotation is not read; shift first, then turn.")
+        self._see(shift, angle, line)
+
+    def _turn(self, angle: float, step: bool, line: int) -> None:
+        shift, before = frame_of(self.machine)
+        self._see(shift, angle + (before if step else 0.0), line)
+
+    def _mirror(self, letters: str, line: int) -> None:
+        """CYCL DEF 8.1: X and Y are mirrored about the datum; without letters they are as they were."""
+        if not re.fullmatch(r"(?:[XY]\b ?)*", letters):
+            raise GCodeError.at(line, f"CYCL DEF 8.1 {letters[:20]} is not read; expected X, Y or both.")
+        self.machine.need_compensation_off(Block(line), "CYCL DEF 8")
+        factors = (-1.0 if "X" in letters else 1.0, -1.0 if "Y" in letters else 1.0, 1.0)
+        self.machine.set_scale(Scale(factors) if letters else None)
+        self.pole = None
+
+    def _see(self, shift: list[float], angle: float, line: int) -> None:
+        if self.machine.scale is not None and frame_of(self.machine) != (shift, angle):
+            raise GCodeError.at(line, "a datum shift or rotation inside of a mirror image is not read; end that first.")
+        self.machine.need_compensation_off(Block(line), "A datum shift or rotation")
+        if not any(shift) and angle == 0.0:
+            turn_back(self.machine)
+        else:
+            see_frame(self.machine, shift, angle)
+
+    # --- drilling
+    def _pattern(self, number: int, line: int) -> None:
+        """CYCL DEF 220 and 221 drill at once, on a circle or in lines."""
+        if self.drill == 0:
+            text = f"CYCL DEF {number} repeats a cycle, but none is defined; write CYCL DEF 200 before."
+            raise GCodeError.at(line, text)
+        if number == 220:
+            count = self._asked(241, number, line)
+            first, last, step = self.q(245), self.q(246), self.q(247)
+            if step == 0.0:
+                whole = abs(abs(last - first) - 360.0) < 1e-6
+                step = (last - first) / max(count if whole else count - 1, 1)
+            angles = [math.radians(first + k * step) for k in range(count)]
+            radius = 0.5 * abs(self.q(244))
+            points = [(self.q(216) + radius * math.cos(t), self.q(217) + radius * math.sin(t)) for t in angles]
+        else:
+            columns, rows = self._asked(242, number, line), self._asked(243, number, line)
+            t = math.radians(self.q(224))
+            points = []
+            for row in range(rows):
+                for column in range(columns) if row % 2 == 0 else reversed(range(columns)):
+                    u, v = column * self.q(237), row * self.q(238)
+                    points.append(
+                        (
+                            self.q(225) + u * math.cos(t) - v * math.sin(t),
+                            self.q(226) + u * math.sin(t) + v * math.cos(t),
+                        )
+                    )
+        if len(points) > MAX_PECKS:
+            raise GCodeError.at(line, f"CYCL DEF {number} has more than {MAX_PECKS} holes; split it.")
+        hole = self._hole_of(line)
+        if self.machine.p[2] < hole.retract and not self.machine.away[2]:
+            self._to(TRAVERSE, line, hole.retract)
+        low = replace(hole, retract=hole.clear) if self.q(301, 1.0) == 0.0 else hole
+        self.drill_at(points[:-1], low, line)
+        self.drill_at(points[-1:], hole, line)
+
+    def _asked(self, number: int, cycle: int, line: int) -> int:
+        value = self.q(number)
+        if not 1.0 <= value <= MAX_PECKS:
+            raise GCodeError.at(line, f"CYCL DEF {cycle} has Q{number}={value:g} repeats; expected 1 to {MAX_PECKS}.")
+        return round(value)
+
+    def _cycle_call(self, code: str, line: int) -> str | None:
+        rest = code.removeprefix("CYCL CALL").strip()
+        if rest.startswith("PAT"):
+            raise GCodeError.at(line, "CYCL CALL PAT calls at a pattern, which is not read; write CYCL CALL POS.")
+        if rest.startswith("POS"):
+            return self._cycle_at(rest.removeprefix("POS").strip(), line)
+        self.due = True
+        return " ".join(f"M{m}" for m in re.findall(r"\bM(\d+)", rest) if m in ("3", "4", "5", "8", "9")) or "G17"
+
+    def _cycle_at(self, rest: str, line: int) -> str | None:
+        """CYCL CALL POS: in the plane first, where the tool is above; its Z shifts the cycle's heights."""
+        places = {letter: (step, self.number(value, line)) for step, letter, value in _AXIS.findall(rest)}
+        step, self.raised = places.get("Z", ("", 0.0))
+        if step:
+            raise GCodeError.at(line, "CYCL CALL POS has IZ, which is not read; its Z shifts the cycle: give Z.")
+        machine = self.machine
+        if self.drill and not machine.away[2] and machine.p[2] < (high := self._hole_of(line)).clear:
+            self._to(TRAVERSE, line, high.retract)
+        rest = re.sub(rf"Z ?{NUMBER}", "", rest)
+        text = self.straight(f"L {' '.join(rest.split())}".strip(), line) or "G17"
+        self.due = True
+        return text
+
+    def straight(self, code: str, line: int) -> str | None:
+        """A straight move in LinuxCNC's words."""
+        raise NotImplementedError
+
+    def drill_if_due(self, block: Block) -> None:
+        """Drill where a line with M99, CYCL CALL or under M89 has led to."""
+        if self.due:
+            self.due = False
+            if self.drill == 0:
+                raise block.refuse("a cycle is called, but none is defined; write CYCL DEF 200 before.")
+            hole, self.raised = self._hole_of(block.line), 0.0
+            self.drill_here(hole, block.line)
+
+    def _hole_of(self, line: int) -> Hole:
+        number, machine = self.drill, self.machine
+        surface, safety, depth = self.q(203) + self.raised, abs(self.q(200)), self.q(201)
+        if number == 240 and self.q(343) != 0.0:
+            raise GCodeError.at(line, "CYCL DEF 240 counts by its diameter (Q343=1), which is not read; give Q201.")
+        if depth >= 0.0 or safety == 0.0:
+            raise GCodeError.at(line, f"CYCL DEF {number} needs Q200 above 0 and Q201, its depth, below 0; mend them.")
+        if self.q(379) != 0.0:
+            raise GCodeError.at(line, f"CYCL DEF {number} starts below the surface (Q379), which is not read; give 0.")
+        slower = 10.0 if machine.unit == "in" else 1.0
+        down, pitch = self.q(206) / slower, abs(self.q(239)) if number in (207, 209) else 0.0
+        if number in (207, 209) and pitch == 0.0:
+            raise GCodeError.at(line, f"CYCL DEF {number} needs Q239, its pitch.")
+        out = self.q(208) / slower if number in (201, 203) else 0.0
+        out = (out or down) if number in (201, 206) else min(out, 99999.0) if 0.0 < out < 99999.0 else 0.0
+        bottom, step = surface + depth, abs(self.q(202)) if number in (200, 203, 205) else 0.0
+        pecks: list[float] = []
+        less = abs(self.q(212)) if number in (203, 205) else 0.0
+        at = surface - step
+        while step > 0.0 and at > bottom + 1e-9:
+            pecks.append(at)
+            step = max(step - less, abs(self.q(205)) or less) if less else step
+            at -= step
+            if len(pecks) > MAX_PECKS:
+                raise GCodeError.at(line, f"CYCL DEF {number} needs more than {MAX_PECKS} pecks; give a larger Q202.")
+        top = surface + max(safety, self.q(204))
+        return Hole(top, surface + safety, bottom, max(self.q(211), 0.0), down, out, tuple(pecks), True, pitch)
+
+
+def _written_out(text: str) -> str:
+    """An expression without the functions that LinuxCNC does not know by that name."""
+    for found in reversed(list(_OWN.finditer(text))):
+        start, end, depth = found.end() - 1, found.end(), 1
+        while end < len(text) and depth:
+            depth += {"[": 1, "]": -1}.get(text[end], 0)
+            end += 1
+        text = text[: found.start()] + _WRITTEN_OUT[found[1]].format(text[start:end]) + text[end:]
+        if len(text) > MAX_EXPRESSION:
+            break
+    return text
+
+
+MAX_EXPRESSION = 10_000
+_TUNING = (332, 392)
+"""Cycles of machine makers that suit the control to the weight of the part and move nothing."""
+_LET = "let the CAM system write its moves out"

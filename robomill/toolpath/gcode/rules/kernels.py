@@ -1,0 +1,42 @@
+"""The rules of flow, lines, values, modes and motion, compiled for long programs: the same functions, on arrays."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from typing import Annotated, Any
+
+from numba.extending import overload
+
+from robomill.compiled import Axes, called, kernel, part
+from robomill.toolpath.gcode.parameters import Store
+from robomill.toolpath.gcode.rules import (
+    cycle_rules,
+    flow_rules,
+    line_rules,
+    mode_rules,
+    motion_rules,
+    operator_rules,
+    records,
+    value_rules,
+)
+from robomill.toolpath.gcode.rules.records import Flow, Text
+
+State = Annotated[Any, Axes(records.STATE, 1, written=True)]
+Moves = Annotated[Any, Axes(records.MOVE, 1, written=True)]
+
+
+overload(value_rules.nearest)(lambda text, first, end: lambda text, first, end: math.inf)
+
+# What a value is made of is copied into ``value``: to hand on the store at every call would cost more than the work.
+for _module in (operator_rules, value_rules, line_rules, motion_rules, cycle_rules, mode_rules, flow_rules):
+    for _name, _rule in inspect.getmembers(_module, inspect.isfunction):
+        if _rule.__module__ == _module.__name__ and _rule is not value_rules.nearest:
+            (part if _module is value_rules and _rule is not value_rules.value else called)(_rule)
+
+
+@kernel
+def run(state: State, store: Store, text: Text, flow: Flow, at: int, count: int, rows: Moves) -> tuple[int, int]:
+    """``flow_rules.run`` on ``state`` (1,)."""
+    done: tuple[int, int] = flow_rules.run(state[0], store, text, flow, at, count, rows)
+    return done

@@ -1,0 +1,1 @@
+"""What Sinumerik controls (840D, 828D) say otherwise."""

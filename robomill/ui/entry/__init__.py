@@ -1,0 +1,1 @@
+"""What people type and choose: number boxes, declared fields, the table that is edited."""

@@ -1,0 +1,1 @@
+"""Pictures rendered out of process."""

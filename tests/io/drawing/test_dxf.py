@@ -1,0 +1,253 @@
+"""DXF: each kind of line against its formula, blocks, layers, units, and files that mean harm."""
+
+from __future__ import annotations
+
+import io
+import math
+import time
+from contextlib import nullcontext
+
+import ezdxf
+import numpy as np
+import pytest
+
+from robomill.errors import ToolpathError
+from robomill.io.drawing import dxf
+from robomill.io.drawing.drawings import drawing_from_bytes
+from robomill.io.drawing.dxf import MOST_ENTITIES, Dxf
+from robomill.units import format_count
+
+BULGE = math.tan(math.radians(90) / 4)
+
+
+def data(doc) -> bytes:
+    out = io.StringIO()
+    doc.write(out)
+    return out.getvalue().encode()
+
+
+def drawn(draw, units=4):
+    doc = ezdxf.new("R2000")
+    doc.units = units
+    draw(doc, doc.modelspace())
+    return Dxf(data(doc), "part.dxf")
+
+
+def only(draw):
+    read = drawn(draw).read(1e-3)
+    (piece,) = read.pieces
+    return piece
+
+
+SPLINE = [(0, 0, 0), (10, 20, 0), (30, -20, 0), (40, 0, 0)]
+
+
+@pytest.mark.parametrize(
+    ("draw", "shape", "length"),
+    [
+        (lambda d, m: m.add_line((0, 0), (30, 40)), "line", 50.0),
+        (lambda d, m: m.add_circle((5, 5), 10), "circle", 20 * math.pi),
+        (lambda d, m: m.add_arc((0, 0), 10, 350, 80), "arc", 10 * math.pi / 2),
+        (lambda d, m: m.add_arc((0, 0), 10, 20, 380), "circle", 20 * math.pi),
+        (lambda d, m: m.add_lwpolyline([(0, 0), (30, 0), (30, 40)]), "polyline", 70.0),
+        (lambda d, m: m.add_lwpolyline([(0, 0), (30, 0), (30, 40)], close=True), "polyline", 120.0),
+        (lambda d, m: m.add_lwpolyline([(0, 0, 1), (20, 0, 0)], format="xyb"), "polyline", 10 * math.pi),
+        (lambda d, m: m.add_polyline2d([(0, 0, BULGE), (10, 10, 0)], format="xyb"), "polyline", 5 * math.pi),
+        (lambda d, m: m.add_polyline3d([(0, 0, 5), (30, 0, 5), (30, 40, 9)]), "polyline", 70.0),
+    ],
+)
+def test_lines_arcs_and_polylines_have_their_length(draw, shape, length) -> None:
+    piece = only(draw)
+    assert piece.shape == shape
+    assert piece.length == pytest.approx(length * 1e-3, rel=2e-4)
+
+
+def test_a_bulge_is_to_the_right_where_it_is_positive() -> None:
+    piece = only(lambda d, m: m.add_lwpolyline([(0, 0, 1), (20, 0, 0)], format="xyb"))
+    assert piece.points[:, 1].min() == pytest.approx(-0.01, abs=1e-9)
+    assert piece.points[:, 1].max() == pytest.approx(0.0, abs=1e-9)
+
+
+def test_an_ellipse_has_the_length_of_its_integral() -> None:
+    t = np.linspace(0.0, 2.0 * math.pi, 200_001)
+    length = np.hypot(np.diff(20 * np.cos(t)), np.diff(10 * np.sin(t))).sum()
+    piece = only(lambda d, m: m.add_ellipse((0, 0), (20, 0), 0.5))
+    assert piece.length == pytest.approx(length * 1e-3, rel=1e-4)
+
+
+def test_a_spline_is_the_bezier_curve_that_its_control_points_say() -> None:
+    piece = only(lambda d, m: m.add_open_spline(SPLINE, degree=3))
+    t = np.linspace(0.0, 1.0, 20_001)[:, None]
+    p = [np.array(point[:2]) for point in SPLINE]
+    curve = (1 - t) ** 3 * p[0] + 3 * t * (1 - t) ** 2 * p[1] + 3 * t**2 * (1 - t) * p[2] + t**3 * p[3]
+    away = [np.hypot(*(curve - corner * 1e3).T).min() for corner in piece.points]
+    assert max(away) < 5e-3  # mm: the sampling of the formula
+    assert piece.length == pytest.approx(np.hypot(*np.diff(curve, axis=0).T).sum() * 1e-3, rel=1e-4)
+
+
+def test_blocks_are_opened_turned_mirrored_and_scaled_on_the_layer_of_their_insert() -> None:
+    def draw(doc, space):
+        block = doc.blocks.new("B")
+        block.add_line((0, 0), (10, 0))
+        block.add_line((0, 0), (0, 5), dxfattribs={"layer": "own"})
+        space.add_blockref("B", (100, 0), dxfattribs={"layer": "there", "rotation": 90, "xscale": -2, "yscale": 1})
+
+    first, second = drawn(draw).read(1e-3).pieces
+    assert (first.layer, second.layer) == ("there", "own")
+    np.testing.assert_allclose(first.points * 1e3, [[100, 0], [100, -20]], atol=1e-9)
+    np.testing.assert_allclose(second.points * 1e3, [[100, 0], [95, 0]], atol=1e-9)
+
+
+def test_a_circle_seen_from_behind_is_mirrored_and_one_scaled_unevenly_is_an_ellipse() -> None:
+    mirrored = only(lambda d, m: m.add_circle((10, 0), 5, dxfattribs={"extrusion": (0, 0, -1)}))
+    np.testing.assert_allclose(mirrored.points[0] * 1e3, [-10, 0])
+
+    def draw(doc, space):
+        doc.blocks.new("B").add_circle((0, 0), 5)
+        space.add_blockref("B", (0, 0), dxfattribs={"xscale": 2})
+
+    ellipse = only(draw)
+    np.testing.assert_allclose(np.ptp(ellipse.points, axis=0) * 1e3, [20, 10], atol=1e-2)
+
+
+def test_an_array_of_a_block_is_all_of_it() -> None:
+    def draw(doc, space):
+        doc.blocks.new("B").add_circle((0, 0), 1)
+        grid = {"row_count": 2, "column_count": 3, "row_spacing": 10, "column_spacing": 20}
+        space.add_blockref("B", (0, 0), dxfattribs=grid)
+
+    centres = sorted(tuple(np.round(each.points[0] * 1e3, 9)) for each in drawn(draw).read(1e-3).pieces)
+    assert centres == [(x, y) for x in (0, 20, 40) for y in (0, 10)]
+
+
+@pytest.mark.parametrize(("code", "unit"), [(0, ""), (1, "in"), (4, "mm"), (6, "m"), (10, "")])
+def test_the_unit_is_that_of_insunits(code, unit) -> None:
+    assert drawn(lambda d, m: m.add_line((0, 0), (1, 0)), code).unit == unit
+
+
+def test_what_is_no_line_is_counted_by_its_name_and_hidden_layers_are_named() -> None:
+    def draw(doc, space):
+        doc.layers.add("off").off()
+        space.add_line((0, 0), (1, 0), dxfattribs={"layer": "off"})
+        space.add_text("10 mm")
+        space.add_point((0, 0))
+
+    read = drawn(draw).read(1e-3)
+    assert read.left_out == {"TEXT": 1, "POINT": 1}
+    assert read.hidden == {"off"}
+
+
+def bomb(doc, space) -> None:
+    doc.blocks.new("B0").add_line((0, 0), (1, 0))
+    for k in range(1, 12):
+        block = doc.blocks.new(f"B{k}")
+        for _ in range(10):
+            block.add_blockref(f"B{k - 1}", (0, 0))
+    space.add_blockref("B11", (0, 0))
+
+
+MANY = {"row_count": 30_000, "column_count": 30_000, "row_spacing": 1, "column_spacing": 1}
+
+
+def array(doc, space) -> None:
+    doc.blocks.new("B").add_line((0, 0), (1, 0))
+    space.add_blockref("B", (0, 0), dxfattribs=MANY)
+
+
+def circle(doc, space) -> None:
+    block = doc.blocks.new("B")
+    block.add_blockref("B", (1, 1))
+    space.add_blockref("B", (0, 0))
+
+
+def tilted(doc, space) -> None:
+    space.add_circle((0, 0), 1e12, dxfattribs={"extrusion": (1, 0, 0.1)})
+
+
+def through(doc, space) -> None:
+    space.add_spline([(k % 7, k % 5) for k in range(1_500)])
+
+
+def endless(doc, space) -> None:
+    space.add_ellipse((0, 0), (1e300, 0), 0.5)
+
+
+def bent(doc, space) -> None:
+    space.add_lwpolyline([(1e4 * (k % 7), 1e4 * (k % 5), 1) for k in range(4_000)], format="xyb")
+
+
+def far(doc, space) -> None:
+    space.add_lwpolyline([(0, 0, 1e-3), (1e15, 0, 1e-3)], format="xyb")
+
+
+@pytest.mark.parametrize(
+    ("draw", "said"),
+    [
+        (tilted, "a radius of more than 10 km"),
+        (through, "a spline through 1500 points"),
+        (endless, "the ELLIPSE on layer 0 has a point that is no number, or far away"),
+        (bent, "more than 100.000 points"),
+        (far, "goes farther than 10 km"),
+        (bomb, f"more than {format_count(MOST_ENTITIES)} entities"),
+        (array, "a block is inserted 900.000.000 times"),
+        (circle, "blocks are nested deeper than 16, or hold themselves"),
+    ],
+)
+def test_bombs_are_refused_in_a_sentence_and_soon(draw, said) -> None:
+    file = drawn(draw)
+    began = time.monotonic()
+    with pytest.raises(ToolpathError, match=said):
+        file.read(1e-3)
+    assert time.monotonic() - began < 20.0
+
+
+def test_another_drawing_is_not_followed() -> None:
+    def draw(doc, space):
+        doc.add_xref_def("/etc/hosts", "X")
+        space.add_blockref("X", (0, 0))
+        space.add_line((0, 0), (1, 0))
+
+    read = drawn(draw).read(1e-3)
+    assert len(read.pieces) == 1
+    assert "reference to another drawing, or to a block that is not there" in read.left_out
+
+
+@pytest.mark.parametrize(
+    "junk", [b"\0\1\2" * 100, b"AutoCAD Binary DXF\r\n\x1a\0" + b"\5" * 50, b"%PDF-1.4\n%\xe2\xe3"]
+)
+def test_what_is_no_dxf_is_refused(junk) -> None:
+    with pytest.raises(ToolpathError, match=r"x\.dxf: (this is no DXF file|found no lines)"):
+        drawing_from_bytes(junk, "x.dxf")
+
+
+LINE = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n{}\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n10\n{}\n20\n0\n"
+LINE += "11\n5\n21\n0\n0\nENDSEC\n0\nEOF\n"
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (LINE.format("1e400", "1"), "this is no DXF file"),
+        (LINE.format("4", "1,5"), 'invalid floating point value "1,5"'),
+        ("0\n0\n" * 300_000, "300.000 entities and other records, at most 200.000"),
+        ("999\nx\n" * 1_100_000, "1.100.000 values, at most 1.000.000"),
+    ],
+)
+def test_what_ezdxf_stumbles_over_or_would_mend_unasked_is_refused(data, said) -> None:
+    with pytest.raises(ToolpathError, match=said):
+        drawing_from_bytes(data.encode(), "x.dxf")
+
+
+def test_as_many_entities_as_are_said_are_read(monkeypatch) -> None:
+    monkeypatch.setattr(dxf, "MOST_ENTITIES", 300)
+    for count, refused in ((300, False), (301, True)):
+        file = drawn(lambda doc, space, count=count: [space.add_line((0, k), (1, k)) for k in range(count)])
+        with pytest.raises(ToolpathError, match="more than 300 entities") if refused else nullcontext():
+            assert len(file.read(1e-3).pieces) == count
+
+
+def test_an_entity_that_nobody_knows_is_counted_by_its_name() -> None:
+    data = "0\nSECTION\n2\nENTITIES\n0\nLWPO[]LYLINE\n5\nA1\n8\nL\n10\n1\n20\n1\n"
+    data += "0\nLINE\n8\n0\n10\n0\n20\n0\n11\n5\n21\n0\n"
+    read = Dxf(f"{data}0\nENDSEC\n0\nEOF\n".encode(), "x.dxf").read(1e-3)
+    assert (len(read.pieces), dict(read.left_out)) == (1, {"LWPO[]LYLINE": 1})

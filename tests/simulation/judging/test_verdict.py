@@ -1,0 +1,110 @@
+"""The verdict from readings of plain shares of the tolerance: the largest that decides, and what is not known."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+
+import numpy as np
+import pytest
+
+from robomill.simulation.judging.gauge import Gauge, Readings
+from robomill.simulation.judging.verdict import judge
+from robomill.simulation.result import SimulationResult
+
+TOLERANCES = (0.3e-3, 0.1e-3, 0.5e-3)  # wall, floor, feed
+
+
+def readings(*errors: float) -> Readings:
+    """Readings one after the other along the path, of one length each."""
+    m = len(errors)
+    return Readings(np.arange(m) + 20, np.array(errors), np.ones(m), np.ones(m), np.zeros(m), np.zeros((m, 3)))
+
+
+def gauge(wall: float | None, floor: float | None, end: float | None) -> Gauge:
+    """What is measured, as a share of its own tolerance; None: nothing."""
+    return Gauge(
+        *(
+            readings() if share is None else readings(0.2 * share * allowed, -share * allowed, 0.5 * share * allowed)
+            for share, allowed in zip((wall, floor, end), TOLERANCES, strict=True)
+        )
+    )
+
+
+def toleranced(result: SimulationResult, *, feed: bool) -> SimulationResult:
+    wall, floor, along = TOLERANCES
+    setup = result.setup.replace(tolerance=wall, floor_tolerance=floor, feed_tolerance=along if feed else None)
+    return dataclasses.replace(result, setup=setup)
+
+
+SHARES = (None, 0.5, 0.9, 1.2)
+
+
+@pytest.mark.parametrize("feed", [False, True])
+@pytest.mark.parametrize(("wall", "floor", "end"), list(itertools.product(SHARES, repeat=3)))
+def test_the_largest_share_that_decides(result: SimulationResult, feed: bool, wall, floor, end) -> None:
+    """Out is what exceeds its own tolerance, wall, floor or, with a tolerance of its own, what lies along the feed; and
+    the share used is by how much all tolerances can shrink, or must grow, before just that begins."""
+    run = toleranced(result, feed=feed)
+    measured, found = gauge(wall, floor, end), judge(run, gauge(wall, floor, end))
+    counted = [(measured.walls.error, TOLERANCES[0]), (measured.floors.error, TOLERANCES[1])]
+    if feed:
+        on_its_way = np.einsum("mi,mi->m", run.delta, run.R_MF[:, :, 0])[run.judged]
+        counted += [(measured.ends.error, TOLERANCES[2]), (on_its_way, TOLERANCES[2])]
+    if not any(len(errors) for errors, _ in counted):
+        counted = [(np.linalg.norm(run.delta, axis=1)[run.judged], TOLERANCES[0])]
+
+    def exceeds(times: float) -> bool:
+        return any(abs(error) > times * bound for errors, bound in counted for error in errors)
+
+    assert found.level == ("out" if exceeds(1.0) else "tight" if exceeds(0.8) else "ok")
+    assert found.red == exceeds(1.0)
+    assert exceeds(found.share * (1.0 - 1e-9))
+    assert not exceeds(found.share * (1.0 + 1e-9))
+    bounds = (*TOLERANCES[:2], TOLERANCES[2 if feed else 0])  # the wall's is the one for all that have none
+    for reading, given, bound in zip(
+        (found.wall, found.floor, found.end), (measured.walls, measured.floors, measured.ends), bounds, strict=True
+    ):
+        if len(given.error):
+            assert (reading.worst, reading.value, reading.tolerance) == (21, given.error[1], bound)
+            assert reading.share_out == pytest.approx(np.mean(np.abs(given.error) > bound))
+        else:
+            assert reading.worst == -1
+            assert np.isnan(reading.value)
+
+
+@pytest.mark.parametrize(("edge", "level"), [(0.799, "ok"), (0.801, "tight"), (0.999, "tight"), (1.001, "out")])
+def test_where_the_levels_begin(result: SimulationResult, edge: float, level: str) -> None:
+    assert judge(toleranced(result, feed=False), gauge(0.1, edge, None)).level == level
+
+
+@pytest.mark.parametrize(
+    ("share", "unjudged"), [(0.5, "unjudged"), (0.9, "unjudged"), (1.2, "out"), (None, "unjudged")]
+)
+def test_what_is_not_known_is_never_green(result: SimulationResult, share, unjudged: str) -> None:
+    """Points out of reach come first; points without a force leave red red and make everything else unjudged."""
+    run = toleranced(result, feed=False)
+    cut = int(np.flatnonzero(run.path.cutting)[3])
+    reached, F, delta = run.reached.copy(), run.F.copy(), run.delta.copy()
+    F[cut] = delta[cut] = np.nan
+    found = judge(dataclasses.replace(run, F=F, delta=delta), gauge(share, None, None))
+    assert found.level == unjudged
+    assert ("of it used" in found.sentence) == (share is not None), "a figure stands only where one was measured"
+    reached[cut] = False
+    gone = dataclasses.replace(run, F=F, delta=delta, ik=dataclasses.replace(run.ik, reached=reached))
+    found = judge(gone, gauge(share, None, None))
+    assert (found.level, found.red) == ("unreached", True)
+    assert f"1 of {len(run.path)} points" in found.sentence
+    off = dataclasses.replace(run, delta=delta)  # a force, and no compliance: outside of what was measured
+    assert judge(off, gauge(share, None, None)).level == "unreached"
+
+
+def test_where_nothing_is_judged_nothing_is_read(result: SimulationResult) -> None:
+    cuts = result.path.cutting[:, None]
+    silent = dataclasses.replace(result, F=np.where(cuts, np.nan, result.F), delta=np.where(cuts, np.nan, result.delta))
+    found = judge(toleranced(silent, feed=True), gauge(None, None, None))
+    assert found.level == "unjudged"
+    for reading in (found.wall, found.floor, found.feed, found.end):
+        assert reading.worst == -1
+        assert np.isnan(reading.value)
+    assert np.isnan(found.share)

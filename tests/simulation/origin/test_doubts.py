@@ -1,0 +1,99 @@
+"""Numbers that can be meant, and hardly are, stand beside the result; those that everybody gives do not."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.simulation.origin.doubts import CODE, FRAME, frame_notes
+
+SLOT = {"p_mm": [[-20, 0, -2], [20, 0, -2]], "feed_mm_min": 1800}
+
+
+def doubted(**changes: Any) -> list[str]:
+    """What a straight slot of 40 mm is doubted for, with these changes."""
+    given: dict[str, Any] = {
+        "robot": rm.load_robot("slavkovic_5r"),
+        "source": rm.Toolpath.from_points(**SLOT),
+        "cutter": rm.Cutter("flat", diameter_mm=6, flutes=2),
+        "force": rm.ConstantForce([0, 100, 0]),
+        "part_zero_mm": [0, -1300, 0],
+    }
+    result = rm.simulate(rm.SimulationSetup(**{**given, **changes}))
+    return [note.message for note in result.notes if note.code == CODE]
+
+
+def test_a_plain_slot_is_not_doubted() -> None:
+    assert doubted() == []
+    assert doubted(source=rm.Toolpath.from_points(**SLOT, spindle_1_min=12000)) == []
+
+
+@pytest.mark.parametrize("sample", ["paper_flute", "heart"])
+def test_no_sample_is_doubted(sample: str) -> None:
+    assert CODE not in {note.code for note in rm.simulate(rm.load_setup(sample)).notes}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"force": rm.PathForce(feed_normal=0.1)}, "never exceeds 0.1 N, .* in kN?"),
+        ({"force": rm.PathForce(feed_normal=50e3)}, "more than any robot mills with"),
+        ({"part_zero_mm": [0, -30, 10]}, "lies in the foot of the robot, 30.0 mm from its first axis"),
+        ({"part_zero_mm": None, "part_zero": [0, -0.0013, 0]}, "was it given in m?"),
+        ({"cutter": rm.Cutter("flat", diameter_mm=0.32)}, "The cutter is 0.32 mm wide"),
+        # 30 mm/min / (12000 1/min * 2) = 1.25 um; 1800 / (200 * 2) = 4.5 mm
+        ({"source": rm.Toolpath.from_points(**{**SLOT, "feed_mm_min": 30}, spindle_1_min=12000)}, "takes 0.00125 mm"),
+        ({"source": rm.Toolpath.from_points(**SLOT, spindle_1_min=200)}, "takes 4.5 mm .* speed in 1/s?"),
+        ({"source": rm.Toolpath.from_points(p_mm=[[0, 0, -2], [0.8, 0, -2]], feed_mm_min=1800)}, "The whole path lies"),
+        ({"robot": rm.load_robot("slavkovic_5r").replace(tool_xyz=[1.6e-4, 0, 0])}, "The tool ends 0.16 mm from"),
+        ({"source": rm.Toolpath.from_points(p=[[-4, 0, -2], [4, 0, -2]], v_f=0.03)}, "more than the arm reaches"),
+    ],
+)
+def test_what_looks_like_another_unit_is_said(changes: dict[str, Any], words: str) -> None:
+    (said,) = doubted(**changes)
+    assert re.search(words.replace("?", "\\?"), said), said
+
+
+def six(**more: Any) -> rm.Robot:
+    """A plain arm of six joints, whose flange points its z out at the tool."""
+    return rm.Robot.from_dh(
+        a_mm=[300, 1000, 50, 0, 0, 0],
+        alpha_deg=[-90, 0, -90, 90, -90, 0],
+        d_mm=[600, 0, 0, 1000, 0, 200],
+        k_theta_kNm_per_rad=3000,
+        **more,
+    )
+
+
+def test_a_flange_frame_taken_as_the_tool_frame_is_told() -> None:
+    """By the arm's own pose: with z_T along the tool's way out the flange ends up 160 mm below the tip."""
+    robot = six(tool_xyz_mm=[0, 0, 160])
+    setup = rm.SimulationSetup(
+        robot=robot,
+        source=rm.Toolpath.from_points(**SLOT),
+        cutter=rm.Cutter("flat", diameter_mm=6, flutes=2),
+        force=rm.ConstantForce([0, 100, 0]),
+        part_zero_mm=[1200, 0, 700],
+    )
+    found = rm.simulate(setup)
+    T_MT = rm.tool_pose(robot, found.theta[found.reached][0])
+    flange = T_MT @ np.linalg.inv(robot.T_tool)
+    assert flange[2, 3] - T_MT[2, 3] == pytest.approx(-0.160, abs=1e-9)
+    (told,) = [note for note in found.notes if note.code == FRAME]
+    assert "160 mm from the tip on the side of the part" in told.message
+
+
+def test_tools_that_stand_off_or_beside_their_flange_are_not_doubted() -> None:
+    turned = np.diag([1.0, -1.0, -1.0, 1.0])
+    turned[:3, 3] = [0.0, 0.0, 0.16]
+    beside = np.array([[0.0, 0, 1, 0.2], [0, 1, 0, 0], [-1, 0, 0, 0.1], [0, 0, 0, 1]])
+    assert frame_notes(six()) == frame_notes(six(T_tool=turned)) == ()
+    along = -float(beside[:3, 2] @ beside[:3, 3])  # -0.2: {T}'s z runs further out along x
+    assert along < 0.0
+    assert len(frame_notes(six(T_tool=beside))) == 1
+    for name in ("slavkovic_5r", "kuka_kr270", "kuka_kr500", "fanuc_r2000ic", "planar_2r", "planar_3r"):
+        assert frame_notes(rm.load_robot(name)) == ()

@@ -1,0 +1,96 @@
+"""Thin ribs between earlier passes, met by mills of every kind, upright and leaning: the force against brute force."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from robomill.cutting.tool import Cutter
+from robomill.cutting.tooling import Tooling
+from robomill.surface.contact.engagement import engage
+from robomill.surface.contact.march import March
+from robomill.surface.stock import Stock
+from tests.cutting.brute_force import UPRIGHT, Cut, Floats, Move, axis, box, in_tool_axes
+from tests.simulation.cuts import AL7075, BALL, BULL, CHAMFER, FEED, FLAT, MM
+
+LOW, HIGH = np.array([-30.0, -30.0, -8.0]) * MM, np.array([30.0, 30.0, 0.0]) * MM
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def past(width: float, aside: float, angle: float) -> list[np.ndarray]:
+    """Ends (2, 3) m of two slots 8 mm wide that leave a rib so wide (mm) between them; its middle goes through
+    (0, aside) mm, turned so many degrees from X."""
+    way = np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle)), 0.0])
+    middle, left = np.array([0.0, aside, -2.0]), np.array([-way[1], way[0], 0.0])
+    far = 4.0 + 0.5 * width
+    return [np.array([middle + q * left - 60 * way, middle + q * left + 60 * way]) * MM for q in (far, -far)]
+
+
+def off(cutter: Cutter, width: float, aside: float, angle: float) -> float:
+    """The largest error of the force on some steps along X through the rib, as a share of the largest one."""
+    x = np.arange(-40.0, 6.0, 0.5) if angle == 0.0 else np.arange(-12.0, 6.0, 0.37)
+    steps = np.column_stack([x, np.zeros_like(x), np.full_like(x, -2.0)]) * MM
+    slots = past(width, aside, angle)
+    p = np.concatenate([*slots, steps])
+    cutting = np.ones(len(p), dtype=bool)
+    cutting[[0, 2, 4]] = False
+    tool = np.array([0, 0, 0, 0, *np.ones(len(steps), dtype=int)])
+    part = engage(March(Stock(LOW, HIGH), 1e-4, Tooling((FLAT, cutter), tool), p, None, cutting)).part
+    found = part.force(AL7075, cutter, np.full(len(p), FEED))[4:]
+    asked = np.flatnonzero((x > -6.0) & (x < 4.0))[::2]
+    moves = tuple(Move(FLAT, *slot, UP) for slot in slots)
+    ahead = np.array([1.0, 0.0, 0.0])
+    truth = []
+    for i in asked:
+        cut = Cut(box(LOW, HIGH), (*moves, Move(cutter, steps[0], steps[i - 1], UP)), 5 * MM, 20_000)
+        truth.append(cut.mean_force(cutter, AL7075, steps[i] - 1e-6 * ahead, FEED * ahead, UP))
+    size = max(1.0, float(np.linalg.norm(truth, axis=1).max()))
+    return float(np.linalg.norm(found[asked] - np.array(truth), axis=1).max() / size)
+
+
+RIBS = {"from its end": (0.0, 0.0), "from its end, aside": (2.3, 0.0), "from the side": (0.0, 90.0)}
+RIBS |= {"at 30 degrees": (0.0, 30.0), "at 70 degrees": (0.5, 70.0)}
+
+
+@pytest.mark.parametrize("place", RIBS)
+@pytest.mark.parametrize("width", [0.1, 0.3, 0.5])
+def test_force_of_a_rib(width: float, place: str) -> None:
+    assert off(FLAT, width, *RIBS[place]) < 0.05
+
+
+ROUND = {"ball": (BALL, UPRIGHT), "bull": (BULL, UPRIGHT), "chamfer": (CHAMFER, UPRIGHT)}
+LEANING = {"flat, A 10": (FLAT, axis(A=10)), "ball, A 10": (BALL, axis(A=10)), "flat, B 10": (FLAT, axis(B=10))}
+PLACES = {"along, aside": (-2.3, 0.0), "along, less aside": (0.9, 0.0), "oblique": (0.4, 28.6), "across": (-1.6, 90.0)}
+
+
+def once(mill: tuple[Cutter, Floats], width: float, place: tuple[float, float], cell: float) -> float:
+    """The error of the force 3 mm deep in one rib, as a share of that force."""
+    cutter, k = mill
+    aside, angle = place
+    slots = [slot - np.array([0.0, 0.0, 2.0]) * MM for slot in past(width, aside if angle < 90.0 else 0.0, angle)]
+    end = np.array([0.0 if angle < 90.0 else aside, 0.0, -3.0]) * MM  # an upright rib stands so far ahead
+    start = end - np.array([40.0 if angle < 90.0 else 6.0, 0.0, 0.0]) * MM
+    p, cutting = np.array([*slots[0], *slots[1], start, end]), np.tile([False, True], 3)
+    tooling, axes = Tooling((FLAT, cutter), np.array([0, 0, 0, 0, 1, 1])), np.array([UP] * 4 + [k, k])
+    part = engage(March(Stock(LOW, HIGH), cell * MM, tooling, p, axes, cutting)).part
+    found = part.force(AL7075, cutter, np.full(len(p), FEED))[-1]
+    moves = tuple(Move(FLAT, *slot, UP) for slot in slots)
+    ahead = np.array([1.0, 0.0, 0.0])
+    cut = Cut(box(LOW, HIGH), (*moves, Move(cutter, start, end - 1e-8 * ahead, k)), 7 * MM, 200_000)
+    truth = in_tool_axes(cut.mean_force(cutter, AL7075, end, FEED * ahead, k), ahead, k)
+    return float(np.linalg.norm(found - truth) / max(1.0, float(np.linalg.norm(truth))))
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("width", [0.1, 0.25, 0.5])
+@pytest.mark.parametrize("mill", ROUND | LEANING)
+def test_force_of_a_rib_on_a_nose_or_a_leaning_flank(mill: str, width: float, place: str) -> None:
+    assert once((ROUND | LEANING)[mill], width, PLACES[place], 0.1) < 0.06  # brute force is known to 1 %
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("mill", {"flat": (FLAT, UPRIGHT)} | ROUND | LEANING)
+def test_force_of_a_rib_that_is_thinner_than_a_cell(mill: str, place: str) -> None:
+    assert once(({"flat": (FLAT, UPRIGHT)} | ROUND | LEANING)[mill], 0.1, PLACES[place], 0.5) < 0.06

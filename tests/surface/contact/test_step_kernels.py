@@ -1,0 +1,39 @@
+"""A step's place and the frame on the tool's axis."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.surface.contact.step_kernels import step_at
+
+
+def test_a_step_has_its_place_and_a_frame_on_the_axis():
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        tip, k, v = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3)
+        k, v = k / np.linalg.norm(k), v / np.linalg.norm(v)
+        step = step_at(tip, k, v, np.zeros(3), (0.3, 5))
+        feed, left, axis = np.array(step[3:6]), np.array(step[6:9]), np.array(step[9:12])
+        np.testing.assert_allclose(step[:3], tip)
+        np.testing.assert_allclose(axis, k)
+        np.testing.assert_allclose(
+            np.column_stack([feed, left, axis]).T @ np.column_stack([feed, left, axis]), np.eye(3), atol=1e-12
+        )
+        np.testing.assert_allclose(np.cross(feed, left), axis, atol=1e-12)
+        np.testing.assert_allclose(step.across * feed + step.along * axis, v, atol=1e-12)
+        assert step.across > 0.0
+        assert (step.sinks, step.run) == (0.3, 5)
+
+
+@pytest.mark.parametrize("k", [[0.0, 0, 1], [1.0, 0, 0], [0, 0.6, -0.8], [-0.96, 0.28, 0]])
+def test_straight_along_the_axis_the_heading_stands_for_the_feed(k):
+    k = np.array(k)
+    heading = np.cross(k, [0.3, -0.5, 0.7])
+    heading /= np.linalg.norm(heading)
+    step = step_at(np.zeros(3), k, -k, heading, (1.0, 0))
+    assert (step.across, step.along) == pytest.approx((0.0, -1.0))
+    frame = np.column_stack([step[3:6], step[6:9], k])
+    np.testing.assert_allclose(step[3:6], heading, atol=1e-12)
+    np.testing.assert_allclose(frame.T @ frame, np.eye(3), atol=1e-12)
+    assert np.linalg.det(frame) == pytest.approx(1.0)
