@@ -8,6 +8,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.tool import Cutter
+from robomill.lazy import cached_property
 from robomill.surface.sections.section_law import has_floor, straight_part
 from robomill.surface.sections.trace import AT_TOP, OWN, SEVERAL, Line, Side, WallForm, first_above, wall_form
 
@@ -64,7 +65,7 @@ class Seen:
         """How far the axis is off across the feed, m."""
         return self.at[1] - self.at[0]
 
-    @property
+    @cached_property
     def floors(self) -> tuple[float, float]:
         """Heights of the floors at the axis, told and left, m."""
         told, left = (float(line.height(np.array([w]))[0]) for line, w in zip((self.told, self.left), self.at))
@@ -102,8 +103,18 @@ class Seen:
         heel = HEEL * min(abs(self.heel), MOST_HEEL) * self.cutter.radius
         return bool(np.ptp(z - lean * across) <= STEP + heel)
 
+    @cached_property
+    def _edges(self) -> dict[tuple[float, Side], Found]:
+        """Edges found so far: every measure of a wall asks for its edge."""
+        return {}
+
     def edge(self, side: float, ideal: Side) -> Found:
         """Where the machined counterpart of an ideal wall has its edge."""
+        if (side, ideal) not in self._edges:
+            self._edges[side, ideal] = self._edge(side, ideal)
+        return self._edges[side, ideal]
+
+    def _edge(self, side: float, ideal: Side) -> Found:
         middle, floor = self.at[1], self.floors[1]
         top = float(self.left.skin(np.array([middle]))[0])
         level = top - AT_TOP * (top - floor) if ideal.of_stock else 0.5 * (self.floors[0] + ideal.top)
