@@ -7,13 +7,15 @@ from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.rules.cycle_rules import is_cycle
-from robomill.toolpath.gcode.rules.motion_rules import MOST, implied_motion, is_arc, keep_motion
+from robomill.toolpath.gcode.rules.motion_rules import implied_motion, is_arc, keep_motion
 from robomill.toolpath.gcode.tool_axis import UNIT, angles_of
 from robomill.toolpath.gcode.words import Block
 
 _AXES = "xyzabcuvw"
 _SPECIAL = frozenset("dehijklpqr")
 """Words that only some codes use, as ``_uses`` says."""
+MOST_TURNS = 10_000
+"""Turns of one arc."""
 _LINUXCNC = Dialect("linuxcnc", guessed=False)
 _COMPENSATION_ON = frozenset({410, 411, 420, 421})
 
@@ -130,8 +132,8 @@ def check_words(block: Block) -> list[tuple[str, str]]:
                 raise block.refuse(f"{g_name(motion)} takes no {letter.upper()}; turn the axis on a line before.")
     if is_arc(motion) and "p" in words and (abs(words["p"] - round(words["p"])) > 1e-3 or round(words["p"]) < 1):
         raise block.refuse(f"{g_name(motion)} has P{words['p']:g}; expected a whole number of turns, 1 or more.")
-    if is_arc(motion) and words.get("p", 1.0) > MOST:
-        raise block.refuse(f"{g_name(motion)} has P{words['p']:g}; at most {MOST} turns are made.")
+    if is_arc(motion) and words.get("p", 1.0) > MOST_TURNS:
+        raise block.refuse(f"{g_name(motion)} has P{words['p']:g}; at most {MOST_TURNS} turns are made.")
     if motion in (330, 331):
         if "k" not in words:
             raise block.refuse(f"{g_name(motion)} needs K, the distance per turn.")

@@ -186,8 +186,14 @@ class Dialect:
         if block.twice and self.strict:
             raise block.refuse(block.twice)
         unit = block.g.get(modal.UNITS, machine.unit_code)
-        if self.name == "grbl" and unit != machine.unit_code and machine.feed_mode != 930 and "f" in block.words:
-            block.words["f"] *= to_si(1.0, UNITS[unit]) / machine.factor
+        if self.name in ("grbl", "fanuc") and unit != machine.unit_code:
+            if machine.feed_mode != 930 and "f" in block.words:
+                block.words["f"] *= to_si(1.0, UNITS[unit]) / machine.factor
+            if self.name == "fanuc" and not block.words.keys().isdisjoint("xyzijkrqf"):
+                text = (
+                    f"{g_name(unit)} stands beside other words, which count in {UNITS[unit]} here; Fanuc controls want"
+                )
+                machine.note("units-beside", "warning", f"{text} it on a line of its own, before any place")
         if self.name == "fanuc" and modal.DIAMETER in block.g:
             raise block.refuse(f"{g_name(block.g[modal.DIAMETER])} of a Fanuc control is not read; remove the word.")
         if self.name == "sinumerik" and block.g.get(modal.COORDINATES) in (580, 590):
@@ -241,6 +247,8 @@ class Dialect:
             del block.g[modal.COORDINATES]
             select_extended(machine, block, block.words["p"])
             return
+        if self.name == "sinumerik" and letter == "e":
+            raise block.refuse("E is no word of a Sinumerik; it writes 1000 as 1EX3, with EX for times ten to the.")
         if self.name == "sinumerik" and letter == "l":
             raise block.refuse(f"L{block.words['l']:g} calls a subprogram; put it on a line of its own.")
         if block.unknown_m or modal.USER in block.m:

@@ -23,9 +23,7 @@ from robomill.toolpath.gcode.subprograms import CALLS
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
 
 MAX_STEPS = 1_000_000
-"""Lines that may be executed beyond the length of the program: loops and subroutines,"""
-MAX_READ = 25_000
-"""and of those that are read anew each time they come: a second or two."""
+"""Lines that may be executed beyond the length of the program: loops and subroutines."""
 
 MAX_CODE = 3000
 """Characters of a Sinumerik line that can be read, without its comment."""
@@ -42,8 +40,7 @@ class Interpreter(Klartext):
 
     def __init__(self, machine: Machine, file: File, dialect: Dialect) -> None:
         super().__init__(machine, file, dialect)
-        self.steps, self.read = 0, 0
-        self.budget, self.reads = len(file.lines) + MAX_STEPS, len(file.lines) + MAX_READ
+        self.steps, self.budget = 0, len(file.lines) + MAX_STEPS
         self.looping_since: float | None = None
         self.percent, self.is_klartext = False, dialect.name == "heidenhain"
         machine.sides = {410: "RL", 420: "RR"} if self.is_klartext else {}
@@ -68,7 +65,6 @@ class Interpreter(Klartext):
 
     def step(self, index: int) -> None:
         """Execute line ``index`` of the current file."""
-        self.read += 1
         self._count(1, index)
         raw = self.file.lines[index]
         machine = self.machine
@@ -149,8 +145,12 @@ class Interpreter(Klartext):
 
     def _run_stretch(self) -> bool:
         """Execute lines that the rules know; False if the next line is none, or wants the reader's word."""
+        if self.pc in self.file.unplain:
+            return False
         structure, most = self.file.structure or self.no_words, self.budget + 1 - self.steps
         done, self.pc, more = self.stretches.run(self.file.lines, structure, self.pc, self.steps, most)
+        if done == 0 and not more:  # and it is not asked again in every round of a loop
+            self.file.unplain.add(self.pc)
         self._count(done, max(self.pc - 1, 0))
         return more
 
@@ -159,9 +159,8 @@ class Interpreter(Klartext):
         """So many lines more were executed, ``index`` is the last one."""
         before = self.steps
         self.steps += executed
-        most = MAX_STEPS if self.steps > self.budget else MAX_READ if self.read > self.reads else 0
-        if most:
-            raise GCodeError.at(index + 1, f"more than {most} lines were executed in loops; the program may not end.")
+        if self.steps > self.budget:
+            raise self._endless(index, f"more than {MAX_STEPS} lines were executed in loops")
         if self.steps // _CHECK_EVERY != before // _CHECK_EVERY:
             self._check_time(index)
             share = min(max(index / max(len(self.main.lines), 1), self.steps / self.budget), 1.0)
@@ -174,8 +173,13 @@ class Interpreter(Klartext):
         if self.looping_since is None:
             self.looping_since = now
         elif now - self.looping_since > LOOPING:
-            text = f"loops took longer than {LOOPING:g} s after {self.steps} lines; the program may not end."
-            raise GCodeError.at(index + 1, text)
+            raise self._endless(index, f"loops took longer than {LOOPING:g} s after {self.steps} lines")
+
+    def _endless(self, index: int, what: str) -> GCodeError:
+        """Nothing is cut short: what is not at its end by then is refused, with its size so far."""
+        moves = len(self.machine.recorder)
+        text = f"{what} and {moves} moves; the program may not end. If it does, let the CAM system write its moves out."
+        return GCodeError.at(index + 1, text)
 
     def _skip_percent(self) -> None:
         for index, raw in enumerate(self.main.lines):

@@ -33,12 +33,13 @@ SENTENCES = {
 
 @dataclass
 class File:
-    """Lines of a program or subroutine file, and its O words once one has been met."""
+    """Lines of a program or subroutine file, its O words once one has been met, and the lines that no stretch takes."""
 
     name: str
     lines: Lines
     folder: Path | None = None
     structure: Structure | None = None
+    unplain: set[int] = field(default_factory=set)
 
 
 @dataclass

@@ -1,5 +1,6 @@
 """The two ways in: ``interpret`` for canonical moves, ``read_gcode`` for a toolpath."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,12 +17,13 @@ from robomill.toolpath.gcode.doubts import doubt, doubt_all_points, doubt_points
 from robomill.toolpath.gcode.fanuc.macro_calls import begin_empty
 from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.foreign import language_of
+from robomill.toolpath.gcode.grbl import check_grbl
 from robomill.toolpath.gcode.interpreter import Interpreter
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program, most_moves
-from robomill.toolpath.path import TABLES, Toolpath
+from robomill.toolpath.path import TABLES, Toolpath, far_off
 from robomill.toolpath.text import Source, named_as_file, read_source
 from robomill.toolpath.tools import Tools
 
@@ -101,6 +103,8 @@ def interpret(
     folder = Path(source).parent if isinstance(source, str | Path) and is_file else None
     file = File(name, lines, folder)
     try:
+        if chosen.name == "grbl":
+            check_grbl(data, not chosen.guessed, machine.findings)
         Interpreter(machine, file, chosen).run()
     except GCodeError as refused:
         if not partial:  # held by no name: what was read would live until the garbage collector runs
@@ -126,7 +130,7 @@ def _machine(tools: Tools | None, dialect: Dialect, lines: int) -> Machine:
     machine.recorder.most = most_moves(lines)
     machine.strict = dialect.strict
     machine.keeps_heights = dialect.keeps_heights
-    machine.feed_in_block = dialect.name in ("grbl", "sinumerik")
+    machine.feed_in_block = dialect.name in ("grbl", "sinumerik", "fanuc")
     machine.other_control = dialect.name in ("fanuc", "sinumerik", "heidenhain")
     if machine.other_control:
         machine.store.cut_towards_zero()
@@ -154,9 +158,7 @@ def _offered(refused: GCodeError, machine: Machine, tools: Tools | None, file: F
 
 def _program(machine: Machine, dialect: str, lines: int) -> Program:
     columns: dict[str, Any] = machine.recorder.columns()
-    if not np.isfinite(columns["end"]).all() or not np.isfinite(columns["centre"]).all():
-        bad = int(columns["line"][np.flatnonzero(~np.isfinite(columns["end"]).all(axis=1))[:1]].sum())
-        raise GCodeError.at(bad, "a coordinate is too large; expected finite lengths.")
+    _check_sizes(columns)
     if not machine.unit_said and len(columns["line"]):
         machine.findings.add(NO_UNITS, "suspicious", 0, "no G20 or G21: lengths are taken as mm")
     program = Program(
@@ -172,6 +174,27 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
     )
     doubt(machine, program)
     return replace(program, findings=machine.findings.freeze())
+
+
+_MOST = {
+    "rotary": (2e5 * math.pi, "an axis turns more than 100 000 times"),
+    "centre": (1e9, "the centre of an arc lies more than 1 000 000 km from part zero"),
+    "v_f": (1e3, "a feed is above 60 000 000 mm/min"),
+    "n_s": (1e5, "a spindle turns faster than 6 000 000 1/min"),
+    "dwell": (1e8, "a dwell takes more than three years"),
+}
+"""What no machine does, by column of moves (SI), and what is said of it."""
+
+
+def _check_sizes(columns: dict[str, Any]) -> None:
+    """Raise GCodeError at the first move that leads beyond any machine, or that has a number no machine has."""
+    if far := far_off(columns["end"], columns["line"]):
+        raise GCodeError.at(*far)
+    for name, (most, what) in _MOST.items():
+        above = np.abs(columns[name]) > most  # False for NaN, a speed that is not known (G96)
+        beyond = np.flatnonzero(above.any(axis=1) if above.ndim == 2 else above)
+        if len(beyond):
+            raise GCodeError.at(int(columns["line"][beyond[0]]), f"{what}; mend the number, or the unit it is in.")
 
 
 def _since(changes: list[tuple[int, Any]], count: int, first: Any) -> Any:

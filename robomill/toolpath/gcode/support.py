@@ -278,6 +278,9 @@ SUPPORT: tuple[Support, ...] = (
     ),
     Support("FL, PLANE, other cycles", "of Heidenhain", "refused", "FL X+1 LEN5", dialect=_TNC),
     _row("$ lines", "settings of grbl are left out", "$10=1\nG0 X1", (1, 0, 0), 1, dialect="grbl"),
+    Support(
+        "G81, G90.1, G95, A, #1, [ ], ...", "what grbl 1.1 does not know", "refused", "G81 X1 Z-1 R1", dialect="grbl"
+    ),
     Support("$H $J", "grbl's own motion", "refused", "$H\nG0 X1", dialect="grbl"),
 )
 """The table: what a page shows, and what the tests run."""
@@ -293,6 +296,7 @@ DIFFERENCES: tuple[str, ...] = (
     "Probing is taken to travel its whole way and to touch nothing.",
     "Homes (G28, G30) and places in the machine (G53) are not known: the path stands clear of the part there.",
     "Holes in G91 behind one in G90 keep its R and depth, as on Fanuc and Haas, unless LinuxCNC is stated.",
+    "Loops end after 1.3 s of computing or a million lines; what is not at its end by then is refused with its size.",
     "What LinuxCNC refuses and other controls run (axis words after G80, G0 beside G28) is read unless it is stated.",
 )
 """Where reading differs from LinuxCNC 2.9, by design."""

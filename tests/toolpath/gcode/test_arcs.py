@@ -100,7 +100,7 @@ def test_chord_error_must_be_a_length(chord_error: float) -> None:
 
 def test_too_many_turns_are_refused_with_what_would_fit() -> None:
     with pytest.raises(GCodeError, match="so use .* mm or more"):
-        read_gcode("G21 F100\nG3 I5 P1000000\nM2\n")
+        read_gcode("G21 F100\nG3 I5000 P10000\nM2\n")
 
 
 def test_tilted_axis_turns_in_small_steps() -> None:

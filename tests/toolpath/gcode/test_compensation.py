@@ -339,7 +339,7 @@ def test_the_cutter_is_named_by_the_number_of_a_tool(number):
         interpret("G21 G90 F100\nT1 M6\nG41\nG1 X20\nM2\n")
 
 
-@pytest.mark.parametrize("dialect", ["auto", "fanuc", "sinumerik", "grbl"])
+@pytest.mark.parametrize("dialect", ["auto", "fanuc", "sinumerik"])
 def test_a_tool_whose_table_does_not_say_its_diameter_is_none_to_compensate_with(dialect):
     """As without a table; LinuxCNC takes a D that is not written for 0, and a D of 0 is a program of the centre."""
     text = f"G21 G90 G17 F100\nT1{' D1' * (dialect == 'sinumerik')} M6\nG41\nG1 X20\nX40\nM2\n"

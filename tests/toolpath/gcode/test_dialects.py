@@ -90,8 +90,8 @@ def test_what_is_left_out_is_counted() -> None:
     found = interpret("G21\nG187 P1\nG15\nM77\nG0 X1\nM2\n", dialect="fanuc")
     left_out = {(each.code, each.line) for each in found.findings}
     assert left_out >= {("harmless-g", 2), ("harmless-g", 3), ("unknown-m", 4)}
-    for dialect in ("linuxcnc", "grbl"):
-        with pytest.raises(GCodeError, match="Line 2: G187 is not known; it may move the machine"):
+    for dialect, why in (("linuxcnc", "; it may move the machine"), ("grbl", " to grbl 1.1")):
+        with pytest.raises(GCodeError, match=f"Line 2: G187 is not known{why}"):
             interpret("G21\nG187\nM2\n", dialect=dialect)
 
 
@@ -172,7 +172,7 @@ def test_e_keeps_its_meaning_where_it_has_one() -> None:
         ("T3 D1\nM6", "sinumerik", "tool 3"),
         ("D1", "sinumerik", "the tool in the spindle"),
         ("", "linuxcnc", "the tool in the spindle"),
-        ("T3 M6", "grbl", "tool 3"),
+        ("T3 M6", "fanuc", "tool 3"),
     ],
 )
 def test_compensation_without_a_table_asks_for_one(tool: str, dialect: str, named: str) -> None:
@@ -242,7 +242,7 @@ def test_seconds_of_a_dwell_stand_behind_x_u_or_p(dialect: str, word: str) -> No
 @pytest.mark.parametrize("code", ["G110", "G111", "G112"])
 def test_poles_of_a_sinumerik_are_named(code: str) -> None:
     with pytest.raises(GCodeError, match=f"Line 2: {code} sets a pole, which is read for Sinumerik controls alone"):
-        interpret(f"G21 F9\n{code} X1 Y1\nM30\n", dialect="grbl")
+        interpret(f"G21 F9\n{code} X1 Y1\nM30\n", dialect="linuxcnc")
 
 
 @pytest.mark.parametrize(
@@ -269,6 +269,26 @@ def test_a_point_alone_is_nought_on_a_fanuc() -> None:
 def test_haas_engraving_is_named() -> None:
     with pytest.raises(GCodeError, match="Line 2: G47 engraves text"):
         interpret("G20 G0 X0\nG47 E7.5 F15. I45. J.5 P0 R0.05 Z-0.005 (TEXT)\n")
+
+
+def test_units_beside_other_words_count_for_the_line_on_a_fanuc_and_that_is_said() -> None:
+    """25.4 mm is 1 in; F10 is 10 in/min, 254 mm/min. On a line of its own G20 says nothing more."""
+    program = interpret("G21 G90 G0 X0\nG20 G1 X1. F10.\nM30\n", dialect="fanuc")
+    np.testing.assert_allclose([program.end[-1, 0] * 1e3, program.v_f[-1] * 6e4], [25.4, 254])
+    said = {f.code: f.line for f in program.findings}
+    assert said["units-beside"] == 2
+    assert "feed-units" not in said
+    for apart in ("G21 G90 G0 X0\nG20\nG1 X1. F10.\nM30\n", "G21 G90\nG0 G21 X1.\nM30\n"):
+        assert "units-beside" not in {f.code for f in interpret(apart, dialect="fanuc").findings}
+
+
+def test_e_is_no_word_of_a_sinumerik() -> None:
+    """X=1e99 is no number there, and its X=1 is not what it means."""
+    with pytest.raises(GCodeError, match="Line 2: E is no word of a Sinumerik; it writes 1000 as 1EX3"):
+        interpret("G71 F9\nG1 X=1e99\nM30\n", dialect="sinumerik")
+    with pytest.raises(GCodeError, match="Line 2: TURN=999999999 is more than a Sinumerik takes; expected 0 to 999"):
+        interpret("G71 F9\nG2 I5 TURN=999999999\nM30\n", dialect="sinumerik")
+    assert interpret("G71 F9\nG2 I5 TURN=999\nM30\n", dialect="sinumerik").turns[-1] == 1000
 
 
 def test_a_feed_beside_g20_counts_in_inches_on_grbl() -> None:

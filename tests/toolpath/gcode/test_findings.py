@@ -129,6 +129,23 @@ def test_lines_are_counted_without_an_empty_last_one(end: str, lines: int) -> No
 
 def test_a_place_too_far_off_names_its_line() -> None:
     far = "1" + "0" * 308
-    with pytest.raises(GCodeError, match="Line 4: a coordinate is too large") as refused:
+    with pytest.raises(GCodeError, match="Line 3: a point lies 1e.305 m from part zero") as refused:
         interpret(f"G21 G91\nG0 X1\nX{far}\nX{far}\nM2\n")
-    assert refused.value.line == 4
+    assert refused.value.line == 3
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("X1e99", "a point lies 1e.96 m from part zero"),
+        ("X-10000001", "a point lies 10.000 m from part zero"),
+        ("G2 X1 R1e15", "the centre of an arc lies more than 1 000 000 km from part zero"),
+        ("A1e99", "an axis turns more than 100 000 times"),
+        ("X1 F1e99", "a feed is above 60 000 000 mm/min"),
+        ("M3 S1e99\nX1", "a spindle turns faster than 6 000 000 1/min"),
+        ("G4 P1e99\nX1", "a dwell takes more than three years"),
+    ],
+)
+def test_numbers_that_no_machine_has_are_refused_by_name(line: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=f"Line [23]: {says}"):
+        interpret(f"G21 G90 G1 F100 X0\n{line}\nM2\n")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import interpret, read_gcode
+from robomill.toolpath.gcode import interpret
 
 FILES = sorted((Path(__file__).parent / "data" / "refused").glob("*.ngc"))
 SLOW = {"o_endless"}
@@ -31,13 +31,13 @@ def test_endless_loop_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         interpret(next(f for f in FILES if f.stem == "o_endless"))
 
 
-def test_a_loop_of_lines_that_are_read_anew_is_refused_sooner(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A second or two is what anybody waits for; the rounds before it are not lost on a program that ends."""
-    monkeypatch.setattr("robomill.toolpath.gcode.interpreter.MAX_READ", 300)
-    text = "G21\nO1 repeat [{}]\nO2 if [#<_vmajor>]\nO2 endif\nO1 endrepeat\nG1 F100 X1\nM2\n"
-    assert read_gcode(text.format(300).encode()).p[-1, 0] == pytest.approx(1e-3)
-    with pytest.raises(GCodeError, match="more than 300 lines were executed in loops; the program may not end"):
-        read_gcode(text.format(320).encode())
+def test_a_macro_of_many_short_passes_that_ends_is_read_and_a_longer_one_says_its_size() -> None:
+    """Three lines a round; 4 000 rounds take about half a second, 4 000 000 some minutes."""
+    loop = "G21 G90 G0 X0 F100\n#1=0\nWHILE [#1 LT {}] DO1\n#1=#1+1\nG1 X[#1/1000]\nEND1\nM30\n"
+    assert interpret(loop.format(4000), dialect="fanuc").end[-1, 0] == pytest.approx(4e-3)
+    said = r"loops took longer than 1\.3 s after \d+ lines and \d+ moves; the program may not end\. If it does, let the"
+    with pytest.raises(GCodeError, match=said):
+        interpret(loop.format(4_000_000), dialect="fanuc")
 
 
 @pytest.mark.parametrize("dialect", ["linuxcnc", "fanuc", "sinumerik", "heidenhain"])

@@ -26,6 +26,9 @@ _VECTOR = re.compile(rf"\b([ABC])3[ \t]*=[ \t]*({_NUMBER})", re.IGNORECASE)
 _ORIENTATION = re.compile(r"\b(?:([ABC])([24-7])[ \t]*=|(LEAD|TILT|THETA|AN[23])[ \t]*=)", re.IGNORECASE)
 _SWIVEL = re.compile(r"\bCYCLE800[ \t]*\(([^()]*)\)", re.IGNORECASE)
 _TURNS = re.compile(r"\b(G0?4)[ \t]+S[ \t]*=?[ \t]*([.\d]+)", re.IGNORECASE)
+_TURN = re.compile(r"\bTURN\s*=\s*(\d+)", re.IGNORECASE)
+MOST_TURNS = 999
+"""Full turns that a Sinumerik adds to an arc at most."""
 _TOOL = re.compile(r"\bT[ \t]*=?[ \t]*\"([^\"]*)\"", re.IGNORECASE)
 _MODES = re.compile(r"\bG9[01]\b(?!\.)", re.IGNORECASE)
 _CODE = re.compile(r"(?:[^;\"]|\"[^\"]*\"|\"(?=[^\"]*$))*+")
@@ -67,7 +70,7 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = _TURNS.sub(lambda found: _waited(found, number, machine), code)
     code = re.sub(r"\b(G0?4)\s+F", r"\1 P", code, flags=re.IGNORECASE)
     code = re.sub(r"\bCR\s*=", "R", code, flags=re.IGNORECASE)
-    code = re.sub(r"\bTURN\s*=\s*(\d+)", lambda found: f"P{int(found[1][:9]) + 1}", code, flags=re.IGNORECASE)
+    code = _TURN.sub(lambda found: _whole_turns(found[1], number), code)
     code = re.sub(r"\b([XYZABCIJKFS])1?\s*=\s*([-+.\d]+)", r"\1\2", code, flags=re.IGNORECASE)
     code = re.sub(r"\b(?:M17|RET)\b", "M2", code, flags=re.IGNORECASE)
     code = _TOOL.sub(lambda found: named_tool(found[1], number, machine), code)
@@ -99,6 +102,13 @@ def _feeds(code: str, number: int, machine: Machine) -> str:
         return code
     ratio = to_si(1.0, counts) / to_si(1.0, machine.unit)
     return _FEED.sub(lambda found: f"F{float(found[1]) * ratio:.12f}", code)
+
+
+def _whole_turns(said: str, number: int) -> str:
+    """TURN= counts the full turns before the arc that leads to the end; P counts that one too."""
+    if len(said) > 9 or int(said) > MOST_TURNS:
+        raise GCodeError.at(number, f"TURN={said[:20]} is more than a Sinumerik takes; expected 0 to {MOST_TURNS}.")
+    return f"P{int(said) + 1}"
 
 
 def _waited(found: re.Match[str], number: int, machine: Machine) -> str:
