@@ -30,6 +30,14 @@ def test_drawn_out_or_standing_a_tool_does_not_cut_and_a_plunge_is_said():
     assert [(each.code, each.line) for each in cut_warnings(MILL, plunge)] == [("thrust-end-teeth", 7)]
 
 
+def test_one_value_in_a_list_holds_for_every_sample_and_none_for_no_sample():
+    said = {"n_s": 200.0, "phi_st": 0.0, "phi_ex": np.pi, "cutting": True, "s": 0.0, "t": 0.0, "block": 12}
+    many = CutConditions(v_f=[0.03, 0.02, 0.01], a_p=[2e-3], **said)
+    np.testing.assert_array_equal(many.a_p, [2e-3] * 3)
+    with pytest.raises(CuttingError, match=r"a_p: expected 3 values, found shape \(0,\)"):
+        CutConditions(v_f=[0.03, 0.02, 0.01], a_p=[], **said)
+
+
 def test_depth_beyond_the_flutes_is_warned_of():
     mill = MILL.replace(flute_length=1.5e-3)
     (found,) = cut_warnings(mill, SLOT)

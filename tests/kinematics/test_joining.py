@@ -10,6 +10,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
 import robomill as rm
+from robomill.kinematics import joining_kernels
 from robomill.kinematics.choice import every, overshoot
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.joining import join
@@ -208,3 +209,17 @@ def test_a_turn_of_the_tool_about_itself_excuses_joints_that_have_to_make_it(nam
     theta = robot.home + np.linspace(0.05, 0.1, 4)[:, None]
     assert rm.inverse_kinematics(robot, rm.tool_pose(robot, theta), near="path", spin=spin).reached.any()
     assert said == {whole}
+
+
+def test_no_kernel_reaches_past_its_arrays(monkeypatch):
+    """As the Python they are written in, kernels refuse what compiled code would do beside the arrays it was given."""
+    robot = rm.load_robot("kuka_kr500")
+    result = random_line(robot, np.random.default_rng(4), 6)
+    theta, possible = every(robot, decoupled(robot), result.T_MT)
+    compiled = join(robot, theta.copy(), possible, result.T_MT, whole=True)
+    for name in ("most_nodes", "go_on", "come_back"):
+        monkeypatch.setattr(joining_kernels, name, getattr(joining_kernels, name).plain)
+    plain = join(robot, theta.copy(), possible, result.T_MT, whole=True)
+    assert plain.branch.tolist() == compiled.branch.tolist()
+    assert plain.cost == pytest.approx(compiled.cost, rel=1e-12)
+    np.testing.assert_allclose(plain.theta, compiled.theta, rtol=1e-12)

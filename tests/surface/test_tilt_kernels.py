@@ -7,6 +7,7 @@ import pytest
 from robomill.cutting.tool import Cutter
 from robomill.errors import SurfaceError
 from robomill.surface.stock import Stock
+from robomill.surface.tilt_kernels import hull_gap, move_in_frame, tilted_interval, tool_frame, vertical_line
 from robomill.surface.zmap import cut
 
 STOCK = Stock((0.0, -0.02, -0.01), (0.04, 0.02, 0.0))
@@ -119,3 +120,37 @@ def test_a_turning_axis_converges_with_its_pieces():
     coarse = cut(STOCK, 5e-4, CUTTERS["ball"], p, k)
     fine = cut(STOCK, 5e-4, CUTTERS["ball"], p[0] + t * (p[1] - p[0]), fine_k)
     assert np.abs(coarse.z - fine.z).max() < 0.3 * 5e-4
+
+
+@pytest.mark.parametrize("kind", CUTTERS)
+def test_a_line_that_only_grazes_the_body_is_found_inside_it(kind):
+    """Against heights tried every 40 um, on lines farther and farther out until they miss."""
+    cutter, k, short = CUTTERS[kind], axis(-0.5, 0.7), 0
+    frame, ends = tool_frame(*k), np.array([0.012, -0.004, -0.002, 0.025, 0.003, -0.0035])
+    move, z = move_in_frame(frame, ends), np.arange(-0.012, 0.004, 4e-5)
+    for turn in np.arange(0.1, 2 * np.pi, 0.3):
+        near, far = 0.0, 0.05
+        for _ in range(12):
+            out = 0.5 * (near + far)
+            x, y = 0.0185 + out * np.cos(turn), out * np.sin(turn)
+            line = vertical_line(frame, x, y)
+            low, high = tilted_interval(cutter.solid, move, frame, line, 0.004)
+            inside = z[np.array([hull_gap(cutter.solid, move, frame, line, at) <= 0.0 for at in z])]
+            places = np.column_stack([np.full((len(inside), 2), (x, y)), inside])
+            inside = inside[beside_the_axis(places, ends, k) <= cutter.radius]
+            if inside.size:
+                assert low == pytest.approx(inside[0], abs=5e-5)
+                assert high == pytest.approx(inside[-1], abs=5e-5)
+                short += high - low < 0.5e-3
+            else:
+                assert low > high or high - low < 5e-5
+            near, far = (out, far) if inside.size else (near, out)
+    assert short > 10
+
+
+def beside_the_axis(p, ends, k):
+    """How near the axis k comes to places p (m, 3) on its way between two ends (6,), m."""
+    level = np.eye(3) - np.outer(k, k)
+    begin, way = level @ ends[:3], level @ (ends[3:] - ends[:3])
+    t = np.clip((p @ level - begin) @ way / (way @ way), 0.0, 1.0)
+    return np.linalg.norm(p @ level - begin - t[:, None] * way, axis=1)

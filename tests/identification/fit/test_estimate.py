@@ -54,6 +54,16 @@ def test_noise_free_tests_return_the_truth(name):
     assert [u.joint for u in result.unseen_joints] == ([6] if name == "kuka_kr500" else [])
 
 
+@pytest.mark.parametrize(("count", "spare"), [(2, 0), (3, 3)])
+def test_readings_that_are_all_needed_say_nothing_of_their_noise(count, spare):
+    """Two rows of three readings for six springs fit exactly, however large the noise is."""
+    robot = rm.load_robot("fanuc_r2000ic")
+    theta, F = poses(robot, count), 200.0 * np.random.default_rng(1).standard_normal((count, 3))
+    result = identify(robot, simulated_tests(robot, theta, F, noise=1e-5))
+    assert result.dof == spare
+    assert np.isnan(result.noise) == (spare == 0)
+
+
 @pytest.mark.parametrize("model", [m for m in MODELS if m != "constant"])
 def test_noise_free_extra_springs_are_found(model):
     choice = Model(model)

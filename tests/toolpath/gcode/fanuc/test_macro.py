@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from robomill.errors import GCodeError
@@ -41,6 +43,12 @@ def test_controls_cut_towards_zero_and_linuxcnc_downwards() -> None:
     linuxcnc = "G21\n#1=FIX[-1.2]\nG0 X#1\n#1=FUP[-1.2]\nX#1\n#1=[[-7] MOD 3]\nX#1\nM2\n"
     assert (interpret(linuxcnc, dialect="linuxcnc").end[:, 0] * 1e3).tolist() == pytest.approx([-2, -1, 2])
     assert (interpret("G71\nG0 X=TRUNC(-1.7)\nM30\n", dialect="sinumerik").end[:, 0] * 1e3).tolist() == [-1]
+
+
+@pytest.mark.parametrize("value", [-1.0, -0.7, -0.2, 0.0, 0.2, 0.7, 1.0])
+def test_a_control_cuts_to_the_whole_number_nearer_to_zero_or_farther_from_it(value: float) -> None:
+    nearer, farther = math.trunc(value), math.copysign(math.ceil(abs(value)), value)
+    assert xs(f"#1=FIX[{value}]\nX#1\n#1=FUP[{value}]\nX#1\n", "fanuc") == [nearer, farther]
 
 
 @pytest.mark.parametrize(
