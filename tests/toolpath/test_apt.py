@@ -250,6 +250,15 @@ def test_a_cycle_drills_at_every_point_along_the_tool(words: str, moves: list[tu
     assert path.cutting[-1]
 
 
+def test_a_tool_dwells_at_the_bottom_of_each_hole_alone() -> None:
+    cycle = "CYCLE/DRILL,DEPTH,4,MMPM,120,CLEAR,0.5,DWELL,1.5,RTRCTO,0.8"
+    path = read_apt(f"{HEAD}FROM/0,0,50\n{cycle}\nGOTO/10,0,0\nGOTO/30,0,0\nCYCLE/OFF\nGOTO/0,0,60\nFINI\n")
+    assert (path.p[path.dwell > 0.0, 2] * 1e3).tolist() == pytest.approx([0.5, 0.5])  # waited before it came out
+    assert path.dwell.sum() == pytest.approx(3.0)
+    between = (path.p[:, 0] > 9e-3) & (path.p[:, 0] < 31e-3) & (path.p[:, 2] < 49e-3)
+    assert path.p[between, 2].max() * 1e3 == pytest.approx(0.8)
+
+
 @pytest.mark.parametrize(
     ("lines", "says"),
     [

@@ -249,6 +249,12 @@ def test_g92_before_the_first_move_says_where_the_tool_stands() -> None:
     assert "zero-shifted" not in {f.code for f in interpret(body, dialect="linuxcnc").findings}
 
 
+def test_g92_before_the_first_move_says_how_the_part_is_turned() -> None:
+    program = interpret("G21 G90 F9\nG92 X0 Y0 Z5. A90. B-30.\nG1 X1.\nA0\nM30\n", dialect="fanuc")
+    assert np.degrees(program.rotary0[0]).tolist() == pytest.approx([90.0, -30.0, 0.0])
+    assert np.degrees(program.rotary).ravel().tolist() == pytest.approx([90.0, -30.0, 0.0, 0.0, -30.0, 0.0])
+
+
 def test_further_systems_of_a_sinumerik_are_called_as_there() -> None:
     program = interpret("G71 G90 F9\nG505\nG1 X1\nM30\n", dialect="sinumerik")
     (said,) = (f.message for f in program.findings if f.code == "zero-taken")

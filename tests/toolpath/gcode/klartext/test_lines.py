@@ -31,6 +31,12 @@ def test_it_is_told_by_its_first_line_and_its_lines_are_counted_as_they_stand() 
     assert program.n_s[1] * 60 == pytest.approx(1000.0)
 
 
+@pytest.mark.parametrize(("m", "left_out"), [(3, 0), (4, 0), (5, 0), (8, 0), (9, 0), (13, 0), (14, 0), (7, 0), (88, 1)])
+def test_functions_of_the_machine_that_other_controls_have_too_are_not_left_out(m: int, left_out: int) -> None:
+    program = read(f"4 L X+10 F100 M{m}\n5 L Y+5\n")
+    assert [f.code for f in program.findings].count("unknown-m") == left_out
+
+
 @pytest.mark.parametrize(
     ("body", "places"),
     [
