@@ -15,6 +15,7 @@ from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.correction import COMPONENTS, Correction, correct
 from robomill.improve.errors import Errors, errors_of, measured
+from robomill.improve.finer import closer
 from robomill.improve.judged import refuse_corrected
 from robomill.improve.springs import Springs, springs
 from robomill.improve.written import WriteGCode, Written, writing
@@ -218,7 +219,7 @@ def _measured(
         )
     softer, stronger = _wrong(led)
     sprung = springs(led)
-    findings = (*_met(after, softer, stronger, led), *_findings(found, led, written, sprung))
+    findings = (*_met(after, softer, stronger, led), *closer(led, after), *_findings(found, led, written, sprung))
     return Compensation(
         setup=wanted.setup,
         components=chosen,

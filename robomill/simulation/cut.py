@@ -71,11 +71,9 @@ def told_conditions(
     return replace(told, tooling=tooling(setup, path))
 
 
-def cut_conditions(
-    setup: SimulationSetup, path: Toolpath, told: CutConditions, led: Led | None = None
-) -> CutConditions:
-    """What is told, with what each step meets where the tool goes as it is told, or ``led``."""
-    return met_conditions(told, engage(through_stock(setup, path, told, led)))
+def cut_conditions(setup: SimulationSetup, path: Toolpath, told: CutConditions) -> CutConditions:
+    """What is told, with what each step meets where the tool goes as it is told."""
+    return met_conditions(told, engage(through_stock(setup, path, told)))
 
 
 def through_stock(setup: SimulationSetup, path: Toolpath, told: CutConditions, led: Led | None = None) -> March:

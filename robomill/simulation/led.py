@@ -9,10 +9,12 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tool import DISH
-from robomill.simulation.cut import Led
+from robomill.simulation.cut import Led, met_conditions, through_stock
 from robomill.simulation.judging.places import STEEP
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import ways
+from robomill.simulation.setup import SimulationSetup
+from robomill.surface.contact.engagement import engagement
 from robomill.toolpath.path import Toolpath
 
 
@@ -40,6 +42,27 @@ def led_beside(path: Toolpath, p: FloatArray, down: tuple[IntArray, BoolArray], 
     back = np.einsum("mi,mi->m", np.diff(tips, axis=0, prepend=tips[:1]), way) < 0.0
     back &= path.step_length > 0.0  # a link is no step of the cut
     return Led(path.p, np.where(back[:, None], ways(replace(path, p=tips)), way), tips)
+
+
+def led_conditions(setup: SimulationSetup, path: Toolpath, told: CutConditions, led: Led) -> CutConditions:
+    """What is told, with what each step meets of a tool that is ``led``.
+
+    What is cut is cut where the tool is sent, and where a later plunge comes down the floor is beside that by what the
+    arm gave way. So a plunge that would meet nothing where every tool is meant to be meets nothing.
+    """
+    march = through_stock(setup, path, told, led)
+    rows, sectors = march.run()
+    found = engagement(march.exponents, rows, sectors)
+    down = told.cutting & (told.across < STEEP) & (told.along < 0.0)
+    if (down & found.part.touches).any():
+        free = engagement(march.exponents, *through_stock(setup, path, told, replace(led, tips=led.meant)).run())
+        rows, sectors = rows.copy(), sectors.copy()
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], down, [False]]).astype(int)))
+        for some in (slice(begin, past) for begin, past in edges.reshape(-1, 2).tolist()):
+            if not free.part.touches[some].any():
+                rows[some], sectors[some] = 0.0, 0.0
+        found = engagement(march.exponents, rows, sectors)
+    return met_conditions(told, found)
 
 
 def _behind(links: BoolArray) -> IntArray:

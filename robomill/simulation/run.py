@@ -27,7 +27,7 @@ from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import Led, cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
 from robomill.simulation.judging.leaning import leaning, lying
 from robomill.simulation.judging.sinking import clear, sinking, told_to_sink
-from robomill.simulation.led import against, led_beside, plunges
+from robomill.simulation.led import against, led_beside, led_conditions, plunges
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
 from robomill.simulation.meant import linked, meant, straight_on
@@ -237,7 +237,13 @@ def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...],
 
 def _once(bent: Bent) -> tuple[CutConditions, FloatArray]:
     """Conditions and force along the path as it is told, or led."""
-    conditions = bent.told if not bent.setup.engagement else cut_conditions(bent.setup, bent.path, bent.told, bent.led)
+    setup, path, told, led = bent.setup, bent.path, bent.told, bent.led
+    if not setup.engagement:
+        conditions = told
+    elif led is None:
+        conditions = cut_conditions(setup, path, told)
+    else:
+        conditions = led_conditions(setup, path, told, led)
     return conditions, bent.force(conditions, bent.R_MF)
 
 
