@@ -6,9 +6,15 @@ not say it well.
 """
 
 import os
+import sys
+from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import is_dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 GIB = 1 << 30
 PLACE = "ROBOMILL_MEMORY"
@@ -58,6 +64,33 @@ def samples(marched: bool = False) -> int:
 def map_bytes() -> int:
     """Bytes that a map may take."""
     return int(MAPS * memory())
+
+
+def weight(value: Any) -> int:
+    """Bytes of the arrays, texts and containers that ``value`` holds, in its fields, items and what it has made of
+    them since; each is counted once."""
+    seen: set[int] = set()
+    todo, total = [value], 0
+    while todo:
+        one = todo.pop()
+        while isinstance(one, np.ndarray) and isinstance(one.base, np.ndarray):
+            one = one.base
+        if one is None or isinstance(one, type | bool | int | float) or id(one) in seen:
+            continue
+        seen.add(id(one))
+        if isinstance(one, np.ndarray):
+            total += one.nbytes
+        elif isinstance(one, bytes | bytearray | str):
+            total += sys.getsizeof(one)
+        elif isinstance(one, Mapping):
+            total += sys.getsizeof(one)
+            todo += [*one.keys(), *one.values()]
+        elif isinstance(one, list | tuple | set | frozenset):
+            total += sys.getsizeof(one)
+            todo += one
+        elif is_dataclass(one) or hasattr(one, "to_plotly_json"):
+            todo += list(getattr(one, "__dict__", {}).values())
+    return total
 
 
 def _limits() -> list[int]:

@@ -108,7 +108,7 @@ def robot(name: str, tip: str | None = None) -> Any:
 
 def setup(name: str, allow_outside: bool) -> Any:
     """The set-up of a sample, a file, or standard input, which names files in the folder in which one stands."""
-    from robomill.io.setups.beside import Beside
+    from robomill.io.beside import Beside
     from robomill.io.setups.projects import load_setup, setup_from_toml
     from robomill.io.texts import read_text
 
@@ -121,7 +121,7 @@ def setup(name: str, allow_outside: bool) -> Any:
 def study(name: str, allow_outside: bool) -> Any:
     """The study of a sample, a file, or standard input, which names a set-up in the folder in which one stands."""
     from robomill.errors import StudyError
-    from robomill.io.setups.beside import Beside
+    from robomill.io.beside import Beside
     from robomill.io.texts import read_text
     from robomill.study.described import load_study, study_from_toml
 

@@ -12,10 +12,10 @@ def run_identify(arguments: Any) -> int:
     from robomill.identification.fit.estimate import identify
     from robomill.identification.plan import next_best
     from robomill.identification.record import identification_record
+    from robomill.io.declared import kind_to_table
     from robomill.io.measured.load_test_sheets import measuring_sheet
     from robomill.io.results import write_file
     from robomill.io.robot.robots import robot_to_toml
-    from robomill.io.setups.declared import kind_to_table
     from robomill.report.plain import identification_lines
     from robomill.simulation.origin.assumptions import assumed_of_robot, assumed_of_tests
 

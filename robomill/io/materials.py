@@ -8,8 +8,8 @@ from robomill.cutting.forces import FORCES
 from robomill.cutting.materials import Material
 from robomill.errors import CuttingError, RobomillError
 from robomill.files import MATERIAL, check_place
+from robomill.io.declared import read_quantity, write_quantity
 from robomill.io.samples import sample_names, samples_dir
-from robomill.io.setups.declared import read_quantity, write_quantity
 from robomill.io.tables import Table, parse_toml, toml_value
 from robomill.io.texts import read_text
 from robomill.quantities import quantities

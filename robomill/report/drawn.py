@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
-from robomill.report.tags import Markup, joined, tag
+from robomill.report.tags import Html, joined, tag
 from robomill.units import format_number
 
 FINEST = 2.0  # columns of a picture's unit of length in which a long line is drawn, each by its ends
@@ -37,7 +37,7 @@ class Axes:
         across = self.left + (np.asarray(x) - x_0) / (x_1 - x_0) * self.width
         return across, self.bottom - (np.asarray(y) - y_0) / (y_1 - y_0) * self.height
 
-    def frame(self, x_title: str, y_title: str, x_ticks: bool = True) -> Markup:
+    def frame(self, x_title: str, y_title: str, x_ticks: bool = True) -> Html:
         """Grid, numbers and titles."""
         parts = [tag("rect", x=_n(self.left), y=_n(self.top), width=_n(self.width), height=_n(self.height), class_="f")]
         for value, words in ticks(*self.y, max(2, int(self.height // 34))):
@@ -54,18 +54,18 @@ class Axes:
         parts.append(tag("text", y_title, x=_n(self.left), y=_n(self.top - 6), class_="b"))
         return joined(parts)
 
-    def line(self, x: FloatArray, y: FloatArray, class_: str) -> Markup:
+    def line(self, x: FloatArray, y: FloatArray, class_: str) -> Html:
         """A line through points (q,); NaN parts it, and what is finer than the paper is drawn by its ends."""
         across, up = self.at(x, y)
         return tag("path", d=" ".join(_strokes(*_thinned(across, up))), class_=class_)
 
-    def level(self, y: float, words: str, class_: str) -> Markup:
+    def level(self, y: float, words: str, class_: str) -> Html:
         """A level across the picture, with words at its right end."""
         _, at = self.at(self.x[0], y)
         line = tag("line", x1=_n(self.left), x2=_n(self.right), y1=_n(at), y2=_n(at), class_=class_)
         return joined([line, tag("text", words, x=_n(self.right - 3), y=_n(float(at) - 3), class_="e")])
 
-    def stretches(self, x: FloatArray, which: BoolArray, class_: str) -> Markup:
+    def stretches(self, x: FloatArray, which: BoolArray, class_: str) -> Html:
         """The parts of ``x`` (q,) where ``which`` (q,) holds, over the whole height."""
         edges = np.flatnonzero(np.diff(np.concatenate([[False], which, [False]]).astype(int)))
         parts = []
@@ -87,7 +87,7 @@ def ticks(low: float, high: float, most: int) -> Iterator[tuple[float, str]]:
         yield n * step, format_number(n * step, digits)
 
 
-def svg(width: int, height: int, said: str, *parts: object) -> Markup:
+def svg(width: int, height: int, said: str, *parts: object) -> Html:
     """A picture; ``said`` is what it says to who cannot see it."""
     return tag("svg", tag("title", said), *parts, viewBox=f"0 0 {width} {height}", role="img", class_="pic")
 

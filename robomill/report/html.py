@@ -18,7 +18,7 @@ from robomill.report import sections_told
 from robomill.report.pictures import joints_picture, path_picture, section_picture
 from robomill.report.remedies_told import Remedy, Told, told
 from robomill.report.simulation_record import simulation_record
-from robomill.report.tags import Markup, escaped, joined, tag
+from robomill.report.tags import Html, escaped, joined, tag
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
@@ -162,12 +162,12 @@ def _whole(name: str, parts: Sequence[object]) -> str:
         tag("meta", http_equiv="Content-Security-Policy", content=ALONE),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
         tag("title", f"{name} · milling report · robomill"),
-        tag("style", Markup(STYLE.read_text(encoding="utf-8"))),
+        tag("style", Html(STYLE.read_text(encoding="utf-8"))),
     )
-    return f"{MARK}{head}\n<body>\n{Markup(chr(10)).join(map(escaped, parts))}\n</body></html>\n"
+    return f"{MARK}{head}\n<body>\n{Html(chr(10)).join(map(escaped, parts))}\n</body></html>\n"
 
 
-def _pictures(result: SimulationResult, record: dict[str, Any]) -> Markup:
+def _pictures(result: SimulationResult, record: dict[str, Any]) -> Html:
     """The section beside the joints, and the way along the path."""
     if result.worst < 0:
         return tag("p", "Nothing of the cut is judged, so there are no pictures of it.", class_="quiet")
@@ -175,7 +175,7 @@ def _pictures(result: SimulationResult, record: dict[str, Any]) -> Markup:
     pair = []
     if section is not None:
         said = f"Section {format_si(section.station, 'mm', 1)} along the cut, line {section.block}, to scale. "
-        pair.append(tag("figure", section_picture(section, result), tag("figcaption", said, Markup(KEY))))
+        pair.append(tag("figure", section_picture(section, result), tag("figcaption", said, Html(KEY))))
     if joints is not None:
         said = f"Which joint gives: parts of the largest deviation, {_mm(record)} at line {record['worst_block']}."
         pair.append(tag("figure", joints, tag("figcaption", said)))
@@ -183,7 +183,7 @@ def _pictures(result: SimulationResult, record: dict[str, Any]) -> Markup:
         pair.append(
             tag("p", "The compliances were measured as a map, which says nothing of single joints.", class_="quiet")
         )
-    along = tag("figure", path_picture(result), tag("figcaption", Markup(KEY_OF_PATH)))
+    along = tag("figure", path_picture(result), tag("figcaption", Html(KEY_OF_PATH)))
     return joined([tag("h2", "The cut"), along, tag("div", *pair, class_="pair") if pair else ""])
 
 
@@ -191,7 +191,7 @@ def _mm(record: dict[str, Any]) -> str:
     return sections_told.mm(record["max_deviation_mm"])
 
 
-def _made_with(record: dict[str, Any], made: str) -> Markup:
+def _made_with(record: dict[str, Any], made: str) -> Html:
     """Versions and the fingerprint by which the run is found again."""
     versions = f"robomill {__version__}, Python {platform.python_version()}, NumPy {np.__version__}; {made}."
     print_ = tag("span", record["digest"], class_="mono")

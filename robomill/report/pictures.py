@@ -9,7 +9,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.compliance.deflection import shares_along
 from robomill.report.drawn import Axes, svg
-from robomill.report.tags import Markup, joined, tag
+from robomill.report.tags import Html, joined, tag
 from robomill.simulation.result import SimulationResult
 from robomill.surface.sections.groove import GrooveSection
 from robomill.units import format_limit, format_percent, format_si, format_value, from_si
@@ -19,7 +19,7 @@ BESIDE = 0.3  # of what is cut: how much of the part is drawn on each side
 MOST = 4.0  # tolerances that a picture reaches to at most
 
 
-def section_picture(section: GrooveSection, result: SimulationResult) -> Markup:
+def section_picture(section: GrooveSection, result: SimulationResult) -> Html:
     """The section to scale: metal that is left, the ideal outline, and around it what the tolerances allow."""
     w, ideal, left = (from_si(each, "mm") for each in (section.w, section.z_ideal, section.z_machined))
     lowest, top = min(ideal.min(), left.min()), max(ideal.max(), left.max())
@@ -68,7 +68,7 @@ def _about_the_cut(w: FloatArray, z: FloatArray) -> slice:
     return slice(max(int(low) - 1, 0), int(high) + 1)
 
 
-def _allowed(axes: Axes, w: FloatArray, z: FloatArray, tolerances: tuple[float, float]) -> Markup:
+def _allowed(axes: Axes, w: FloatArray, z: FloatArray, tolerances: tuple[float, float]) -> Html:
     """All that is within the tolerances of walls (across) and floors (up) of an outline: a line as thick as they are,
     in a picture that is stretched by each."""
     (x_0, x_1), (y_0, y_1) = axes.x, axes.y
@@ -80,7 +80,7 @@ def _allowed(axes: Axes, w: FloatArray, z: FloatArray, tolerances: tuple[float, 
     return tag("g", line, transform=f"scale({across:.5f} {up:.5f})")
 
 
-def path_picture(result: SimulationResult) -> Markup:
+def path_picture(result: SimulationResult) -> Html:
     """How far the tip is off across the feed and along the tool, over the length cut, with what is allowed."""
     path, verdict = result.path, result.verdict
     at = np.flatnonzero(path.cutting)
@@ -116,7 +116,7 @@ def path_picture(result: SimulationResult) -> Markup:
     return svg(WIDE, 200, said, *parts, more)
 
 
-def _changes(result: SimulationResult, axes: Axes) -> Markup:
+def _changes(result: SimulationResult, axes: Axes) -> Html:
     """Where another tool goes on."""
     path = result.path
     at = np.flatnonzero(path.cutting)
@@ -130,7 +130,7 @@ def _changes(result: SimulationResult, axes: Axes) -> Markup:
     return joined(parts)
 
 
-def joints_picture(record: Mapping[str, Any]) -> Markup | None:
+def joints_picture(record: Mapping[str, Any]) -> Html | None:
     """Each joint's and spring's part of the largest deviation, along it; None where there are no such parts."""
     parts = joint_parts(record)
     if not parts:

@@ -6,7 +6,7 @@ from typing import Any
 from robomill.provenance import Finding, named
 from robomill.report.plain import reading_share, reading_value
 from robomill.report.remedies_told import Told
-from robomill.report.tags import Markup, joined, table, tag
+from robomill.report.tags import Html, joined, table, tag
 from robomill.simulation.judging.strays import WORDS
 from robomill.simulation.judging.verdict_words import TITLES
 from robomill.surface.sections.groove import MEASURED
@@ -22,7 +22,7 @@ MOST_FINDINGS, MOST_SOURCES = 20, 30
 LEVELS = {"error": "Error", "warning": "Warning", "suspicious": "Doubt", "ignored": "Ignored", "info": "Note"}
 
 
-def header(record: dict[str, Any], made: str, robot: str) -> Markup:
+def header(record: dict[str, Any], made: str, robot: str) -> Html:
     """What was cut, with what (the ``robot`` as people call it), when."""
     facts = {
         "Program": record["program"] or "–",
@@ -35,7 +35,7 @@ def header(record: dict[str, Any], made: str, robot: str) -> Markup:
     return tag("header", kicker, tag("h1", record["name"]), tag("dl", *listed))
 
 
-def verdict(record: dict[str, Any]) -> Markup:
+def verdict(record: dict[str, Any]) -> Html:
     """The one verdict, how much of the tolerance is used, and over what it could be another."""
     level, share = record["verdict"], _share(record)
     parts = [tag("b", TITLES[level]), tag("p", record["verdict_sentence"])]
@@ -63,7 +63,7 @@ def _share(record: dict[str, Any]) -> float | None:
     return max(known) if known and record["verdict"] in ("ok", "tight", "out") else None
 
 
-def tiles(record: dict[str, Any]) -> Markup:
+def tiles(record: dict[str, Any]) -> Html:
     """What a gauge would read, how far the tip is off, how hard it is pushed."""
     made = []
     for name, title in READINGS.items():
@@ -92,11 +92,11 @@ def tiles(record: dict[str, Any]) -> Markup:
     return tag("div", *made, class_="tiles")
 
 
-def _tile(title: str, value: str, note: str) -> Markup:
+def _tile(title: str, value: str, note: str) -> Html:
     return tag("div", tag("span", title), tag("b", value), tag("span", note), class_="tile")
 
 
-def measures(record: dict[str, Any]) -> Markup | str:
+def measures(record: dict[str, Any]) -> Html | str:
     """What a gauge has for the section that is drawn."""
     found = record["worst_section"]
     if found is None:
@@ -116,7 +116,7 @@ def measures(record: dict[str, Any]) -> Markup | str:
     return joined([tag("h2", f"Section: {words}"), body, said])
 
 
-def lines(record: dict[str, Any]) -> Markup:
+def lines(record: dict[str, Any]) -> Html:
     """The worst lines of the program, and how many more there are."""
     found = record["lines"]
     what, rows = found["counted_in"], found["worst"]
@@ -160,7 +160,7 @@ def _unknown(row: dict[str, Any]) -> str:
     return ", ".join(told)
 
 
-def remedies(rows: Sequence[Told]) -> Markup | str:
+def remedies(rows: Sequence[Told]) -> Html | str:
     """What was tried and what it leaves."""
     if not rows:
         return ""
@@ -173,7 +173,7 @@ def remedies(rows: Sequence[Told]) -> Markup | str:
     )
 
 
-def rests_on(record: dict[str, Any]) -> Markup:
+def rests_on(record: dict[str, Any]) -> Html:
     """Every block of numbers with who says so, and between which ends the answer lies over what is assumed."""
     rows = [
         (each["what"], each["value"], tag("span", each["kind"], class_=f"badge {each['kind']}"), each["source"])
@@ -209,7 +209,7 @@ def _ends(ends: Sequence[float | None], sign: bool) -> str:
     return " to ".join(number(each, "mm", sign=sign) for each in ends)
 
 
-def left_out(record: dict[str, Any]) -> Markup:
+def left_out(record: dict[str, Any]) -> Html:
     """What no number here holds, and what is not judged."""
     lost, reached = record["not_judged"], record["reached"]
     said = [MODEL, f"Left out: {', '.join(record['left_out'])}."]
@@ -235,7 +235,7 @@ def left_out(record: dict[str, Any]) -> Markup:
     )
 
 
-def findings(record: dict[str, Any]) -> Markup:
+def findings(record: dict[str, Any]) -> Html:
     """What was noticed in the program and on the way, the grave ones first."""
     found = record["findings"]
     order = sorted(found, key=lambda each: Finding(each["level"], each["message"], each["line"]).order)

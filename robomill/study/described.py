@@ -12,8 +12,8 @@ from robomill.arguments import asked, made_by
 from robomill.arrays import digest
 from robomill.errors import RobomillError, StudyError
 from robomill.files import STUDY
+from robomill.io.beside import ALLOW, Beside
 from robomill.io.samples import find_sample, sample_or_file
-from robomill.io.setups.beside import ALLOW, Beside
 from robomill.io.setups.projects import load_setup, setup_from_table
 from robomill.io.tables import Table, parse_toml
 from robomill.io.texts import read_text

@@ -8,12 +8,12 @@ import numpy as np
 import streamlit as st
 
 from robomill.errors import RobomillError
+from robomill.report.tags import Html
 from robomill.simulation.judging.verdict_words import TIGHT_FROM, Verdict
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import other, pieces, session, verdict
 from robomill.ui.entry import inputs
-from robomill.ui.markup import Html
 from robomill.ui.pieces import Tile
 from robomill.ui.work import job, running
 from robomill.ui.work.job import Underway

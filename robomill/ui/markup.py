@@ -2,28 +2,17 @@
 
 from __future__ import annotations
 
-import html
 import re
+
+from robomill.report.tags import Html, escaped
 
 # Breaks what Markdown finds in plain words: addresses to link, names of symbols and smileys between colons.
 _APART = "\u2060"
 
 
-class Html(str):
-    """Text that is HTML already. What is added to it is plain text unless it is HTML, too."""
-
-    __slots__ = ()
-
-    def __add__(self, other: str) -> Html:
-        return Html(f"{self}{as_html(other)}")
-
-    def __radd__(self, other: str) -> Html:
-        return Html(f"{as_html(other)}{self}")
-
-
 def as_html(*parts: str) -> Html:
     """The parts with a space between them, each escaped unless it is HTML."""
-    return Html(" ".join(part if isinstance(part, Html) else html.escape(part) for part in parts))
+    return Html(" ".join(map(escaped, parts)))
 
 
 # A number and what follows it as its unit, how many times, which line or joint: a line never ends between the two.

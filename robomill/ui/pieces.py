@@ -15,8 +15,9 @@ from robomill.errors import RobomillError
 from robomill.progress import slices
 from robomill.provenance import Provenance
 from robomill.report.settled import settled
+from robomill.report.tags import Html
 from robomill.ui import session
-from robomill.ui.markup import Html, as_html, as_markdown, quiet, unparted
+from robomill.ui.markup import as_html, as_markdown, quiet, unparted
 from robomill.ui.work import beside, cached
 from robomill.ui.work.job import Underway
 from robomill.units import split_unit

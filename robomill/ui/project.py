@@ -17,13 +17,15 @@ import tomli_w
 
 from robomill.arrays import FloatArray, digest
 from robomill.compliance.components import COMPONENTS
-from robomill.errors import ProjectError
+from robomill.errors import ProjectError, RobomillError
+from robomill.files import SETUP
 from robomill.identification.knowledge import Knowledge
+from robomill.io.declared import from_table, to_table
 from robomill.io.samples import samples_dir
-from robomill.io.setups.declared import from_table, to_table
 from robomill.io.setups.knowledge import knowledge_from_table
 from robomill.io.setups.projects import OF_THE_APP, load_setup, open_project, setup_to_toml
 from robomill.io.tables import Table, parse_toml, shown
+from robomill.io.texts import read_text
 from robomill.paper import BOX
 from robomill.quantities import choice, quantities, settle, switch
 from robomill.quantities import quantity as number
@@ -262,6 +264,18 @@ def project_from_toml(
     preset = own["view"].text("preset", "")
     bench = from_table(own["experiments"], Bench) if "experiments" in own else Bench()
     return Project(setup, from_table(own["view"], View), preset, seen, known, bench)
+
+
+def project_from_file(data: bytes, name: str, now: Project) -> Project:
+    """The project in a file that somebody brings; what a bare set-up does not say is as in ``now``.
+
+    Raises ProjectError with the reason.
+    """
+    text = read_text(data, ProjectError, SETUP, name)[0]
+    try:
+        return project_from_toml(text, now.view, now.maps, now.bench)
+    except RobomillError as exc:
+        raise ProjectError(f"{name} was not opened. {exc} Your project is as it was.") from None
 
 
 def _in_units(table: Table) -> None:

@@ -16,6 +16,7 @@ from typing import Any, cast
 
 import streamlit as st
 
+from robomill.budgets import weight
 from robomill.errors import RobomillError
 from robomill.identification.knowledge import Knowledge
 from robomill.provenance import GIVEN, Provenance
@@ -26,7 +27,6 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.ui.bench import Bench
 from robomill.ui.closing import while_open
 from robomill.ui.project import DEFAULT_PRESET, MapView, Project, preset_setup, project_from_toml
-from robomill.ui.work.commons import weight
 
 KEY = "robomill"
 EDITED = Provenance("user", "entered in the app")
@@ -265,16 +265,6 @@ def open_preset(name: str) -> None:
     replace(Project(preset_setup(name), now.view, name, now.maps, bench=now.bench))
     look(theta=None)
     _forget(held)
-
-
-def open_text(text: str) -> str:
-    """Open a project file; returns "" or the reason why it was refused (the current project then stays)."""
-    try:
-        new = project_from_toml(text, project().view, project().maps, project().bench)
-    except RobomillError as exc:
-        return str(exc)
-    open_project(new)
-    return ""
 
 
 def open_project(new: Project) -> None:

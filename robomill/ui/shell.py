@@ -4,19 +4,26 @@ import sys
 
 import streamlit as st
 
-from robomill.errors import ProjectError, RobomillError
-from robomill.files import SETUP
-from robomill.io.texts import read_text
-from robomill.ui import bar, menu, pieces, session
+from robomill.budgets import weight
+from robomill.errors import RobomillError
+from robomill.ui import bar, menu, pieces, rendered, session
 from robomill.ui.closing import settle
+from robomill.ui.comparing import projects
 from robomill.ui.entry import declared, inputs
-from robomill.ui.keeping import against, autosave, snapshots
+from robomill.ui.keeping import autosave
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
-from robomill.ui.project import MAX_PROJECT_MB, SUFFIX, Project, preset_setup, presets, project_to_toml
+from robomill.ui.project import (
+    MAX_PROJECT_MB,
+    SUFFIX,
+    Project,
+    preset_setup,
+    presets,
+    project_from_file,
+    project_to_toml,
+)
 from robomill.ui.sharing import arriving, buttons
-from robomill.ui.work import preparing, rendered
-from robomill.ui.work.commons import weight
+from robomill.ui.work import preparing
 from robomill.viz.theme import palette
 
 BYTE_S = 4e-8  # s that a byte of a project takes to be written
@@ -172,10 +179,8 @@ def _files(held: session.Store) -> None:
             width="stretch",
         )
     buttons.row(project)
-    if st.button("Keep and compare", key="snapshots", icon=":material/bookmarks:", width="stretch", type="tertiary"):
-        snapshots.show()
-    if st.button("Compare A and B", key="other.panel", icon=":material/compare:", width="stretch", type="tertiary"):
-        against.show()
+    if st.button("Keep and compare", key="snapshots", icon=":material/compare:", width="stretch", type="tertiary"):
+        projects.show()
     waiting = held.refused.get("project.file")  # here as well: the open popover lies over the sentence beneath the box
     if waiting:
         error(waiting[1])
@@ -184,6 +189,4 @@ def _files(held: session.Store) -> None:
 
 
 def _open(data: bytes, name: str) -> None:
-    reason = session.open_text(read_text(data, ProjectError, SETUP, name)[0])
-    if reason:
-        raise ProjectError(f"{name} was not opened. {reason} Your project is as it was.")
+    session.open_project(project_from_file(data, name, session.project()))

@@ -13,7 +13,7 @@ from robomill.arrays import IntArray
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
 from robomill.errors import CuttingError, RobomillError
-from robomill.io.setups.declared import write_quantity
+from robomill.io.declared import write_quantity
 from robomill.io.setups.tool_tables import UNITS, read_tool_table, tools_from_table, tools_to_tables
 from robomill.io.tables import Table
 from robomill.quantities import Quantity, quantities

@@ -54,7 +54,7 @@ def test_two_projects_side_by_side_have_no_serious_finding(page: Any) -> None:
     page.set_default_timeout(60_000)
     page.get_by_text("0.23 mm off in Y").first.wait_for()
     idle(page)
-    page.get_by_role("button", name="Compare A and B").click()
+    page.get_by_role("button", name="Keep and compare").click()
     page.get_by_role("combobox", name="Compare with").click()
     page.get_by_role("option").filter(has_text="Heart").click()
     page.get_by_role("region", name="Verdict of B").wait_for()

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from robomill import budgets
@@ -172,3 +173,11 @@ def test_where_no_process_is_bound_to_cores_the_machine_s_count(monkeypatch, mac
     system(monkeypatch, {})
     assert budgets.cores() == cores
     budgets.cores.cache_clear()
+
+
+def test_arrays_are_weighed_by_their_bytes_and_once() -> None:
+    array = np.zeros((1000, 1000))
+    assert budgets.weight(array) == 8_000_000
+    assert 8_000_000 <= budgets.weight([array, array[::2], array.T, {"again": array}]) < 8_000_000 + 1000
+    assert budgets.weight(array[:1]) == 8_000_000  # a view keeps all of its base alive
+    assert budgets.weight(b"x" * 1_000_000) >= 1_000_000

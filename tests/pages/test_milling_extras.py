@@ -9,7 +9,7 @@ import pytest
 from conftest import errors, go, words
 from streamlit.testing.v1 import AppTest
 
-from robomill.ui.work import rendered
+from robomill.ui import rendered
 from robomill.viz.rendered.render_queue import RenderQueue
 from robomill.viz.rendered.worker import RenderWorker
 

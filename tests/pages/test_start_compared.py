@@ -134,6 +134,23 @@ def test_an_example_is_chosen_by_name_and_comes_back_with_the_project(app: AppTe
     assert "Verdict of B" not in words(app)
 
 
+def test_one_door_keeps_and_compares(app: AppTest) -> None:
+    """B is chosen behind the button that keeps projects: an example by its name, or the project as it stands now."""
+    pressed(app, "snapshots")
+    app.selectbox(key="other.which").set_value("example:heart").run()
+    assert not app.exception
+    assert store(app).project.view.beside == "example:heart"
+    assert preset_setup("heart").name in words(app)
+    pressed(app, "snapshots")
+    pressed(app, "other.pin")
+    assert not app.exception
+    assert store(app).project.view.beside == other.HERE
+    assert "B is the same set-up as A" in words(app)
+    pressed(app, "snapshots")
+    app.selectbox(key="other.which").set_value("").run()
+    assert store(app).project.view.beside == ""
+
+
 def test_the_maps_are_of_a_of_b_or_of_their_difference(app: AppTest) -> None:
     beside(app, SOFTER)
     go(app, "3_Compliance")

@@ -11,11 +11,11 @@ import pytest
 from conftest import ROOT, NoPictures, store, words
 from streamlit.testing.v1 import AppTest
 
+from robomill.ui import rendered
 from robomill.ui.keeping import autosave
 from robomill.ui.keeping.settings import Settings
 from robomill.ui.keeping.shelf import Shelf, place_of
 from robomill.ui.keeping.writer import Writer
-from robomill.ui.work import rendered
 from robomill.viz.rendered.render_queue import RenderQueue
 
 KEY, TAB, OTHER = "a1" * 32, "0" * 16, "1" * 16

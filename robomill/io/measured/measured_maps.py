@@ -7,9 +7,9 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.files import TABLE
 from robomill.identification.measured_field import MeasuredField
+from robomill.io.beside import Beside
 from robomill.io.measured.load_tests import read_measured_map
 from robomill.io.samples import find_sample
-from robomill.io.setups.beside import Beside
 from robomill.io.tables import Table
 from robomill.provenance import Provenance
 from robomill.robot.model import Robot

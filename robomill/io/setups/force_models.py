@@ -16,10 +16,10 @@ from robomill.cutting.process import ProcessForce
 from robomill.cutting.tool import Cutter
 from robomill.errors import CuttingError
 from robomill.files import MATERIAL, TABLE
+from robomill.io.beside import ALONE, Beside
+from robomill.io.declared import CODECS, Around, Codec, from_table, kind_to_table
 from robomill.io.materials import load_material, material_from_toml, material_names, material_to_toml, sample_materials
 from robomill.io.measured.forces import read_forces
-from robomill.io.setups.beside import ALONE, Beside
-from robomill.io.setups.declared import CODECS, Around, Codec, from_table, kind_to_table
 from robomill.io.tables import Table
 from robomill.io.texts import read_text
 from robomill.provenance import KINDS

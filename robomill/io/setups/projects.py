@@ -15,13 +15,8 @@ from robomill.cutting.tool_table import ToolTable
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import PROGRAM, ROBOT, SETUP
 from robomill.identification.knowledge import Knowledge
-from robomill.io.measured.measured_maps import map_from_table, map_to_table
-from robomill.io.programs import program_from_bytes
-from robomill.io.robot.reader import ANGLE
-from robomill.io.robot.robots import load_robot, read_robot, robot_from_toml, robot_names, robot_to_toml
-from robomill.io.samples import sample_or_file
-from robomill.io.setups.beside import ALONE, Beside
-from robomill.io.setups.declared import (
+from robomill.io.beside import ALONE, Beside
+from robomill.io.declared import (
     from_table,
     kind_from_table,
     kind_to_table,
@@ -29,6 +24,11 @@ from robomill.io.setups.declared import (
     to_table,
     write_quantity,
 )
+from robomill.io.measured.measured_maps import map_from_table, map_to_table
+from robomill.io.programs import program_from_bytes
+from robomill.io.robot.reader import ANGLE
+from robomill.io.robot.robots import load_robot, read_robot, robot_from_toml, robot_names, robot_to_toml
+from robomill.io.samples import sample_or_file
 from robomill.io.setups.force_models import force_from_table, force_to_table
 from robomill.io.setups.knowledge import knowledge_from_table, knowledge_to_table
 from robomill.io.setups.points import POINTS, points_from_table, points_to_table

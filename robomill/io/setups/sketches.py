@@ -3,7 +3,7 @@
 from typing import Any
 
 from robomill.errors import ToolpathError
-from robomill.io.setups.declared import Around, Codec, from_table, to_table
+from robomill.io.declared import Around, Codec, from_table, to_table
 from robomill.io.tables import Table
 from robomill.toolpath.sketch import Element, Sketch
 

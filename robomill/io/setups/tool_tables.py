@@ -19,9 +19,9 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
 from robomill.errors import CuttingError
 from robomill.files import TOOLS
+from robomill.io.beside import ALONE, Beside
 from robomill.io.columns import Layout, read_cells
-from robomill.io.setups.beside import ALONE, Beside
-from robomill.io.setups.declared import from_table, to_table
+from robomill.io.declared import from_table, to_table
 from robomill.io.tables import Table, parse_toml
 from robomill.io.texts import read_text
 from robomill.provenance import Finding

@@ -9,8 +9,8 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.files import STL
-from robomill.io.setups.beside import Beside
-from robomill.io.setups.declared import Around, Codec, from_table, to_table
+from robomill.io.beside import Beside
+from robomill.io.declared import Around, Codec, from_table, to_table
 from robomill.io.tables import Table, shown
 from robomill.simulation.given import PART_TURN, PART_ZERO, part_frame
 from robomill.surface.stock import Stock

@@ -6,13 +6,14 @@ import numpy as np
 import streamlit as st
 
 from robomill.identification.result import IdentificationResult
+from robomill.report.tags import Html
 from robomill.robot.model import Robot
 from robomill.ui import pieces, session
 from robomill.ui.bench import Bench
 from robomill.ui.entry import inputs
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import decide, decided
-from robomill.ui.markup import Html, as_html
+from robomill.ui.markup import as_html
 from robomill.units import format_count, format_number, format_si, from_si, unit_label
 from robomill.viz.identification import (
     correlation_figure,

@@ -8,7 +8,7 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.improve.advice import Advice, Way
 from robomill.report.drawn import Axes, svg
-from robomill.report.tags import Markup, joined, tag
+from robomill.report.tags import Html, joined, tag
 from robomill.simulation.result import SimulationResult
 from robomill.ui.verdict import WORDS
 from robomill.units import format_percent, format_si, from_si, unit_label
@@ -43,7 +43,7 @@ def _seen(run: SimulationResult, unit: str) -> tuple[FloatArray, FloatArray]:
 
 def _card(
     way: Way, run: SimulationResult, axes: Axes, drawn: tuple[FloatArray, FloatArray], unit: str, best: bool
-) -> Markup:
+) -> Html:
     said = f"{way.title}: how far the tip is off over the time at feed."
     limit = axes.level(float(from_si(run.setup.tolerance, unit)), "tolerance", "limit")
     picture = [axes.frame("s at feed", f"tip off, {unit_label(unit)}"), limit, axes.line(*drawn, "wall")]

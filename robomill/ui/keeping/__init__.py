@@ -1,1 +1,1 @@
-"""Work kept beyond its page, and projects kept under a name: settings, shelf, writer, what comes back, comparison."""
+"""Work kept beyond its page: settings, shelf, writer, and what comes back."""

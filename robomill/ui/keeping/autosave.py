@@ -250,7 +250,7 @@ def _answer(label: str, icon: str, do: Callable[..., Any] | None = None, *argume
 
 
 def bring_kept(place: str) -> None:
-    """Open what this browser keeps at ``place``; undo leads back. Raises ProjectError where it cannot be opened."""
-    reason = session.open_text(shelf().get(line().key, place)[1][0])
-    if reason:
-        raise ProjectError(reason)
+    """Open what this browser keeps at ``place``; undo leads back. Raises a RobomillError where it cannot be opened."""
+    now = session.project()
+    text = shelf().get(line().key, place)[1][0]
+    session.open_project(project_from_toml(text, now.view, now.maps, now.bench))

@@ -15,8 +15,8 @@ from robomill.learn.push import Push
 from robomill.report.paper import Statement
 from robomill.report.reproduction import reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
+from robomill.report.tags import Html
 from robomill.ui import pieces
-from robomill.ui.markup import Html
 from robomill.ui.project import DEFAULT_PRESET, preset_setup
 from robomill.ui.work import cached
 from robomill.units import unit_label

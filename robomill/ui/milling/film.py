@@ -8,9 +8,9 @@ import streamlit as st
 
 from robomill.progress import checkpoint
 from robomill.simulation.result import SimulationResult
-from robomill.ui import pieces, session
+from robomill.ui import pieces, rendered, session
 from robomill.ui.entry import inputs
-from robomill.ui.work import cached, rendered
+from robomill.ui.work import cached
 from robomill.ui.work import job as jobs
 from robomill.ui.work.job import Job
 from robomill.units import format_times

@@ -11,11 +11,11 @@ from robomill.report.tables import csv_text
 from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.surface.zmap import ZMap
-from robomill.ui import pieces, session
+from robomill.ui import pieces, rendered, session
 from robomill.ui.entry import inputs
 from robomill.ui.milling import live_cut
 from robomill.ui.milling import scrubber as linked
-from robomill.ui.work import cached, rendered
+from robomill.ui.work import cached
 from robomill.units import format_si
 from robomill.viz.rendered import worker
 from robomill.viz.rendered.picture import SurfacePicture

@@ -9,10 +9,11 @@ from pathlib import Path
 import streamlit as st
 
 from robomill.lazy import cached_property
+from robomill.report.tags import Html
 from robomill.simulation.judging.verdict_words import Level
 from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
-from robomill.ui.markup import Html, unparted
+from robomill.ui.markup import unparted
 from robomill.ui.project import preset_setup
 from robomill.ui.verdict import WORDS
 from robomill.units import format_beside, format_limit, format_times, to_si

@@ -1,13 +1,9 @@
 """Things kept for everyone on the server, bounded by the bytes they take: the longest unused make room for new ones."""
 
-import sys
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Hashable, Mapping
-from dataclasses import is_dataclass
+from collections.abc import Callable, Hashable
 from typing import Any
-
-import numpy as np
 
 from robomill import budgets
 from robomill.progress import checkpoint
@@ -47,7 +43,9 @@ class Commons:
             self._held.move_to_end(key)
             again = {each: self._held[each] for each in self._taken | {key}}
             self._taken = {key}
-        weights = {each: ENTRY + weight(held) for each, held in again.items()}  # takes its time: others need not wait
+        weights = {
+            each: ENTRY + budgets.weight(held) for each, held in again.items()
+        }  # takes its time: others need not wait
         with self._lock:
             self._weights |= {each: heavy for each, heavy in weights.items() if each in self._held}
             over = sum(self._weights.values()) - self._most()
@@ -90,30 +88,3 @@ class Commons:
 
     def __len__(self) -> int:
         return len(self._held)
-
-
-def weight(value: Any) -> int:
-    """Bytes of the arrays, texts and containers that ``value`` holds, in its fields, items and what it has made of
-    them since; each is counted once."""
-    seen: set[int] = set()
-    todo, total = [value], 0
-    while todo:
-        one = todo.pop()
-        while isinstance(one, np.ndarray) and isinstance(one.base, np.ndarray):
-            one = one.base
-        if one is None or isinstance(one, type | bool | int | float) or id(one) in seen:
-            continue
-        seen.add(id(one))
-        if isinstance(one, np.ndarray):
-            total += one.nbytes
-        elif isinstance(one, bytes | bytearray | str):
-            total += sys.getsizeof(one)
-        elif isinstance(one, Mapping):
-            total += sys.getsizeof(one)
-            todo += [*one.keys(), *one.values()]
-        elif isinstance(one, list | tuple | set | frozenset):
-            total += sys.getsizeof(one)
-            todo += one
-        elif is_dataclass(one) or hasattr(one, "to_plotly_json"):
-            todo += list(getattr(one, "__dict__", {}).values())
-    return total

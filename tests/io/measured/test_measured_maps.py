@@ -8,9 +8,9 @@ import pytest
 import robomill as rm
 from robomill.errors import ProjectError
 from robomill.identification.measured_field import MeasuredField
+from robomill.io.beside import Beside
 from robomill.io.measured.measured_maps import map_from_table, map_to_table
 from robomill.io.samples import samples_dir
-from robomill.io.setups.beside import Beside
 from robomill.io.tables import Table
 from robomill.provenance import Provenance
 

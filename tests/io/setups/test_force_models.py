@@ -9,8 +9,8 @@ from robomill.cutting.forces import FORCES
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.cutting.tool import Cutter
 from robomill.errors import ProjectError, RobomillError
+from robomill.io.beside import Beside
 from robomill.io.materials import load_material, material_to_toml
-from robomill.io.setups.beside import Beside
 from robomill.io.setups.force_models import force_from_table, force_to_table
 from robomill.io.tables import Table
 

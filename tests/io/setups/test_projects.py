@@ -17,12 +17,12 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import ProjectError, RobomillError
 from robomill.identification.measured_field import MeasuredField
+from robomill.io.beside import Beside
 from robomill.io.measured.identified import identify
 from robomill.io.programs import program_from_bytes
 from robomill.io.robot.robots import load_robot
 from robomill.io.robot.writer import robot_to_toml
 from robomill.io.samples import samples_dir
-from robomill.io.setups.beside import Beside
 from robomill.io.setups.projects import load_setup, open_project, setup_from_toml, setup_to_toml
 from robomill.io.tables import parse_toml
 from robomill.provenance import Provenance

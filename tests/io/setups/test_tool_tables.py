@@ -10,7 +10,7 @@ import tomli_w
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import CuttingError
-from robomill.io.setups.beside import Beside
+from robomill.io.beside import Beside
 from robomill.io.setups.tool_tables import read_tool_table, tools_from_table, tools_to_tables
 from robomill.io.tables import Table, parse_toml
 

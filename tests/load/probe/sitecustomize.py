@@ -26,8 +26,9 @@ def _count(*_: object) -> None:
     after = counts()
     told = {name: [before[name], after[name]] for name in NAMES}
     if "robomill.ui.work.commons" in sys.modules:
+        from robomill.budgets import weight
         from robomill.ui.session import Store
-        from robomill.ui.work.commons import Commons, weight
+        from robomill.ui.work.commons import Commons
 
         commons = [dict(one._held) for one in gc.get_objects() if isinstance(one, Commons)]
         stores = [one for one in gc.get_objects() if isinstance(one, Store)]

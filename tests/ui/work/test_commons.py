@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import RobomillError
-from robomill.ui.work.commons import ENTRY, Commons, weight
+from robomill.ui.work.commons import ENTRY, Commons
 
 MB = 1_000_000
 
@@ -24,14 +24,6 @@ class Grown:
     @cached_property
     def surface(self) -> np.ndarray:
         return np.zeros(self.size, dtype=np.uint8)
-
-
-def test_arrays_are_weighed_by_their_bytes_and_once() -> None:
-    array = np.zeros((1000, 1000))
-    assert weight(array) == 8 * MB
-    assert 8 * MB <= weight([array, array[::2], array.T, {"again": array}]) < 8 * MB + 1000
-    assert weight(array[:1]) == 8 * MB  # a view keeps all of its base alive
-    assert weight(b"x" * MB) >= MB
 
 
 def test_what_a_result_makes_of_itself_later_is_weighed_too() -> None:

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from robomill.errors import RobomillError
-from robomill.io.setups.beside import ALONE, Beside
+from robomill.io.beside import ALONE, Beside
 from robomill.io.tables import Table, shown
 from robomill.provenance import Provenance
 from robomill.quantities import Quantity, declared_types, quantities

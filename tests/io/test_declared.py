@@ -21,8 +21,8 @@ from robomill.cutting.forces.constant import ConstantForce
 from robomill.cutting.forces.measured import ForceRecord, MeasuredForce
 from robomill.cutting.tool import Cutter
 from robomill.errors import ProjectError
+from robomill.io.declared import from_table, kind_from_table, kind_to_table, to_table
 from robomill.io.materials import load_material
-from robomill.io.setups.declared import from_table, kind_from_table, kind_to_table, to_table
 from robomill.io.setups.force_models import force_from_table, force_to_table
 from robomill.io.tables import Table
 from robomill.provenance import Provenance

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
-from robomill.ui.keeping.snapshots import differences, outcomes
+from robomill.ui.comparing.differences import differences, outcomes
 from robomill.ui.project import DEFAULT_PRESET, preset_setup
 
 SETUP = preset_setup(DEFAULT_PRESET)

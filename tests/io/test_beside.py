@@ -10,10 +10,10 @@ import pytest
 
 from robomill.errors import ProjectError, RobomillError
 from robomill.files import TABLE
+from robomill.io import beside
+from robomill.io.beside import ALONE, Beside
 from robomill.io.robot.robots import robot_folder
 from robomill.io.samples import samples_dir
-from robomill.io.setups import beside
-from robomill.io.setups.beside import ALONE, Beside
 from robomill.io.setups.projects import load_setup, setup_from_toml
 from robomill.io.tables import Table
 from robomill.simulation.setup import SimulationSetup
