@@ -57,6 +57,7 @@ def run_gcode(arguments: Any) -> int:
     from robomill.simulation.origin.assumptions import assumed_of_program, assumed_of_tools
     from robomill.toolpath.apt import read_apt
     from robomill.toolpath.gcode import gcode_report, interpret, write_moves_jsonl
+    from robomill.toolpath.gcode.report import write_path_jsonl
 
     data = given.come_in(arguments.file)
     table = given.points(arguments.file, arguments.unit, arguments.feed, data)
@@ -64,13 +65,15 @@ def run_gcode(arguments: Any) -> int:
         given.check_points_options(given.CALLED if data else arguments.file, arguments.unit, arguments.feed)
     source = b"" if table else data or given.program(arguments.file)
     files = Written.before([Path(arguments.moves)] if arguments.moves else [])
-    if arguments.moves and (table or given.is_apt(source)):
-        raise ToolpathError("--moves: these are the moves of a program of G-code; points and APT have none to write.")
+    if arguments.moves and table:
+        raise ToolpathError("--moves: these are the moves of a program; a table of points has none to write.")
     if table:
         record, assumed, files = path_record(table.path), assumed_of_program(table.path.findings), []
     elif given.is_apt(source):
         path = read_apt(source)
-        record, assumed, files = path_record(path), assumed_of_program(path.findings), []
+        record, assumed = path_record(path), assumed_of_program(path.findings)
+        if arguments.moves:
+            write_path_jsonl(path, arguments.moves)
     else:
         tools = given.tools(arguments.tools, arguments.tools_unit) if arguments.tools else None
         program = interpret(source, dialect=arguments.dialect, tools=tools)

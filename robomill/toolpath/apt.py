@@ -1,7 +1,8 @@
 """APT-CL (cutter location) files: GOTO points with tool axes, as CAM systems write them before post-processing.
 
-Read are GOTO, GODLTA, FROM, RAPID, FEDRAT, SPINDL, LOADTL, LOAD/TOOL, TOOLNO, UNITS, UNIT, MULTAX, TLAXIS, CIRCLE,
-MOVARC, CYCLE, TRANS, MSYS, CSYS, DELAY and FINI. What may move the tool in another way (TRACUT, RETRCT, GOFWD) is
+Read are GOTO, GODLTA, FROM (places, or points that POINT/ has named), INDIRV with TLON,GOFWD (CATIA's arcs), RAPID,
+FEDRAT, SPINDL, LOADTL, LOAD/TOOL, TOOLNO, UNITS, UNIT, MULTAX, TLAXIS, CIRCLE, MOVARC, CYCLE, TRANS, MSYS, CSYS, DELAY
+and FINI. What may move the tool in another way (TRACUT, RETRCT, GOFWD) is
 refused; other words that move nothing are counted as ignored.
 """
 
@@ -13,7 +14,17 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import GCodeError
-from robomill.toolpath.apt_moves import NUMBER, Arc, Drilling, arc_of, drilling_of, feed_of, frame_of, numbers_of
+from robomill.toolpath.apt_moves import (
+    NUMBER,
+    Arc,
+    Drilling,
+    arc_of,
+    drilling_of,
+    feed_of,
+    frame_of,
+    numbers_of,
+    tangent_arc,
+)
 from robomill.toolpath.gcode.findings import NO_UNITS, Findings
 from robomill.toolpath.gcode.rules.motion_rules import MOST
 from robomill.toolpath.path import Toolpath
@@ -22,7 +33,21 @@ from robomill.units import to_si
 
 _MOVES = frozenset(
     [
-        *("ARC", "INDIRV", "INDIRP", "THREAD", "RETRCT", "ROTATE", "ROTABL", "TRACUT", "COPY", "CALL", "MACRO"),
+        *(
+            "ARC",
+            "INDIRP",
+            "TLON",
+            "TLLFT",
+            "TLRGT",
+            "THREAD",
+            "RETRCT",
+            "ROTATE",
+            "ROTABL",
+            "TRACUT",
+            "COPY",
+            "CALL",
+            "MACRO",
+        ),
         *("GOCLER", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN"),
     ]
 )
@@ -31,7 +56,7 @@ _SILENT = frozenset(
         *("PARTNO", "PPRINT", "REMARK", "INSERT", "MACHIN", "SEQNO", "LEADER", "FINI", "END", "STOP", "OPSTOP"),
         *("COOLNT", "CUTTER", "SELCTL", "CATLOG", "TURRET", "PREFUN", "AUXFUN", "OPSKIP", "LOADTL", "TLDATA"),
         *("TOOL PATH", "END-OF-PATH", "LOAD", "CLAMP", "HEAD", "ARCSLP"),
-        *("INTOL", "OUTTOL", "TOLER", "CLEARP", "DISPLY", "PAINT"),
+        *("INTOL", "OUTTOL", "TOLER", "CLEARP", "DISPLY", "PAINT", "AUTOPS"),
     }
 )
 MAX_POINTS = 5_000_000
@@ -56,10 +81,14 @@ class _State:
     first_frame: FloatArray | None = None
     frame: FloatArray | None = None
     arc: Arc | None = None
+    tangent: FloatArray | None = None
+    points: dict[str, list[str]] = field(default_factory=dict)
     drilling: Drilling | None = None
     rows: list[tuple[float, ...]] = field(default_factory=list)
 
 
+_NAMES = re.compile(r"[A-Z]\w*\s*=.*")
+_FORWARD = re.compile(r"TLON\s*,\s*GOFWD")
 _GOTO = re.compile(rb"^[ \t]*(?:GOTO|FROM)[ \t]*/", re.IGNORECASE | re.MULTILINE)
 
 
@@ -128,7 +157,13 @@ def _statements(text: str) -> list[tuple[int, str]]:
 
 def _statement(state: _State, findings: Findings, word: str, values: list[str], line: int) -> None:
     if word in ("GOTO", "FROM"):
-        _go(state, numbers_of(values, line, word), line, is_start=word == "FROM")
+        _go(state, numbers_of(_placed(state, values, line), line, word), line, is_start=word == "FROM")
+    elif _NAMES.fullmatch(word):
+        _define(state, findings, word, values, line)
+    elif word == "INDIRV":
+        state.tangent = _tangent(values, line)
+    elif _FORWARD.fullmatch(word):
+        _along_circle(state, ",".join(values), line)
     elif word == "GODLTA":
         numbers = numbers_of(values, line, word)
         if len(numbers) == 1:  # along the tool
@@ -160,6 +195,48 @@ def _statement(state: _State, findings: Findings, word: str, values: list[str], 
         raise GCodeError.at(line, f"{word[:20]} moves the tool in a way that is not read; write GOTO points.")
     else:
         _other(state, findings, word, values, line)
+
+
+def _placed(state: _State, values: list[str], line: int) -> list[str]:
+    """The values of GOTO and FROM, with the places of a point that is called by its name."""
+    name = values[0].upper() if values else ""
+    if not name[:1].isalpha():
+        return values
+    if name not in state.points:
+        raise GCodeError.at(line, f"GOTO has {name[:20]!r}, which no POINT/ before it has named; expected x,y,z.")
+    return [*state.points[name], *values[1:]]
+
+
+def _define(state: _State, findings: Findings, word: str, values: list[str], line: int) -> None:
+    """P1=POINT/x,y,z names a point; other shapes move nothing by themselves."""
+    name, _, kind = (part.strip() for part in word.partition("="))
+    if kind == "POINT":
+        numbers = numbers_of(values, line, "POINT")
+        if len(numbers) not in (2, 3):
+            raise GCodeError.at(line, f"POINT has {len(numbers)} numbers; expected x,y,z.")
+        state.points[name] = [*values, "0"][:3]
+        return
+    if kind in _MOVES:
+        raise GCodeError.at(line, f"{kind} moves the tool in a way that is not read; write GOTO points.")
+    state.points.pop(name, None)
+    findings.add("definition", "ignored", line, "definitions other than POINT move nothing and are left out")
+
+
+def _tangent(values: list[str], line: int) -> FloatArray:
+    numbers = numbers_of(values, line, "INDIRV")
+    if len(numbers) != 3:
+        raise GCodeError.at(line, f"INDIRV has {len(numbers)} numbers; expected a direction i,j,k.")
+    return np.array(_direction(numbers, line))
+
+
+def _along_circle(state: _State, text: str, line: int) -> None:
+    """TLON,GOFWD: along a circle from where the tool is, in the direction that INDIRV has said."""
+    tangent, state.tangent = state.tangent, None
+    if tangent is None or not state.here:
+        raise GCodeError.at(line, "TLON,GOFWD needs INDIRV/i,j,k and a point before it, where its arc begins.")
+    start = np.array([to_si(v, state.unit) for v in state.here])
+    state.arc, end = tangent_arc(text, tangent, start, state.unit, line)
+    _go(state, end, line)
 
 
 def _other(state: _State, findings: Findings, word: str, values: list[str], line: int) -> None:

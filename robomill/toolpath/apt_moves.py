@@ -110,6 +110,33 @@ def arc_of(values: list[str], unit: str, line: int) -> Arc:
     return Arc(centre, np.array(numbers[3:6]) / size, radius, angle, turns)
 
 
+_CATIA = re.compile(
+    r"\(\s*CIRCLE\s*/([^()]*)\)\s*,\s*ON\s*(?:,\s*2\s*,\s*INTOF\s*)?,\s*\(\s*LINE\s*/([^()]*)\)\s*", re.IGNORECASE
+)
+
+
+def tangent_arc(text: str, tangent: FloatArray, start: FloatArray, unit: str, line: int) -> tuple[Arc, list[float]]:
+    """TLON,GOFWD/ (CIRCLE/ x,y,z,r),ON,(LINE/ centre, end), as CATIA writes arcs: the arc, and its end as written.
+
+    It leaves ``start`` (m) along ``tangent``; "2,INTOF": the line meets the circle once before that.
+    """
+    found = _CATIA.fullmatch(text.strip())
+    if found is None:
+        shown = " ".join(text.split())[:40]
+        expected = "expected (CIRCLE/x,y,z,r),ON,(LINE/x,y,z,x,y,z), or GOTO points"
+        raise GCodeError.at(line, f"TLON,GOFWD has {shown!r}, which is not read; {expected}.")
+    circle, ray = (_floats([v.strip() for v in each.split(",")], line) for each in found.groups())
+    if len(circle) != 4 or len(ray) != 6 or circle[3] <= 0.0:
+        raise GCodeError.at(line, "an arc of TLON needs CIRCLE/x,y,z,r, and LINE/ with its centre and its end.")
+    centre = np.array([to_si(v, unit) for v in circle[:3]])
+    axis = np.cross(start - centre, tangent)
+    size, radius = float(np.linalg.norm(axis)), to_si(circle[3], unit)
+    straight = float(np.linalg.norm(tangent)) * radius
+    if straight <= 0.0 or abs((start - centre) @ tangent) > 0.02 * straight or size < 0.5 * straight:
+        raise GCodeError.at(line, "INDIRV is not along the circle where the tool stands; expected its tangent there.")
+    return Arc(centre, axis / size, radius, None, 1), ray[3:]
+
+
 @dataclass(frozen=True)
 class Drilling:
     """A cycle that each point is drilled with: lengths (m) from the point along the tool, feed in m/s, dwell in s."""

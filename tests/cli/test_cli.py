@@ -584,6 +584,16 @@ def test_moves_are_written_one_a_line(capsys, tmp_path: Path) -> None:
     assert all(json.loads(line) for line in out.read_text().splitlines())
 
 
+def test_moves_of_apt_are_written_too(capsys, tmp_path: Path) -> None:
+    file, out = tmp_path / "a.apt", tmp_path / "moves.jsonl"
+    file.write_text("UNITS/MM\nFROM/0,0,5\nRAPID\nGOTO/1,0,5\nFEDRAT/60,MMPM\nGOTO/1,0,0,0,0.6,0.8\nFINI\n")
+    record(capsys, "gcode", file, "--moves", out)
+    rapid, cut = (json.loads(line) for line in out.read_text().splitlines())
+    assert rapid == {"line": 4, "kind": "traverse", "start": [0, 0, 5], "end": [1, 0, 5], "axis": [0, 0, 1]}
+    assert (cut["kind"], cut["line"], cut["feed_mm_min"], cut["end"]) == ("feed", 6, pytest.approx(60), [1, 0, 0])
+    assert cut["axis"] == pytest.approx([0, 0.6, 0.8])
+
+
 def test_a_tilted_map(capsys) -> None:
     words = ("map", "slavkovic_5r", "--quantity", "C_yy", "--z", "0", "--x", "0", "--y", "-1300")
     tilted = record(capsys, *words, "--a-deg", "-10", "--b-deg", "5")

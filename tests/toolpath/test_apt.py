@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.apt import is_apt, read_apt
+from robomill.toolpath.gcode import read_gcode
 
 FILE = """PARTNO/ BLADE
 $$ a comment
@@ -262,7 +264,7 @@ def test_a_tool_dwells_at_the_bottom_of_each_hole_alone() -> None:
 @pytest.mark.parametrize(
     ("lines", "says"),
     [
-        ("TLON,GOFWD/ (CIRCLE/1,2,3,4),ON,2,INTOF,(LINE/1,2,3,4,5,6)", "Line 5: TLON,GOFWD moves the tool in a way"),
+        ("TLON,GOFWD/ (CIRCLE/1,2,3,4),ON,2,INTOF,(LINE/1,2,3,4,5,6)", "Line 5: TLON,GOFWD needs INDIRV"),
         ("MOVARC/0,0,0,0,0,1,10,ANGLE,45\nGOTO/0,10,0", "Line 6: the arc turns by 45 degrees, which does not lead to"),
         ("CIRCLE/0,0,0,0,0,1,9\nGOTO/0,10,0", "Line 6: the arc's ends lie 10.0000 mm and 10.0000 mm from its centre"),
         ("CIRCLE/0,0,0,0,0,0,9", "an arc needs an axis i,j,k and a radius above 0"),
@@ -344,3 +346,79 @@ def test_cycles_of_solidworks_cam() -> None:
     feeds = [round(float(z) * 1e3, 6) for z, cut in zip(path.p[:, 2], path.cutting) if cut]
     assert feeds == [-2, -6, -10]
     assert path.p[-1, 2] * 1e3 == pytest.approx(25)
+
+
+CATIA = """UNITS/MM
+FEDRAT/600,MMPM
+P1     =POINT/ 10.0, 0.0, 5.0
+L1=LINE/ 0,0,0,1,0,0
+GOTO/P1
+GOTO/ 10.0, 0.0, 0.0
+AUTOPS
+INDIRV/ 0.00000, 1.00000, 0.00000
+TLON,GOFWD/ (CIRCLE/ 0.00000, 0.00000, 0.00000,$
+10.00000),ON,(LINE/ 0.00000, 0.00000, 0.00000,$
+0.00000, 10.00000, 0.00000)
+INDIRV/ -1,0,0
+TLON,GOFWD/ (CIRCLE/ 0,0,0,10),ON,2,INTOF,(LINE/ 0,0,0,10,0,0)
+GODLTA/ 5,0,0
+FINI
+"""
+
+
+def test_arcs_of_catia_leave_along_their_tangent_and_end_where_their_line_does() -> None:
+    """A quarter to the left of +Y about (0, 0): 5 pi mm; then from (0, 10) along -X, three quarters: 15 pi mm."""
+    path = read_apt(CATIA)
+    length = {
+        line: 1e3 * float(np.linalg.norm(np.diff(path.p, axis=0), axis=1)[path.block[1:] == line].sum())
+        for line in (9, 13)
+    }
+    assert length == {9: pytest.approx(5 * np.pi, rel=2e-4), 13: pytest.approx(15 * np.pi, rel=2e-4)}
+    quarter, rest = path.p[path.block == 9], path.p[path.block == 13]
+    assert quarter[-1] * 1e3 == pytest.approx((0, 10, 0))
+    assert (quarter[:, :2] >= -1e-12).all()
+    assert rest[:, 0].min() * 1e3 == pytest.approx(-10, abs=2e-3)
+    assert rest[-1] * 1e3 == pytest.approx((10, 0, 0))
+    assert path.p[0] * 1e3 == pytest.approx((10, 0, 5))
+    assert path.p[-1] * 1e3 == pytest.approx((15, 0, 0))
+    assert [(f.code, f.line) for f in path.findings if f.level == "ignored"] == [("definition", 4)]
+
+
+def test_an_arc_of_catia_may_stand_upright() -> None:
+    """About (0, 0, 10) in the plane XZ, from its lowest point along +X to (10, 0, 10)."""
+    lines = "GOTO/0,0,0\nINDIRV/1,0,0\nTLON,GOFWD/ (CIRCLE/0,0,10,10),ON,(LINE/0,0,10,10,0,10)\n"
+    path = read_apt(f"UNITS/MM\nFEDRAT/60,MMPM\nFROM/0,0,9\n{lines}FINI\n")
+    arc = path.p[path.block == 6] * 1e3
+    assert np.hypot(arc[:, 0], arc[:, 2] - 10) == pytest.approx(10.0)
+    assert arc[-1] == pytest.approx((10, 0, 10))
+    assert arc[:, 1] == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize(
+    ("lines", "says"),
+    [
+        ("GOTO/P9", "GOTO has 'P9', which no POINT/ before it has named"),
+        ("P1=POINT/1", "POINT has 1 numbers"),
+        ("M1=MACRO/A,B", "MACRO moves the tool in a way that is not read"),
+        ("TLON,GOFWD/ (CIRCLE/0,0,0,10),ON,(LINE/0,0,0,0,10,0)", "TLON,GOFWD needs INDIRV"),
+        ("INDIRV/0,1,0\nTLON,GOFWD/ (CYLNDR/0,0,0,0,0,1,10),ON,(LINE/0,0,0,0,10,0)", "TLON,GOFWD has '(CYLNDR"),
+        ("INDIRV/1,0,0\nTLON,GOFWD/ (CIRCLE/0,0,0,10),ON,(LINE/0,0,0,0,10,0)", "INDIRV is not along the circle"),
+        ("INDIRV/0,1,0\nTLON,GOFWD/ (CIRCLE/0,0,0,10),ON,(LINE/0,0,0,0,11,0)", "the arc's ends lie 10.0000 mm and 11"),
+        ("TLLFT,GOLFT/L1", "TLLFT,GOLFT moves the tool"),
+    ],
+)
+def test_what_catia_writes_otherwise_is_refused_by_name(lines: str, says: str) -> None:
+    with pytest.raises(GCodeError) as caught:
+        read_apt(f"UNITS/MM\nFEDRAT/60\nFROM/10,0,0\n{lines}\nGOTO/1,0,0\nFINI\n")
+    assert says in str(caught.value)
+
+
+def test_the_reader_of_g_code_names_the_one_of_apt(tmp_path: Path) -> None:
+    file = tmp_path / "blade.apt"
+    file.write_text(CATIA)
+    with pytest.raises(
+        GCodeError, match=r'this is APT \(cutter locations\), no G-code; rm.read_program\("blade.apt"\)'
+    ):
+        read_gcode(file)
+    with pytest.raises(GCodeError, match=r'rm.read_program\("part.apt"\).read\(\) gives its path'):
+        read_gcode(CATIA)

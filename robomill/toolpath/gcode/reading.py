@@ -93,7 +93,14 @@ def interpret(
     GCodeError naming the line that is refused; with ``partial`` the moves before it are returned instead, and the
     refusal is an error among the findings.
     """
+    from robomill.toolpath.apt import is_apt  # which takes words of this package
+
     data, name = read_source(source)
+    if is_apt(data):
+        shown = "part.apt" if name == "program" else name
+        raise GCodeError(
+            f'this is APT (cutter locations), no G-code; rm.read_program("{shown}").read() gives its path.'
+        )
     lines = Lines(data)
     chosen = choose_dialect(data[:SAMPLE].decode("utf-8", "replace"), dialect)
     if chosen.guessed and (foreign := language_of(data[:SAMPLE].decode("utf-8", "replace"))):

@@ -7,8 +7,9 @@ from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.files import written
-from robomill.toolpath.gcode.program import ARC, KINDS, PLANES, Program
+from robomill.toolpath.gcode.program import ARC, FEED, KINDS, PLANES, TRAVERSE, Program
 from robomill.toolpath.gcode.rules.motion_rules import axes
+from robomill.toolpath.path import Toolpath
 from robomill.units import from_si
 
 
@@ -37,6 +38,27 @@ def gcode_report(program: Program) -> dict[str, Any]:
         "findings": [finding.record() for finding in program.findings],
         "ok": program.ok,
     }
+
+
+def write_path_jsonl(toolpath: Toolpath, path: str | Path) -> None:
+    """One straight move of a cutter location file a line: ``line``, ``kind`` (traverse, feed), ``start``, ``end`` (mm).
+
+    Moves at feed also have ``feed_mm_min``; where the tool is tilted anywhere, moves have its ``axis`` at their end.
+    """
+    tilted = bool((toolpath.k[:, :2] != 0.0).any())
+    with written(path, GCodeError) as place, place.open("w", encoding="utf-8") as out:
+        for i in range(1, len(toolpath.p)):
+            row: dict[str, Any] = {
+                "line": int(toolpath.block[i]),
+                "kind": KINDS[FEED if toolpath.cutting[i] else TRAVERSE],
+                "start": _mm(toolpath.p[i - 1]),
+                "end": _mm(toolpath.p[i]),
+            }
+            if toolpath.cutting[i]:
+                row["feed_mm_min"] = from_si(float(toolpath.v_f[i]), "mm/min")
+            if tilted:
+                row["axis"] = [float(v) for v in toolpath.k[i]]
+            out.write(json.dumps(row) + "\n")
 
 
 def _mm(point: Any) -> list[float]:

@@ -200,6 +200,8 @@ SUPPORT: tuple[Support, ...] = (
         1,
         dialect="sinumerik",
     ),
+    _row("ANG=", "straight cuts by their angle", "G1 X9 ANG=45 F9", (9, 9, 0), 1, dialect="sinumerik"),
+    Support("G147 to G348, DISR=", "soft approaches", "refused", "G1 F9\nG147 DISR=5 X5", dialect="sinumerik"),
     _row("RNDM=", "every corner rounded", "RNDM=2\nG1 X9 F9\nY9\nRNDM=0", (9, 9, 0), 3, dialect="sinumerik"),
     _row(
         "PROC NAME(REAL A), VAR, SAVE",

@@ -9,6 +9,8 @@ from robomill.toolpath.gcode import Tool, interpret
 from robomill.toolpath.gcode.support import DIFFERENCES, SUPPORT, Support
 
 SAYS = {
+    "G147 to G348, DISR=": "G147 approaches a contour on a straight line",
+    "G81, G90.1, G95, A, #1, [ ], ...": "G81 is not known to grbl 1.1",
     "M62 to M68": "inputs and outputs",
     "M100 to M199": "M101",
     "other M codes": "M36",

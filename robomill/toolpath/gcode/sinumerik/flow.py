@@ -8,7 +8,7 @@ import re
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode.sinumerik.polar import SinumerikPolar
+from robomill.toolpath.gcode.sinumerik.angles import SinumerikAngles
 from robomill.toolpath.gcode.sinumerik.words import parts, value_end
 from robomill.toolpath.gcode.words import Block
 
@@ -27,8 +27,8 @@ _SETS = re.compile(r"[ \t]*([A-Z_]{2}\w*)[ \t]*=(?!=)")
 _MODAL = re.compile(r"MCALL[ \t]+(L\d{1,7}|[A-Z_]{2}\w*)[ \t]*(?:\([ \t]*\))?")
 
 
-class SinumerikFlow(SinumerikPolar):
-    """Follows the structure of a program; ``SinumerikPolar`` reads what else its lines say."""
+class SinumerikFlow(SinumerikAngles):
+    """Follows the structure of a program; ``SinumerikAngles`` reads what else its lines say."""
 
     modal_sub: tuple[str, int, int] | None = None
 
