@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robomill.arrays import as_floats, check_place, digest, frozen
+from robomill.arrays import as_floats, check_place, digest, frozen, sealed
 from robomill.errors import RobomillError, RobotError
 
 
@@ -162,3 +162,14 @@ def test_a_place_is_where_a_machine_can_be(far: float) -> None:
     check_place([0.0, -1e4, 1e4], "Part zero", RobomillError)
     with pytest.raises(RobomillError, match="^Part zero: it lies .* m off; expected 10000 m at most"):
         check_place([0.0, 0.0, far], "Part zero", RobomillError)
+
+
+def test_arrays_in_values_that_do_not_see_to_it_themselves_are_sealed_too() -> None:
+    @dataclass
+    class Pair:
+        first: Any
+        second: Any
+
+    inner, outer, named = np.zeros(2), np.zeros(3), np.zeros(4)
+    sealed(Pair(outer, (Pair(inner, 1.0), {"named": named})))
+    assert [array.flags.writeable for array in (inner, outer, named)] == [False] * 3

@@ -199,6 +199,7 @@ def takes(
         ({"rows": "x"}, "takes: rows: expected numbers or 'auto', found 'x'."),
         ({"line": [1, "b"]}, "takes: line: expected numbers, found 'b'."),
         ({"array": [[1], [1, 2]]}, "takes: array: expected numbers, or None, found [[1], [1, 2]]."),
+        ({"array": [None]}, "takes: array: expected numbers, or None, found [None]."),
         ({"named": {"a": "b"}}, "takes: named: expected a mapping from a text to a number, or None, found {'a': 'b'}."),
         ({"place": 3}, "takes: place: expected a text or a Path, or None, found 3."),
     ],

@@ -159,3 +159,15 @@ def test_joint_tests_are_checked_row_by_row():
     for bad in (np.array([1.0, np.nan, 1]), np.ones(2)):
         with pytest.raises(LoadTestError, match="angle: expected 3 finite"):
             JointTests(joint, torque, bad)
+
+
+def test_gauges_that_nothing_read_have_no_columns():
+    """In mm; the second gauge reads along X from the third test on, the third one never."""
+    read = np.full((6, 3), np.nan)
+    read[:, 0], read[2:, 1] = 1e-6 * np.arange(6), 4e-6
+    along = np.tile(np.eye(3)[[2, 0, 1]], (6, 1, 1))
+    columns = LoadTests(F, read, theta=THETA, gauges=along).columns()
+    assert [name for name in columns if name.startswith("reading")] == ["reading1_mm", "reading2_mm"]
+    np.testing.assert_allclose(columns["reading1_mm"], 1e-3 * np.arange(6))
+    np.testing.assert_allclose(columns["reading2_mm"], [np.nan, np.nan, *[4e-3] * 4])
+    assert [columns[f"gauge2_{axis}"].tolist() for axis in "xyz"] == [[1.0] * 6, [0.0] * 6, [0.0] * 6]

@@ -34,6 +34,7 @@ def test_structures_recognised_from_the_table():
     assert decoupled(rm.load_robot("kuka_kr500")).spindle_on_last_axis
     assert not decoupled(rm.load_robot("fanuc_r2000ic")).spindle_on_last_axis
     assert decoupled(rm.load_robot("planar_3r")) is None
+    assert decoupled(rm.load_robot("slavkovic_5r").replace(prismatic=[True, *[False] * 4])) is None
     # The paper's machine: a six-axis robot with axis 6 blocked.
     assert decoupled(with_blocked(rm.load_robot("kuka_kr500"), 6, 0.0)).n == 5
 

@@ -4,6 +4,7 @@ import numpy as np
 
 import robomill as rm
 from robomill.io.samples import samples_dir
+from robomill.progress import Progress, watched
 from robomill.simulation.led import against
 
 SLOT = rm.load_setup(samples_dir() / "paper_flute")
@@ -24,3 +25,13 @@ def test_against_the_wanted_path_a_run_is_off_by_what_its_tip_is() -> None:
     np.testing.assert_allclose(told.ahead[cut], np.tile(-to_M @ beside, (cut.sum(), 1)), atol=1e-15)
     np.testing.assert_allclose(told.p_machined[cut], (run.path.p + run.delta @ to_M)[cut], atol=1e-12)
     assert told.path is wanted
+
+
+def test_every_stage_of_a_corrected_run_is_told_from_its_beginning() -> None:
+    text = "G21 G90\nG0 X0 Y0 Z5\nG0 Z-2\nG1 X20 F600\nG0 Z5\nM2\n"
+    wanted = rm.GCodeSource(text.replace("Z-2", "Z-2.1"), "wanted.nc")
+    first: dict[str, float] = {}
+    with watched(Progress(say=lambda told: first.setdefault(told.stage, told.share))):
+        rm.simulate(SLOT.replace(source=rm.GCodeSource(text, "x.nc", wanted=wanted)))
+    assert "Where the program was meant to go" in first
+    assert set(first.values()) == {0.0}

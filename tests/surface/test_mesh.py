@@ -8,6 +8,7 @@ import shapely
 from scipy.spatial import ConvexHull
 
 from robomill.cutting.tool import Cutter
+from robomill.progress import Progress, watched
 from robomill.surface.mesh import kept_cells, to_mesh
 from robomill.surface.raster import skin, skin_on_line, stock_heights
 from robomill.surface.stock import Stock
@@ -32,6 +33,14 @@ def test_every_edge_is_shared_by_two_faces_that_run_against_each_other(max_faces
     assert (np.unique(mesh.faces) == np.arange(len(mesh.vertices))).all()
     np.testing.assert_allclose(mesh.vertices.min(axis=0), STOCK.lower, atol=1e-15)
     np.testing.assert_allclose(mesh.vertices.max(axis=0), STOCK.upper, atol=1e-15)
+
+
+def test_a_solid_tells_what_is_done_of_it_from_nothing_on():
+    told = []
+    with watched(Progress(say=lambda progress: told.append((progress.stage, progress.share)))):
+        to_mesh(SURFACE)
+    assert told[0] == ("Solid", 0.0)
+    assert told[-1] == ("Solid", 0.9)
 
 
 def test_the_skin_is_the_map_and_its_volume_the_maps():

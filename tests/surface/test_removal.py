@@ -34,6 +34,18 @@ def test_a_tile_has_the_moves_that_reach_the_centres_of_its_cells(monkeypatch):
     assert [i for i, _ in tiles((11, 4), cells, low[4:5], high[4:5])] == [3, 6]
 
 
+def test_with_x_and_y_exchanged_a_cut_is_the_same():
+    cells, exchanged = Cells(40, 6, 0.5e-3, 0.5e-3, 1e-3, 1e-3), Cells(6, 40, 0.5e-3, 0.5e-3, 1e-3, 1e-3)
+    z, other = np.zeros((40, 6)), np.zeros((6, 40))
+    found = cut_upright(z, cells, MILL, np.array([[5e-3, 2e-3, -2e-3, 31e-3, 4e-3, -1e-3]]))
+    turned = cut_upright(other, exchanged, MILL, np.array([[2e-3, 5e-3, -2e-3, 4e-3, 31e-3, -1e-3]]))
+    np.testing.assert_allclose(other, z.T, atol=1e-15)
+    i, j = np.divmod(turned.index, 40)
+    order, same = np.argsort(found.index), np.argsort(j * 6 + i)
+    np.testing.assert_array_equal((j * 6 + i)[same], found.index[order])
+    np.testing.assert_allclose(turned.mean[same], found.mean[order], atol=1e-14)
+
+
 @pytest.mark.parametrize("rows", [1, 2, 5, 40])
 def test_walls_of_cells_are_kept_by_their_number_in_the_whole_map(monkeypatch, rows):
     cells = Cells(24, 18, 0.5e-3, 0.5e-3, 1e-3, 1e-3)

@@ -32,6 +32,13 @@ def test_an_open_chain_runs_as_its_first_line_was_drawn() -> None:
     np.testing.assert_allclose(found[0].points * 1e3, [[0, 5], [10, 0], [20, 0], [30, 0]])
 
 
+def test_two_lines_are_no_line_any_more_and_a_polyline_of_two_points_is_one() -> None:
+    (bent,), _, _ = joined([line((0, 0), (10, 0)), line((10, 0), (20, 3))])
+    (straight,), _, _ = joined([Contour("0", "polyline", np.array([[0.0, 0.0], [0.01, 0.0]]))])
+    assert (bent.shape, len(bent.points)) == ("polyline", 3)
+    assert (straight.shape, len(straight.points)) == ("line", 2)
+
+
 def test_where_three_lines_meet_none_are_joined() -> None:
     found, _, _ = joined([line((0, 0), (10, 0)), line((10, 0), (20, 0)), line((10, 0), (10, 10))])
     assert [each.shape for each in found] == ["line"] * 3

@@ -179,7 +179,7 @@ class Compensation:
             return
         alpha = math.atan2(v - pv, u - pu)
         if self.entering:
-            cu, cv = self._entered(machine, alpha)
+            cu, cv = self._entered(alpha)
         theta = math.atan2(cv - pv, cu - pu)
         if self.left:
             theta += 2.0 * math.pi if theta < alpha else 0.0
@@ -224,7 +224,7 @@ class Compensation:
         self._stand(machine, *end, full, (u, v))
         self.entering = machine.other_control
 
-    def _entered(self, machine: Machine, direction: float) -> tuple[float, float]:
+    def _entered(self, direction: float) -> tuple[float, float]:
         """End the entry move beside the start of the contour, whose ``direction`` there is now known (u, v)."""
         assert self.programmed is not None
         self.entering = False
@@ -232,7 +232,6 @@ class Compensation:
         u, v = self.programmed[0] + self.radius * math.cos(side), self.programmed[1] + self.radius * math.sin(side)
         for move in self.held:
             move.end = (u, v, move.end[2])
-        machine.p[self.axes[0]], machine.p[self.axes[1]] = u, v
         return u, v
 
     def _round(
@@ -303,7 +302,7 @@ class Compensation:
         delta = math.atan2(centre[1] - pv, centre[0] - pu)
         alpha = delta - _HALF if turn > 0 else delta + _HALF
         if self.entering:
-            cu, cv = self._entered(machine, alpha)
+            cu, cv = self._entered(alpha)
         theta = math.atan2(cv - pv, cu - pu) + quarter
         beta = theta - alpha if self.left else alpha - theta
         beta += -2.0 * math.pi if beta > 1.5 * math.pi else (2.0 * math.pi if beta < -_HALF else 0.0)

@@ -145,6 +145,7 @@ def test_metal_that_a_pass_without_a_number_takes_away_is_not_measured():
     assert (away.centre_offset, away.floor_error) == pytest.approx((1e-4, -2e-5), abs=1e-9)
     assert np.isnan([at.centre_offset, at.floor_error, at.width]).all()
     assert "without a number goes through here" in at.note
+    assert len(at.w) == len(at.z_ideal) == len(at.z_machined) == 0
     assert beside.centre_offset == pytest.approx(1e-4, abs=1e-9)
     with pytest.raises(SurfaceError, match="runs from 0 to 207"):
         groove_section(stock, FLAT, p, moved, cutting, None, 0.3)

@@ -25,6 +25,7 @@ def test_a_corner_is_rounded_with_its_radius(dialect: str) -> None:
     assert [int(k) for k in program.kind] == [0, 1, 2, 1]
     assert not program.clockwise[2]
     assert (program.v_f[1:] == program.v_f[1]).all()
+    assert program.turns.tolist() == [0, 0, 1, 0]
 
 
 def test_corners_of_any_angle_touch_both_cuts() -> None:

@@ -67,6 +67,12 @@ def test_holes_given_in_g91_go_on_as_they_were_given() -> None:
     assert not [f for f in program.findings if f.code == "cycle-heights"]
 
 
+def test_a_depth_given_anew_in_g90_is_that_of_holes_in_g91_too() -> None:
+    program = interpret("G21 G90 S9 M3 F9\nG0 X0 Y0 Z10\nG91 G81 X10 Z-8 R-6\nG90 X20 Z-5\nG91 X10\nM2\n")
+    np.testing.assert_allclose(program.end[program.kind == 1, 2] * 1e3, [-4, -5, -5], atol=1e-9)
+    assert [f.line for f in program.findings if f.code == "cycle-heights"] == [5]
+
+
 def test_linuxcnc_adds_r_and_z_anew_where_it_is_stated() -> None:
     program = interpret("G21 G90 S9 M3 F9\nG0 Z10\nG98 G81 X0 Z-5 R2\nG91 X10\nM2\n", dialect="linuxcnc")
     np.testing.assert_allclose(program.end[program.kind == 1, 2] * 1e3, [-5, 7], atol=1e-9)
