@@ -92,12 +92,16 @@ def one_line(text: str) -> str:
 def put(text: str, stream: TextIO | None) -> None:
     """Write a text and see that it arrives: at the end of the process nobody could say what went wrong.
 
-    Whoever reads no further (``| head``) has what he wants. Raises RobomillError where nothing more can be written.
+    Whoever reads no further (``| head``) has what he wants. Raises RobomillError where nothing more can be written, and
+    where the stream is closed (``>&-``) and there is something to say.
     """
+    if stream is None:
+        if text:
+            raise RobomillError("standard output: it is closed, so nothing can be written; give it a place.")
+        return
     try:
-        if stream is not None:
-            stream.write(text)
-            stream.flush()
+        stream.write(text)
+        stream.flush()
     except BrokenPipeError:
         silence(stream)
     except OSError as exc:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, as_floats, brief, check_place
+from robomill.arrays import NO_NUMBERS, BoolArray, FloatArray, as_floats, brief, check_place
 from robomill.errors import SetupError
 from robomill.kinematics.asked import longest_reach
 from robomill.kinematics.transforms import rotation_z, transform
@@ -18,7 +18,7 @@ from robomill.quantities import Quantity
 from robomill.simulation.setup import SimulationSetup
 from robomill.spelled import one_of
 from robomill.surface.stock import Stock
-from robomill.units import format_many, from_si, to_si
+from robomill.units import SI_NAMES, format_many, from_si, to_si
 
 AROUND = 0.15  # of the arm's length, all links in a row: how far to each side of today's place where no box is given
 FULL_TURN = 2.0 * np.pi
@@ -121,6 +121,7 @@ def area(setup: SimulationSetup, asked: dict[str, Any]) -> Area:
         plain, in_unit = asked.get(declared.name), asked.get(declared.key)
         if plain is None and in_unit is None:
             continue
+        _in_order(declared, *((plain, SI_NAMES[declared.unit]) if in_unit is None else (in_unit, declared.unit)))
         given = one_of(declared, plain, in_unit, SetupError, WHO)
         lower[i], upper[i] = _range(declared, given, plain if in_unit is None else in_unit)
     if max(abs(lower[3]), abs(upper[3])) > 2.0 * FULL_TURN:
@@ -144,6 +145,20 @@ def _doubts(least: float, most: float) -> tuple[Finding, ...]:
     return (Finding("suspicious", words, code="unit-doubt"),)
 
 
+def _in_order(declared: Quantity, as_given: Any, unit: str) -> None:
+    """Refuse two bounds, numbers of ``unit``, that are turned: before their size, which may be right, is looked at."""
+    try:
+        found = np.asarray(as_given, dtype=np.float64)
+    except NO_NUMBERS:
+        return  # which is refused as what it is
+    if found.shape == (2,) and found[0] > found[1]:
+        ends = format_many(to_si(found, unit), unit, 2, " to ")
+        raise SetupError(
+            f"{WHO}, {declared.name}: the bounds contradict each other, {ends}; give the smaller one first.",
+            where=declared.name,
+        )
+
+
 def _range(declared: Quantity, given: Any, as_given: Any) -> FloatArray:
     """Least and largest (2,) of what is ``given`` in SI; one number stands for both."""
     name = f"{WHO}, {declared.name}"
@@ -155,11 +170,6 @@ def _range(declared: Quantity, given: Any, as_given: Any) -> FloatArray:
             f"{name}: expected two numbers, the least and the largest, or one to hold it there; found "
             f"{brief(as_given, 40)}.",
             where=declared.name,
-        )
-    if found[0] > found[1]:
-        ends = format_many(found, declared.unit, 2, " to ")
-        raise SetupError(
-            f"{name}: the bounds contradict each other, {ends}; give the smaller one first.", where=declared.name
         )
     if declared.unit == "mm":
         check_place(found, name, SetupError)

@@ -17,7 +17,8 @@ from robomill.kinematics.transforms import world_from_pose
 from robomill.lazy import cached_property
 from robomill.progress import slices
 from robomill.robot.model import Robot
-from robomill.units import format_count, format_si, from_si, to_si
+from robomill.spelled import beside
+from robomill.units import format_count, format_many, format_si, from_si, to_si
 from robomill.values import Tabled
 
 Mode = Literal["position", "axis", "pose"]
@@ -86,7 +87,15 @@ class IKResult(Tabled):
         """Why the pose at ``index`` of the batch is not reached, in words; "" if it is."""
         if bool(self.reached[index]):
             return ""
-        return explain(self, self.T_MT[index], float(self.residual[index]))
+        return explain(self, self.T_MT[index], float(self.residual[index])) + _in_degrees(self.T_MT[index])
+
+
+def _in_degrees(T_MT: FloatArray) -> str:
+    """What to ask of a pose (4, 4) that is not reached where its tilts are round numbers of radians; else ""."""
+    tilts = world_from_pose(T_MT)[3:]
+    if beside() or not tilts.any() or not np.allclose(np.round(tilts, 1), tilts, rtol=0.0, atol=1e-9):
+        return ""
+    return f"; A and B are {format_many(tilts, 'deg', 1, ' and ')} here: were they given in degrees, not in rad?"
 
 
 def explain(result: IKResult, T_MT: FloatArray, residual: float) -> str:

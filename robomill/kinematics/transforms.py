@@ -13,9 +13,11 @@ from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.quantities import Quantity
-from robomill.spelled import refuse_slip
+from robomill.spelled import beside, refuse_slip
+from robomill.units import format_si
 from robomill.vectors import angle_between
 
+QUARTER = 0.5 * np.pi
 UNIT = 1e-6  # to which the axes of a pose are unit and square, as files and controllers round them
 TILT_A, TILT_B = (Quantity(name, "deg", name=name, key="", slip=2.0 * np.pi) for name in "AB")
 
@@ -107,7 +109,7 @@ def pose_from_world(x_M: ArrayLike) -> FloatArray:
     Raises
     ------
     KinematicsError
-        Where x_M is not finite or has not 5 entries, and for tilts in degrees.
+        Where x_M is not finite or has not 5 entries, for B beyond a quarter turn, and for tilts in degrees.
 
     Examples
     --------
@@ -117,8 +119,30 @@ def pose_from_world(x_M: ArrayLike) -> FloatArray:
     """
     x_M = as_floats(x_M, "x_M", (5,), error=KinematicsError)
     for declared, angle in ((TILT_A, x_M[..., 3]), (TILT_B, x_M[..., 4])):
-        refuse_slip(declared, angle.flat[np.argmax(np.abs(angle))] if angle.size else 0.0, KinematicsError, "Pose")
+        worst = float(angle.flat[np.argmax(np.abs(angle))]) if angle.size else 0.0
+        refuse_slip(declared, worst, KinematicsError, "Pose")
+        _refuse_degrees(declared, worst)
     return transform(rotation_x(x_M[..., 3]) @ rotation_y(x_M[..., 4]), x_M[..., :3])
+
+
+def _refuse_degrees(declared: Quantity, angle: float) -> None:
+    """Refuse a tilt (rad) that was certainly meant in degrees: B ends at a quarter turn, and beyond one nobody states A
+    in whole or half radians."""
+    ends = declared is TILT_B and abs(angle) > QUARTER + 1e-9
+    if not ends and (abs(angle) <= QUARTER or 2.0 * angle != round(2.0 * angle)):
+        return
+    said = format_si(angle, "deg", 1)
+    if beside():
+        raise KinematicsError(
+            f"Pose, {declared.name}: found {said}; expected -90° to 90°: where the tool leans further, A turns by 180°.",
+            where=declared.name,
+        )
+    least = "B runs from -pi/2 to pi/2" if ends else f"which is {said}"
+    raise KinematicsError(
+        f"Pose, {declared.name}: found {angle:g} rad; {least}. If {angle:g}° is meant, give np.radians({angle:g}); "
+        f"if {said} is, give {'A turned by pi, and B as pi less that' if ends else 'it from degrees, by np.radians'}.",
+        where=declared.name,
+    )
 
 
 @asked

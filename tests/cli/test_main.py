@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -185,6 +186,18 @@ def test_a_place_that_cannot_be_written_to_is_a_sentence() -> None:
     assert done.stderr == (
         "robomill: standard output: cannot be written (No space left on device); give it another place.\n"
     )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no shell that closes a stream")
+def test_a_closed_standard_output_is_a_sentence_and_no_success() -> None:
+    """Python has no stream at all then, and what is written to none would be lost without a word."""
+    for words, shell in (("robots", ">&-"), ("pose slavkovic_5r --theta-deg 0,0,0,0,0 --json", ">&-")):
+        command = f"{shlex.quote(sys.executable)} -m robomill {words} {shell}"
+        done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=60, check=False)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr == "robomill: standard output: it is closed, so nothing can be written; give it a place.\n"
+    done = subprocess.run(["sh", "-c", f"{command} 2>&-"], timeout=60, check=False)
+    assert done.returncode == 2
 
 
 def test_a_refusal_that_nobody_can_hear_keeps_its_code() -> None:

@@ -50,6 +50,7 @@ def test_a_cut_that_stays_out_of_tolerance_exits_1(capsys: pytest.CaptureFixture
     ("words", "said"),
     [
         (("--x", "300:-300"), "the bounds contradict each other"),
+        (("--x", "1:0"), "the bounds contradict each other"),
         (("--x", "a:b"), "--x: expected low:high or one number, found 'a:b'"),
         (("--x", "1:2:3"), "--x: expected low:high"),
         (("--keep-out", "0,0,0"), "--keep-out: expected X,Y,Z:X,Y,Z"),

@@ -96,6 +96,8 @@ def test_a_full_turn_has_no_place_twice() -> None:
             {"x_mm": (300, -300)},
             "Placement, x: the bounds contradict each other, 300.00 to −300.00 mm",
         ),
+        ({"x_mm": [1, 0]}, "Placement, x: the bounds contradict each other, 1.00 to 0.00 mm"),
+        ({"x": np.array([0.3, -0.3])}, "Placement, x: the bounds contradict each other, 0.30 to −0.30 m; give the"),
         ({"y_mm": (1, 2, 3)}, "the least and the largest, or one to hold it there; found (1, 2, 3)."),
         ({"x": (-100, 100)}, "Placement, x: found -100 m, expected at most 20: a name alone is in m"),
         ({"x_mm": (-0.3, 0.3)}, "x_mm is in mm. If 0.3 m is meant"),

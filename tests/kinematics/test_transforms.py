@@ -86,3 +86,38 @@ def test_a_matrix_that_is_no_pose_is_refused(T) -> None:
     for call in (rm.world_from_pose, partial(rm.inverse_kinematics, rm.load_robot("slavkovic_5r"))):
         with pytest.raises(rm.RobomillError, match="this is no pose"):
             call(T)
+
+
+@pytest.mark.parametrize("angle", [2, -3.0, 4, 5, -6, 2.5])
+def test_tilts_in_degrees_are_refused_where_nobody_means_radians(angle: float) -> None:
+    """Beyond a quarter turn B has no values, and A none that anybody states in whole or half radians."""
+    for x_M, name in (([0, -1.3, 0, angle, 0], "A"), ([0, -1.3, 0, 0, angle], "B")):
+        with pytest.raises(rm.RobomillError, match=f"Pose, {name}: found .* give np.radians"):
+            rm.pose_from_world([[0, -1.3, 0, 0, 0], x_M])
+    grid = rm.plane_grid("z", 0.0, (-0.1, -1.3, 0.0), (0.1, -1.2, 0.0), 0.1)
+    with pytest.raises(rm.RobomillError, match="Pose, A"):
+        rm.compliance_map(rm.load_robot("slavkovic_5r"), grid, angle, 0.0)
+
+
+def test_tilts_that_angles_in_degrees_lead_to_are_taken() -> None:
+    """All whole degrees of B, all tenths of A: their axes by the law of the tool's axis."""
+    for A in np.radians(np.arange(-3600, 3601) / 10.0).tolist():
+        assert rm.pose_from_world([0, 0, 0, A, 0])[1, 2] == pytest.approx(-np.sin(A), abs=1e-15)
+    for B in np.radians(np.arange(-90, 91)).tolist():
+        assert rm.pose_from_world([0, 0, 0, 0, B])[0, 2] == pytest.approx(np.sin(B), abs=1e-15)
+
+
+def test_a_pose_that_is_not_reached_asks_whether_round_tilts_are_degrees() -> None:
+    robot = rm.load_robot("slavkovic_5r")
+    robot = robot.replace(limits_deg=[(-90, 90), (-90, 90), (-90, 90), (-20, 20), (-100, 100)])
+
+    def asked(A: float, B: float) -> rm.IKResult:
+        return rm.inverse_kinematics(robot, rm.pose_from_world([0.0, -1.3, 0.0, A, B]))
+
+    found = asked(1.5, -1.0)
+    assert not found.reached
+    assert asked(*np.radians([1.5, -1.0])).reached
+    assert found.reason().endswith("; A and B are 85.9 and −57.3° here: were they given in degrees, not in rad?")
+    told = asked(*np.radians([85.9, -57.3]))  # the same, and nobody's slip
+    assert not told.reached
+    assert "in rad" not in told.reason()

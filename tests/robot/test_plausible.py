@@ -81,8 +81,8 @@ def test_what_comes_in_without_a_unit_is_doubted_beside_the_result() -> None:
     setup = rm.load_setup("paper_flute").replace(step_mm=10, cell_mm=0.5)
     for times, words in ((1e-3, "no arm's joints are as stiff"), (1e3, "no arm that mills is as soft")):
         result = rm.simulate(setup.replace(robot=setup.robot.replace(C_theta=times * setup.robot.C_theta)))
-        assert [note for note in result.notes if note.code == "unit-doubt" and words in note.message]
-    assert not [note for note in rm.simulate(setup).notes if note.code == "unit-doubt"]
+        assert [note for note in result.notes if note.code == "unit-slip" and words in note.message]
+    assert not [note for note in rm.simulate(setup).notes if note.code in ("unit-doubt", "unit-slip")]
 
 
 # Lengths between the joints (m) and torques (N m) of URDF descriptions by others (kroshu/kuka_robot_descriptions), with

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robomill.simulation.judging.seen import Run
+from robomill.simulation.origin.doubts import unit_slips
 from robomill.surface.stock_unit import OUTSIDE, unit_doubt
 from robomill.units import format_count, format_si
 
@@ -21,8 +22,8 @@ NONE = Premise("", "")
 
 def premise(result: Run, left: bool) -> Premise:
     """What pushes the tool, where that was stated for another path; how much joints give of which nobody has said it;
-    the unit of a stock that hardly holds the path and of which nothing is ``left`` to measure; flutes that nobody has
-    counted, where the force follows them."""
+    numbers that were certainly meant in another unit; the unit of a stock that hardly holds the path and of which
+    nothing is ``left`` to measure; flutes that nobody has counted, where the force follows them."""
     setup = result.setup
     if result.worst < 0:
         return NONE
@@ -31,6 +32,9 @@ def premise(result: Run, left: bool) -> Premise:
     if setup.robot.assumes_compliances and setup.measured_map is None:
         asked = "Nobody has given the compliances of this arm's joints: not judged."
         return Premise("if its joints give as much as is assumed", asked)
+    slips = unit_slips(setup, result.path, result.F[result.judged & result.conditions.engaged])
+    if slips:
+        return Premise("if its numbers are in their units", f"{slips[0].message} Not judged.")
     if not left and _outside(result):
         asked = "The path hardly touches the stock, which would hold it in another unit: not judged."
         return Premise("if the unit of the stock is right", asked)

@@ -19,6 +19,7 @@ from robomill.toolpath.path import Toolpath
 from robomill.units import format_count, format_many, format_short, format_si
 
 CODE, OTHERS, FRAME = "unit-doubt", "other-compliances", "tool-frame"
+SLIP = "unit-slip"  # what nobody means: by such numbers nothing is judged
 THIN = 0.6e-3  # m: the widest cutter there is, with its metres taken for mm
 SMALL_PATH, NEAR, SHORT_TOOL = 2e-3, 0.05, 2e-3  # m
 SLIGHT, HEAVY = 1.0, 20e3  # N: hardly a cut pushes less, or more
@@ -31,7 +32,39 @@ def unit_doubts(setup: SimulationSetup, path: Toolpath, F: FloatArray, pushed: B
     """What looks like another unit, for F (m, 3) N and the steps ``pushed`` (m,) that are judged and cut."""
     told = [*_of_sizes(setup, path), *_of_robot(setup.robot, setup.T_MW[:3, 3])]
     told += [*_of_springs(setup), *_of_force(setup, F[pushed]), *_of_feed(setup, path, pushed)]
-    return tuple(Finding("suspicious", text, code=CODE) for text in told)
+    doubts = tuple(Finding("suspicious", text, code=CODE) for text in told)
+    return unit_slips(setup, path, F[pushed]) + doubts
+
+
+def unit_slips(setup: SimulationSetup, path: Toolpath, F: FloatArray) -> tuple[Finding, ...]:
+    """What was certainly meant in another unit, though each number by itself may be given; F (k, 3) N where it cuts."""
+    told = [*_of_joints(setup), *_of_a_speck(setup, path), *_of_no_push(setup, F)]
+    return tuple(Finding("suspicious", text, code=SLIP) for text in told)
+
+
+def _of_joints(setup: SimulationSetup) -> Iterator[str]:
+    """Joints as stiff or soft as no arm's are, where they count."""
+    robot = setup.robot
+    doubt = "" if robot.assumes_compliances or setup.measured_map is not None else hardly_an_arm(robot)
+    if doubt:
+        yield f"The joints: {doubt}: were their stiffnesses or compliances given in another unit?"
+
+
+def _of_a_speck(setup: SimulationSetup, path: Toolpath) -> Iterator[str]:
+    """A path that goes somewhere across its tool, and nowhere so far as to need one."""
+    low, high = path.p.min(axis=0), path.p.max(axis=0)
+    way = path.p - path.p[:1]
+    across = np.abs(way - np.einsum("mi,mi->m", way, path.k)[:, None] * path.k).max()  # a plunge by itself may be short
+    if path.cutting.any() and across > 1e-6 and (high - low).max() < min(SMALL_PATH, setup.cutter.diameter):
+        size = format_many(high - low, "mm", 2, between=" × ")
+        yield f"The whole path lies within {size}, less than the cutter is wide: were its points given in m?"
+
+
+def _of_no_push(setup: SimulationSetup, F: FloatArray) -> Iterator[str]:
+    """A force, stated by a person, as small as no cut's; none at all is a person's wish."""
+    largest = float(np.nan_to_num(np.linalg.norm(F, axis=1)).max(initial=0.0))
+    if not setup.force.follows_cut and 0.0 < largest < SLIGHT:
+        yield f"Force: it never exceeds {format_short(largest, 'N')}, less than any cut: was it given in kN?"
 
 
 def known_notes(setup: SimulationSetup) -> tuple[Finding, ...]:
@@ -65,19 +98,13 @@ def _of_sizes(setup: SimulationSetup, path: Toolpath) -> Iterator[str]:
     if diameter < THIN:
         yield f"The cutter is {format_short(diameter, 'mm')} wide: was its diameter given in m?"
     low, high = path.p.min(axis=0), path.p.max(axis=0)
-    if path.cutting.any() and (high - low).max() < min(SMALL_PATH, diameter):
-        size = format_many(high - low, "mm", 2, between=" × ")
-        yield f"The whole path lies within {size}, less than the cutter is wide: were its points given in m?"
     if (high - low).max() > 2.0 * (reach := longest_reach(setup.robot)):
         size = format_si(float((high - low).max()), "m", 1)
         yield f"The path is {size} long, more than the arm reaches ({format_si(reach, 'm', 1)}): are its points in mm?"
 
 
 def _of_robot(robot: Robot, zero: FloatArray) -> Iterator[str]:
-    """Where the part lies, the tool, and how stiff the joints are."""
-    doubt = "" if robot.assumes_compliances else hardly_an_arm(robot)
-    if doubt:
-        yield f"The joints: {doubt}: were their stiffnesses or compliances given in another unit?"
+    """Where the part lies, and the tool."""
     chain = robot.chain
     off = zero - chain.T_0[:3, 3]
     from_axis = float(np.linalg.norm(np.cross(off, chain.T_0[:3, 2])))
@@ -108,12 +135,8 @@ def _of_springs(setup: SimulationSetup) -> Iterator[str]:
 
 def _of_force(setup: SimulationSetup, F: FloatArray) -> Iterator[str]:
     """A force that a person states; one from the material follows from it."""
-    if setup.force.follows_cut or not len(F):
-        return
-    largest = float(np.nan_to_num(np.linalg.norm(F, axis=1)).max())
-    if 0.0 < largest < SLIGHT:
-        yield f"Force: it never exceeds {format_short(largest, 'N')}, less than any cut: was it given in kN?"
-    elif largest > HEAVY:
+    largest = float(np.nan_to_num(np.linalg.norm(F, axis=1)).max(initial=0.0))
+    if not setup.force.follows_cut and largest > HEAVY:
         yield f"Force: it grows to {format_short(largest, 'N')}, more than any robot mills with: is it in N?"
 
 

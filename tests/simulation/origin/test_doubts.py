@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.simulation.origin.doubts import CODE, FRAME, frame_notes
+from robomill.simulation.origin.doubts import CODE, FRAME, SLIP, frame_notes
 
 SLOT = {"p_mm": [[-20, 0, -2], [20, 0, -2]], "feed_mm_min": 1800}
 
@@ -24,7 +24,10 @@ def doubted(**changes: Any) -> list[str]:
         "part_zero_mm": [0, -1300, 0],
     }
     result = rm.simulate(rm.SimulationSetup(**{**given, **changes}))
-    return [note.message for note in result.notes if note.code == CODE]
+    slips = [note.message for note in result.notes if note.code == SLIP]
+    assert (result.verdict.level == "unjudged") == bool(slips)
+    assert all(words in result.verdict.sentence for words in slips)
+    return [*slips, *(note.message for note in result.notes if note.code == CODE)]
 
 
 def test_a_plain_slot_is_not_doubted() -> None:
@@ -34,7 +37,7 @@ def test_a_plain_slot_is_not_doubted() -> None:
 
 @pytest.mark.parametrize("sample", ["paper_flute", "heart"])
 def test_no_sample_is_doubted(sample: str) -> None:
-    assert CODE not in {note.code for note in rm.simulate(rm.load_setup(sample)).notes}
+    assert not {CODE, SLIP} & {note.code for note in rm.simulate(rm.load_setup(sample)).notes}
 
 
 @pytest.mark.parametrize(
@@ -56,6 +59,20 @@ def test_no_sample_is_doubted(sample: str) -> None:
 def test_what_looks_like_another_unit_is_said(changes: dict[str, Any], words: str) -> None:
     (said,) = doubted(**changes)
     assert re.search(words.replace("?", "\\?"), said), said
+
+
+@pytest.mark.parametrize("times", [1e-3, 1e3])
+def test_by_joints_that_no_arm_has_nothing_is_judged(times: float) -> None:
+    """Their numbers are told, and no colour: a thousand times as stiff is N m/rad taken for kN m/rad."""
+    robot = rm.load_robot("slavkovic_5r")
+    (said,) = doubted(robot=robot.replace(C_theta=times * robot.C_theta))
+    assert said.startswith("The joints: no arm")
+    assert doubted(robot=robot.replace(C_theta=np.zeros(5))) == []  # rigid joints are a wish, and a force of none
+    assert doubted(force=rm.ConstantForce([0, 0, 0])) == []
+
+
+def test_a_short_plunge_by_itself_is_no_slip() -> None:
+    assert doubted(source=rm.Toolpath.from_points(p_mm=[[0, 0, 0], [0, 0, -1.5]], feed_mm_min=300)) == []
 
 
 def six(**more: Any) -> rm.Robot:
