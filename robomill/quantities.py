@@ -291,7 +291,15 @@ def _whole(declared: Quantity, value: Any, error: type[RobomillError], who: str)
             return int(number)
     except NO_NUMBERS:
         pass
-    raise declared._refusal(brief(value, 40), error, who)
+    raise error(
+        f"{declared.said_of(who)}: found {brief(value, 40)}; expected a whole number{_between(declared)}.",
+        where=declared.name,
+    )
+
+
+def _between(declared: Quantity) -> str:
+    bounds = declared.expected
+    return "" if bounds.startswith("a whole number") else f", {bounds}"
 
 
 def _switch(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> bool:

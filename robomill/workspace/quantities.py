@@ -6,6 +6,7 @@ one more ``MapQuantity`` in one of the lists below.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import Literal
 
 import numpy as np
@@ -87,7 +88,9 @@ def map_quantity(robot: Robot, name: str) -> MapQuantity:
     known = map_quantities(robot).get(name.replace("zy", "yz").replace("zx", "xz").replace("yx", "xy"))
     if known is None:
         names = [f[0].name if len(f) == 1 else f"{f[0].name} ... {f[-1].name}" for f in _families(robot)]
-        raise WorkspaceError(f"Quantity {name!r}: expected {', '.join(names[:-1])} or {names[-1]}.")
+        close = get_close_matches(name, map_quantities(robot), 1, 0.7)
+        meant = f"; did you mean {close[0]!r}?" if close else "."
+        raise WorkspaceError(f"Quantity {name!r}: expected {', '.join(names[:-1])} or {names[-1]}{meant}")
     return known
 
 

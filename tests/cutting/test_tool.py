@@ -77,7 +77,7 @@ def test_title():
     [
         ({"kind": "saw"}, f"Cutter, Kind: found 'saw'; expected {' or '.join(', '.join(FAMILIES).rsplit(', ', 1))}."),
         ({"flutes": 0}, "Cutter, Flutes: found 0; expected 1 to 100."),
-        ({"flutes": 2.5}, "Flutes: found 2.5; expected 1 to 100"),
+        ({"flutes": 2.5}, "Flutes: found 2.5; expected a whole number, 1 to 100"),
         ({"flutes": 100_000}, "Flutes: found 100\u202f000; expected 1 to 100"),
         ({"flutes": "three"}, "Flutes: found 'three'"),
         ({"flutes": math.inf}, "Flutes: found inf"),

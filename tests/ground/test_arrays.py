@@ -7,9 +7,10 @@ from hashlib import sha256
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from robomill.arrays import as_floats, check_place, digest, frozen, sealed
+from robomill.arrays import as_floats, brief, check_place, digest, frozen, sealed
 from robomill.errors import RobomillError, RobotError
 
 
@@ -20,6 +21,16 @@ def test_as_floats_says_what_was_found() -> None:
         as_floats([[1, np.nan]], "limits", (None, 2), error=RobotError)
     with pytest.raises(RobotError, match="expected numbers"):
         as_floats("abc", "limits", (None, 2), error=RobotError)
+
+
+def test_what_has_no_short_words_of_its_own_is_named_by_its_kind() -> None:
+    with pytest.raises(RobotError, match=r"^theta: expected numbers, found a generator, which is read once only: give "):
+        as_floats((0.0 for _ in range(3)), "theta", (3,), error=RobotError)
+    with pytest.raises(RobotError, match=r"^theta: expected numbers, found None\.$"):
+        as_floats(None, "theta", (3,), error=RobotError)
+    assert brief(pd.DataFrame({"a": [1, 2]})) == "a DataFrame"
+    assert brief(object()) == "an object"
+    assert brief([1, 2]) == "[1, 2]"
 
 
 def test_frozen_arrays_cannot_be_written() -> None:
