@@ -23,6 +23,9 @@ class cached_property(Generic[T]):  # noqa: N801 - the field's name for it
     def __init__(self, make: Callable[[Any], T]) -> None:
         self._make, self.__doc__ = make, make.__doc__
 
+    def __repr__(self) -> str:
+        return "<computed when it is first asked for>"  # as help() shows it
+
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
 

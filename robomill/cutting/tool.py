@@ -223,6 +223,7 @@ class Cutter(Value):
 
     @property
     def family(self) -> Family:
+        """What cutters of its kind have in common: profile, name, whether they drill."""
         return FAMILIES[self.kind]
 
     @property

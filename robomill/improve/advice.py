@@ -119,7 +119,7 @@ class Advice(Tabled):
 
 
 @asked
-def advise(setup: SimulationSetup, run: Simulate = simulate) -> Advice:
+def advise(setup: SimulationSetup, run: Simulate | None = None) -> Advice:
     """The same part cut otherwise: the largest feed that keeps the tolerance, the other way round, in passes, with a
     last pass for what roughing leaves, and once more.
 
@@ -127,8 +127,8 @@ def advise(setup: SimulationSetup, run: Simulate = simulate) -> Advice:
     ----------
     setup : SimulationSetup
         The cut. Its force has to follow the cut; the material that is left is used for it (``engagement``).
-    run : callable
-        What simulates a set-up; another one may keep results.
+    run : callable, optional
+        What simulates a set-up and may keep results; left out it is ``rm.simulate``.
 
     Returns
     -------
@@ -161,6 +161,7 @@ def advise(setup: SimulationSetup, run: Simulate = simulate) -> Advice:
         )
     if not setup.engagement:
         setup = setup.replace(engagement=True, provenance=setup.provenance)
+    run = run or simulate
     now = run(setup)
     if now.verdict.level in ("unjudged", "unreached", "missed"):
         raise SetupError(f"There is no number to improve: {now.verdict.sentence}")

@@ -92,10 +92,12 @@ class Compensation(Tabled):
 
     @property
     def iterations(self) -> int:
+        """Runs that it took, each from where the one before had sent the tool."""
         return len(self.change)
 
     @property
     def lines_out(self) -> int:
+        """Lines of the corrected program."""
         return len(self.text.splitlines())
 
     @property

@@ -83,6 +83,7 @@ class Design(Tabled):
 
     @property
     def feasible(self) -> bool:
+        """Whether the tolerance can be kept; if not, ``reason`` says why."""
         return not self.reason
 
     @property

@@ -131,10 +131,12 @@ class SimulationResult(Tabled):
 
     @property
     def theta(self) -> FloatArray:
+        """(m, n) rad (m where a joint slides): the configurations, NaN where the pose is not reached."""
         return self.ik.theta
 
     @property
     def reached(self) -> BoolArray:
+        """(m,) points that the arm reaches."""
         return self.ik.reached
 
     @cached_property
@@ -166,6 +168,7 @@ class SimulationResult(Tabled):
 
     @property
     def max_deviation(self) -> float:
+        """m: the largest deviation at feed, NaN where nothing was reached."""
         return float(self.deviation[self.worst]) if self.worst >= 0 else float("nan")
 
     @cached_property

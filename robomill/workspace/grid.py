@@ -78,10 +78,12 @@ class Grid(Value):
 
     @property
     def shape(self) -> tuple[int, int, int]:
+        """(nx, ny, nz)."""
         return len(self.x), len(self.y), len(self.z)
 
     @property
     def cells(self) -> int:
+        """How many points it has."""
         return len(self.x) * len(self.y) * len(self.z)
 
     def points(self) -> FloatArray:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import robomill as rm
+from robomill.lazy import cached_property
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ast.parse((ROOT / "robomill" / "__init__.py").read_text())
@@ -64,3 +65,16 @@ def written_down(cls: type) -> set[str]:
 @pytest.mark.parametrize("cls", IN_UNITS, ids=lambda cls: cls.__name__)
 def test_what_a_type_checker_is_told_is_what_the_constructor_takes(cls: type) -> None:
     assert written_down(cls) == {*inspect.signature(cls).parameters}
+
+
+@pytest.mark.parametrize("name", rm.__all__)
+def test_help_shows_what_is_asked_and_what_each_part_is(name: str) -> None:
+    """No address of a function as a default, and no method or property without a word."""
+    found = getattr(rm, name)
+    assert " at 0x" not in str(inspect.signature(found))
+    if not inspect.isclass(found):
+        return
+    for part, value in vars(found).items():
+        made = inspect.isroutine(value) or isinstance(value, property | cached_property | classmethod)
+        if not part.startswith("_") and made:
+            assert inspect.getdoc(getattr(found, part)), f"{name}.{part}"

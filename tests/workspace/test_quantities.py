@@ -210,3 +210,8 @@ def test_what_a_rigid_joint_does_to_direct_and_to_cross_terms():
             np.testing.assert_allclose(known.values(f"share_C_{c}_{joint + 1}"), vanished, atol=1e-12)
         larger += int((np.abs(rigid.values("C_xy")) > np.abs(known.values("C_xy")) + 1e-12).sum())
     assert larger > 0
+
+
+def test_a_quantity_that_was_meant_is_named() -> None:
+    with pytest.raises(WorkspaceError, match=r"^Quantity 'Cyy': expected reach, .*; did you mean 'C_yy'\?$"):
+        map_quantity(rm.load_robot("slavkovic_5r"), "Cyy")

@@ -103,6 +103,7 @@ class Verdict(Value):
 
     @property
     def red(self) -> bool:
+        """Whether the part is out of tolerance, or nothing or not all of it can be judged."""
         return self.level in RED
 
     def _said(self) -> str:
