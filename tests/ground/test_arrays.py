@@ -24,7 +24,7 @@ def test_as_floats_says_what_was_found() -> None:
 
 
 def test_what_has_no_short_words_of_its_own_is_named_by_its_kind() -> None:
-    with pytest.raises(RobotError, match=r"^theta: expected numbers, found a generator, which is read once only: give "):
+    with pytest.raises(RobotError, match="^theta: expected numbers, found a generator, which is read once only"):
         as_floats((0.0 for _ in range(3)), "theta", (3,), error=RobotError)
     with pytest.raises(RobotError, match=r"^theta: expected numbers, found None\.$"):
         as_floats(None, "theta", (3,), error=RobotError)
