@@ -134,7 +134,7 @@ def _refuse_degrees(declared: Quantity, angle: float) -> None:
     said = format_si(angle, "deg", 1)
     if beside():
         raise KinematicsError(
-            f"Pose, {declared.name}: found {said}; expected -90° to 90°: where the tool leans further, A turns by 180°.",
+            f"Pose, {declared.name}: found {said}; expected -90° to 90°: where it leans further, A turns by 180°.",
             where=declared.name,
         )
     least = "B runs from -pi/2 to pi/2" if ends else f"which is {said}"
