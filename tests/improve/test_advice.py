@@ -30,6 +30,7 @@ def test_the_largest_feed_keeps_the_tolerance_and_a_hundredth_more_does_not(advi
         )
         assert (run.verdict.share <= 1.0) == kept
     assert found.seconds == pytest.approx(way(advice, "now").seconds / found.factor)
+    assert {each.factor for each in advice.ways if each.name != "feed"} == {1.0}
 
 
 def test_two_passes_are_two_programs_lines_one_after_the_other(advice: rm.Advice) -> None:

@@ -126,6 +126,9 @@ def test_what_belongs_to_a_joint_goes_with_it() -> None:
         np.testing.assert_array_equal(getattr(fewer, name), getattr(robot, name)[order])
     np.testing.assert_array_equal(fewer.compliance_sets["first"], robot.compliance_sets["first"][order])
     assert fewer.provenance["geometry"].kind == "user"
+    assert fewer.provenance["geometry"].source.endswith("; joints were taken out")
+    turned = with_joints(robot, [4, 3, 2, 1, 0])
+    assert turned.provenance["geometry"].source.endswith("; joints were put in another order")
     same = rm.load_robot("slavkovic_5r")
     assert with_joints(same, range(5)) == same
 

@@ -87,3 +87,16 @@ def test_a_path_with_other_cuts_is_refused_by_their_number() -> None:
     )
     with pytest.raises(ToolpathError, match="2 cuts between rapids, and the program 1 cut"):
         places(cut((0, 0), (60, 0)), two)
+
+
+def test_a_plunge_at_feed_belongs_to_the_one_that_was_meant_at_the_same_height_above_its_end() -> None:
+    def plunged(x: float, deep: float) -> rm.Toolpath:
+        p = [(x, 0.0, 5.0), (x, 0.0, 1.0), (x, 0.0, -deep), (40.0, 0.0, -deep)]
+        return rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0.0, 0.0, 300.0, 600.0])
+
+    path = resample(plunged(0.02, 2.05), STEP)
+    found = meant(path, resample(plunged(0.0, 2.0), STEP), STEP)
+    plunge = path.cutting & (np.abs(path.p[:, 0] - 0.02e-3) < 1e-9)
+    assert plunge.sum() > 2
+    np.testing.assert_allclose(found.p[plunge, :2], 0.0, atol=1e-9)
+    np.testing.assert_allclose(found.p[plunge, 2], np.minimum(path.p[plunge, 2] + 0.05e-3, 1e-3), atol=1e-9)

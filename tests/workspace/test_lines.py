@@ -22,3 +22,13 @@ def test_the_force_of_the_lines_is_that_of_the_papers_slot() -> None:
     robot = rm.load_robot("slavkovic_5r")
     unasked, one = (lines[4] for lines in (border_and_middle_lines(robot), border_and_middle_lines(robot, force=1.0)))
     np.testing.assert_allclose(unasked.delta_joint, 100.0 * one.delta_joint, rtol=1e-12, atol=0.0)
+
+
+def test_the_force_of_a_line_pushes_to_its_left_and_moves_the_tool_by_what_it_gives() -> None:
+    robot, turn = rm.load_robot("slavkovic_5r"), 0.6
+    start = np.array([-0.1, -1.3, 0.0])
+    line = line_deviation(robot, start, start + 0.1 * np.array([np.cos(turn), np.sin(turn), 0.0]), force=80.0, points=4)
+    pushed = 80.0 * np.array([-np.sin(turn), np.cos(turn), 0.0])
+    np.testing.assert_allclose(line.F, pushed, atol=1e-12)
+    C = rm.cartesian_compliance(robot, line.ik.theta)
+    np.testing.assert_allclose(line.delta_joint.sum(axis=-2), C @ pushed, rtol=1e-9)

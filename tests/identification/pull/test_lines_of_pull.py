@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.identification.pull.lines_of_pull import lines_of_pull
+from robomill.identification.pull.lines_of_pull import _Lines, lines_of_pull
 from robomill.identification.pull.pull_words import load_point, pull_findings
 from robomill.identification.record import identification_record, lines_of_pull_record
 from robomill.io.samples import samples_dir
@@ -54,6 +54,19 @@ def test_pulleys_and_load_point_are_found_from_exact_lines(count):
     assert found.gap.max() < 1e-6
     assert np.median(found.gap_stated) > 0.05
     assert found.suspects == found.pushes == ()
+
+
+def test_the_way_to_a_pulley_is_the_cable_from_where_it_really_pulls():
+    rig = Rig()
+    tests = read(make(ARM, rig, 12, seed=1), rig)
+    pulley, shift = np.array(rig.pulleys), -ARM.T_FT[:3, :3].T @ OFF
+    point = np.array([flange[:3, :3] @ rig.load_point + flange[:3, 3] for *_, flange in map(ARM.frames, tests.theta)])
+    for k in range(len(pulley)):
+        to, u = pulley[k] - point, tests.wrench[:, :3] / np.linalg.norm(tests.wrench[:, :3], axis=1)[:, None]
+        along = np.linalg.norm(to, axis=1) * np.cos(
+            np.arctan2(np.linalg.norm(np.cross(u, to), axis=1), (u * to).sum(1))
+        )
+        np.testing.assert_allclose(_Lines(ROBOT, tests).ways(shift, pulley, np.full(12, k)), along, atol=1e-6)
 
 
 @pytest.mark.slow

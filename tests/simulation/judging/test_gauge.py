@@ -486,3 +486,15 @@ def test_the_histogram_of_a_straight_slot_is_its_two_walls_and_its_floor():
     assert found.walls.histogram(edges / 4)[-1] == walls[-1], "what is beyond is in the outer bin"
     for each, area in ((found.walls, walls.sum()), (found.floors, floors.sum())):
         assert each.squares == pytest.approx(each.error[0] ** 2 * area), "the same error all along"
+
+
+def test_an_error_goes_with_the_tip_as_its_way_says():
+    """By differences: the same slot, which ends in the block, pushed along, to the left and up by 1 um."""
+    slot = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X3 F600", "G0 Z5")
+    still = gauge(pushed(slot))
+    assert all(len(kind.error) for kind in (still.walls, still.floors, still.ends))
+    for axis, name in enumerate(("along", "left", "up")):
+        moved = gauge(pushed(slot, **{name: 1e-6}))
+        for before, after in zip((still.walls, still.floors, still.ends), (moved.walls, moved.floors, moved.ends)):
+            np.testing.assert_array_equal(before.sample, after.sample)
+            np.testing.assert_allclose(after.error - before.error, 1e-6 * before.way[:, axis], atol=2e-8)

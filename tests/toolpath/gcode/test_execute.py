@@ -66,3 +66,8 @@ def test_a_point_is_kept_where_it_is_when_units_come_back() -> None:
 def test_diameters_are_halved_until_radii_count_again() -> None:
     program = interpret("G21 G90 G7\nG0 X30 Z1\nX20\nG8 X12\nG7 X12\nM2\n")
     assert program.end[:, 0] * 1e3 == pytest.approx([15, 10, 12, 6])
+
+
+def test_no_input_is_ever_read_and_5399_says_so():
+    """LinuxCNC: #5399 is -1 where an input was waited for in vain."""
+    assert interpret("G21\nG0 X5\nM66 P0 L0\nG0 X#5399\nM2\n").end[:, 0].tolist() == pytest.approx([5e-3, -1e-3])
