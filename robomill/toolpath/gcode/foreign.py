@@ -3,7 +3,7 @@
 import re
 
 _LEFT_OUT = re.compile(r"\([^()]*\)|;.*|<[^>]*>")
-_WORD = re.compile(r"([a-z_]{2,})\d*")
+_WORD = re.compile(r"([a-z_]{2,})\d*(?:dc?[cf]?\b)?")
 _VARIABLE = re.compile(r"(?:\d*n\d+)?([a-z]+\d*)$")
 
 LANGUAGES = {
@@ -18,7 +18,7 @@ LANGUAGES = {
     "Sinumerik": (
         "trans atrans rot arot scale ascale mirror amirror if else endif while endwhile for endfor repeat until loop "
         "endloop gotof gotob gotoc case call mcall extern proc ret def set cycle pocket slot holes longhole supa "
-        "workpiece transmit tracyl traori trafoof oriwks orimks stopre diamon diamof msg print",
+        "workpiece cut transmit tracyl traori trafoof oriwks orimks stopre diamon diamof msg print",
         "let the CAM system write the moves out, without swivels, pockets and variables of its own",
     ),
 }

@@ -200,7 +200,8 @@ class Parameters:
         elif key in READ_ONLY:
             raise GCodeError(f"#{key} is provided by the machine and cannot be set.")
         elif not 1 <= key < COUNT:
-            raise GCodeError(f"#{key} does not exist; parameters run from 1 to {COUNT - 1}.")
+            beyond = "those of a control beyond, such as tool offsets, cannot be set here: remove the line"
+            raise GCodeError(f"#{key} does not exist; parameters run from 1 to {COUNT - 1}, and {beyond}.")
         else:
             self.numbered[key] = value
 

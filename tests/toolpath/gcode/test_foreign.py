@@ -24,6 +24,7 @@ READ = {"GOTO", "TRANS", "ROT", "IF", "MCALL", "R1=", "X="}
         ("IF R1<5 GOTOF OUT", "IF", "Sinumerik"),
         ("MCALL CYCLE81(5,0,1)", "MCALL", "Sinumerik"),
         ("POCKET4(1,2)", "POCKET4", "Sinumerik"),
+        ("CUT3DC", "CUT3DC", "Sinumerik"),
         ("N7 R1=5", "R1=", "Sinumerik"),
         ("G1 X=R1", "X=", "Sinumerik"),
         ("TOOL CALL 1 Z S1000", "TOOL", "Heidenhain"),

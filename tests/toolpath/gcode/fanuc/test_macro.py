@@ -60,6 +60,10 @@ def test_a_control_cuts_to_the_whole_number_nearer_to_zero_or_farther_from_it(va
         ("WHILE [1 EQ 1] DO1\nX5\n", "Line 4: WHILE ... DO and END do not match here"),
         ("X1\nEND1\n", "Line 5: WHILE ... DO and END do not match here"),
         ("IF [#0 LT 1] GOTO 5\nN5\n", "#0 does not exist"),
+        (
+            "#13001=16.\n",
+            "parameters run from 1 to 5601, and those of a control beyond, such as tool offsets, cannot be set",
+        ),
         ("N5 X1\nGOTO 5\n", "loops took longer than 1.3 s after "),
     ],
 )
