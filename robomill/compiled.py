@@ -13,8 +13,7 @@ A kernel module is an ordinary module called ``kernels`` or ``*_kernels``, of pl
 
 The first call compiles what the cache on disk does not hold: correct, only slow. A program that talks to people says
 so: a command line by ``announce(print)``, a screen by ``missing()`` and ``build()``. ``python -m robomill.compiled``
-compiles everything. What is damaged in the cache is removed and compiled anew (``seals``); where nothing can be kept,
-code lives in memory only.
+compiles all. What is damaged in the cache is made anew (``seals``); where nothing can be kept, code lives in memory.
 """
 
 from __future__ import annotations
@@ -350,33 +349,32 @@ def _heal(folder: Path) -> None:
         seals.finish(folder, [name for name in seals.finished(folder) if not name.endswith(lost)])
 
 
-def build() -> None:
-    """Compile what is missing in a process of its own, which leaves this one's interpreter free; returns when done.
+def build(*names: str) -> None:
+    """Compile what is missing, of all or some, in a process of its own (this one stays small); returns when done.
 
-    Tried once: where no process can be had nothing is lost, kernels are then compiled as they are imported.
-    """
+    All are tried once: where no process can be had nothing is lost, kernels are compiled as they are imported."""
     global _tried
     with _building:
-        if _tried or not missing():
+        if _tried or not set(names or modules()) & set(missing()):
             return
-        _tried = True
+        _tried = not names
         there = {**os.environ, "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
+        command = [sys.executable, "-m", "robomill.compiled", *names]
         with suppress(OSError, subprocess.SubprocessError):
-            command = [sys.executable, "-m", "robomill.compiled"]
             subprocess.run(command, check=False, capture_output=True, timeout=600, env=there)
 
 
-def compile_all() -> None:
-    """Compile or load every kernel, and note that they are there."""
-    folder = kept_in()
-    for name in modules():
+def compile_all(names: tuple[str, ...] = ()) -> None:
+    """Compile or load every kernel, or those of some modules, and note that they are there."""
+    folder, names = kept_in(), names or modules()
+    for name in names:
         for entry in vars(import_module(name)).values():
             if folder is None or not _kept:
                 return  # whoever needs it compiles it
             if isinstance(entry, Kernel):
                 entry.code  # noqa: B018
     if folder is not None:
-        seals.finish(folder, modules())
+        seals.finish(folder, sorted({*seals.finished(folder), *names}))
 
 
 def announce(say: Callable[[str], Any] | None) -> None:
@@ -397,4 +395,6 @@ def _say() -> None:
 
 
 if __name__ == "__main__":
-    import_module("robomill.compiled").compile_all()  # this file by its own name: what it marks is known there
+    import_module("robomill.compiled").compile_all(
+        tuple(sys.argv[1:])
+    )  # this file by its own name: what it marks is known there

@@ -256,6 +256,30 @@ def test_building_compiles_in_another_process_and_notes_it(tmp_path, monkeypatch
     assert found.stdout.split("\n")[:2] == ["('robomill.room.kernels',) () 1", "8.0 1"], found.stderr
 
 
+def test_one_module_is_built_in_another_process_and_the_others_stay_missing(tmp_path):
+    package = tmp_path / "robomill"
+    (package / "room").mkdir(parents=True)
+    for name in ("compiled.py", "seals.py", "arrays.py", "errors.py", "lazy.py"):
+        (package / name).write_text((compiled.PACKAGE / name).read_text())
+    for place in (package, package / "room"):
+        (place / "__init__.py").write_text("")
+    for name, factor in (("kernels.py", 2.0), ("other_kernels.py", 3.0)):
+        source = (
+            f"from robomill.compiled import kernel\n@kernel\ndef times(x: float) -> float:\n    return {factor} * x\n"
+        )
+        (package / "room" / name).write_text(source)
+    code = (
+        "import sys; from robomill import compiled; compiled.build('robomill.room.kernels')\n"
+        "assert 'numba' not in sys.modules\n"
+        "print(compiled.missing())\n"
+        "from robomill.room.kernels import times; print(times(4.0), sum(times.code.stats.cache_hits.values()))\n"
+        "compiled.build(); print(compiled.missing())"
+    )
+    env = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, env=env)
+    assert found.stdout.split("\n")[:3] == ["('robomill.room.other_kernels',)", "8.0 1", "()"], found.stderr
+
+
 @pytest.fixture
 def fresh(monkeypatch):
     compiled.kept_in.cache_clear()

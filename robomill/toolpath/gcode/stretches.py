@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from robomill.compiled import build
 from robomill.toolpath.gcode.flow import Structure
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.program import Rows
@@ -47,6 +48,8 @@ class Stretches:
         """
         machine, recorder, began = self._machine, self._machine.recorder, thread_time()
         if self._kernels is None and max(len(lines), executed) >= (LOADED_LONG if _KERNELS in sys.modules else LONG):
+            if _KERNELS not in sys.modules:
+                build(_KERNELS)
             from robomill.toolpath.gcode.rules import kernels
 
             self._kernels = kernels
