@@ -36,20 +36,8 @@ SAME = {
 def asked(call: Callable[P, R]) -> Callable[P, R]:
     """A public function that tells by ``ArgumentError`` how it was called wrongly: by a name that it does not take,
     without one that it needs, with a value of another kind than it declares. What it raises itself stays."""
-    signature = inspect.signature(call)
-
-    @wraps(call)
-    def told(*args: P.args, **given: P.kwargs) -> R:
-        try:
-            return call(*args, **given)
-        except RobomillError:
-            raise
-        except SLIPS:
-            who = call.__qualname__.removesuffix(".__init__")
-            refuse_kinds(call, who, named(signature, who, args, given, whole=True))
-            raise
-
-    return told
+    signature, who = inspect.signature(call), call.__qualname__.removesuffix(".__init__")
+    return _telling(call, lambda args, given: refuse_kinds(call, who, named(signature, who, args, given, whole=True)))
 
 
 def asking(cls: C) -> C:
@@ -65,24 +53,33 @@ def made_by(call: str) -> Callable[[C], C]:
         init: Callable[..., None] = cls.__init__  # type: ignore[misc]
         signature = inspect.signature(init)
 
-        @wraps(init)
-        def told(self: Any, *args: Any, **given: Any) -> None:
+        def refuse(args: Sequence[Any], given: Mapping[str, Any]) -> None:
             try:
-                init(self, *args, **given)
-            except RobomillError:
-                raise
-            except SLIPS:
-                try:
-                    found = signature.bind(self, *args, **given).arguments
-                except TypeError:
-                    raise ArgumentError(f"{cls.__name__}: {call} makes it; it is not made by hand.") from None
-                refuse_kinds(init, cls.__name__, found)
-                raise
+                found = signature.bind(*args, **given).arguments
+            except TypeError:
+                raise ArgumentError(f"{cls.__name__}: {call} makes it; it is not made by hand.") from None
+            refuse_kinds(init, cls.__name__, found)
 
-        cls.__init__ = told  # type: ignore[misc]
+        cls.__init__ = _telling(init, refuse)  # type: ignore[misc]
         return cls
 
     return of
+
+
+def _telling(call: Callable[P, R], refuse: Callable[[Sequence[Any], Mapping[str, Any]], None]) -> Callable[P, R]:
+    """``call``; where it slips over what it was given, ``refuse`` may say in a sentence why."""
+
+    @wraps(call)
+    def told(*args: P.args, **given: P.kwargs) -> R:
+        try:
+            return call(*args, **given)
+        except RobomillError:
+            raise
+        except SLIPS:
+            refuse(args, given)
+            raise
+
+    return told
 
 
 def named(

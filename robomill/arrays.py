@@ -53,12 +53,12 @@ def as_floats(
     Leading axes are free, but of ``one`` thing, which has none. Raises ``error`` with what was found and expected.
     """
     try:
-        if value is None or np.iscomplexobj(value):
+        found = np.asarray(value)
+        if value is None or found.dtype.kind == "c":
             raise TypeError
-        array = np.asarray(value, dtype=np.float64)
+        array = found.astype(np.float64, copy=False)
     except NO_NUMBERS as exc:
-        found = no_number(value) or brief(value)
-        raise error(f"{name}: expected numbers, found {found}.") from exc
+        raise error(f"{name}: expected numbers, found {no_number(value) or brief(value)}.") from exc
     fits = array.ndim == len(shape) or (array.ndim > len(shape) and not one)
     trailing = array.shape[array.ndim - len(shape) :] if fits else None
     if trailing is None or any(w is not None and w != h for w, h in zip(shape, trailing, strict=True)):
@@ -69,6 +69,12 @@ def as_floats(
     if finite and not np.isfinite(array).all():
         raise error(f"{name}: expected finite numbers, found NaN or infinity.")
     return array
+
+
+def next_true(which: BoolArray, otherwise: int) -> IntArray:
+    """(m,) where, from each place of ``which`` (m,) on, the first True stands; ``otherwise`` where none does."""
+    first = np.where(which, np.arange(len(which)), otherwise)[::-1]
+    return np.asarray(np.minimum.accumulate(first)[::-1])
 
 
 def is_unreal(value: Any) -> bool:

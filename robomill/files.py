@@ -92,6 +92,26 @@ def shown_place(path: str | Path) -> str:
     return text if len(text) <= LONGEST_PLACE else f"…{text[1 - LONGEST_PLACE :]}"
 
 
+def check_no_folder(path: str | Path, said: str, error: type[RobomillError]) -> None:
+    """Refuse a folder where a file is to be written; ``said`` is what the refusal calls the place."""
+    if Path(path).is_dir():
+        raise error(f"{said}: this is a folder; give the name of a file.")
+
+
+def check_folder_there(path: str | Path, said: str, error: type[RobomillError]) -> None:
+    """Refuse a place in a folder that is not there."""
+    folder = Path(path).parent
+    if not folder.is_dir():
+        raise error(f"{said}: the folder {shown_place(folder)} is not there; make it first.")
+
+
+def write_whole(path: str | Path, content: str | bytes, error: type[RobomillError]) -> Path:
+    """Write a file, its text as UTF-8, whole or not at all (see ``written``). Returns its place."""
+    with written(path, error) as place:
+        place.write_bytes(content.encode() if isinstance(content, str) else content)
+    return Path(path)
+
+
 @contextmanager
 def written(path: str | Path, error: type[RobomillError]) -> Iterator[Path]:
     """Where to write what shall stand at ``path``: beside it, and put in its place when it is complete.

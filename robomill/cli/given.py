@@ -6,7 +6,21 @@ from pathlib import Path
 from typing import Any
 
 from robomill.errors import GCodeError, LoadTestError, ProjectError, RobomillError, RobotError, ToolpathError
-from robomill.files import DRAWING, PROGRAM, ROBOT, SETUP, STUDY, TABLE, TOOLS, FileKind, check_size, name_of, read_file
+from robomill.files import (
+    DRAWING,
+    PROGRAM,
+    ROBOT,
+    SETUP,
+    STUDY,
+    TABLE,
+    TOOLS,
+    FileKind,
+    check_folder_there,
+    check_no_folder,
+    check_size,
+    name_of,
+    read_file,
+)
 from robomill.io.samples import find_sample, sample_or_file
 from robomill.toolpath.text import check_program_name
 
@@ -53,8 +67,8 @@ def check_kept(arguments: Any) -> None:
         if any(place.resolve() == each.resolve() for each in written):
             raise RobomillError(f"--{name} {place}: another option writes there already; give another.")
         _check_name(said["verb"], name, place)
-        if said["verb"] not in MAKING and not place.parent.is_dir():
-            raise RobomillError(f"--{name} {place}: the folder {place.parent} is not there; make it first.")
+        if said["verb"] not in MAKING:
+            check_folder_there(place, f"--{name} {place}", RobomillError)
         written.append(place)
 
 
@@ -62,8 +76,8 @@ def _check_name(verb: str, option: str, place: Path) -> None:
     """Refuse a name by which nobody would find again what is written. Raises RobomillError."""
     what, ends = WRITTEN.get((verb, option), ("", ()))
     program = verb in PROGRAMS and option == "out"
-    if (ends or program) and place.is_dir():
-        raise RobomillError(f"--{option} {place}: this is a folder; give the name of a file.")
+    if ends or program:
+        check_no_folder(place, f"--{option} {place}", RobomillError)
     if ends and place.suffix.lower() not in ends:
         listed = ", ".join(ends).rpartition(", ")
         told = " or ".join(filter(None, (listed[0], listed[2])))

@@ -5,6 +5,8 @@ from typing import Any
 
 from robomill.cli import given, options
 from robomill.cli.saying import Written, say
+from robomill.errors import ProjectError
+from robomill.files import write_whole
 
 
 def run_identify(arguments: Any) -> int:
@@ -14,7 +16,6 @@ def run_identify(arguments: Any) -> int:
     from robomill.identification.record import identification_record
     from robomill.io.declared import kind_to_table
     from robomill.io.measured.load_test_sheets import measuring_sheet
-    from robomill.io.results import write_file
     from robomill.io.robot.robots import robot_to_toml
     from robomill.report.plain import identification_lines
     from robomill.simulation.origin.assumptions import assumed_of_robot, assumed_of_tests
@@ -32,12 +33,12 @@ def run_identify(arguments: Any) -> int:
     places = [Path(place) for place in (arguments.out, arguments.sheet) if place]
     files = Written.before(places)
     if arguments.out:
-        write_file(arguments.out, robot_to_toml(result.adopted(robot, called, robot, ())[0]))
+        write_whole(arguments.out, robot_to_toml(result.adopted(robot, called, robot, ())[0]), ProjectError)
         lines += _springs(record["springs"])
     if arguments.sheet:
         plan = next_best(robot, tests, result, count=arguments.next)
         record["next"] = plan.rows()
-        write_file(arguments.sheet, measuring_sheet(plan, called))
+        write_whole(arguments.sheet, measuring_sheet(plan, called), ProjectError)
     return say(arguments, record, lines, files=files)
 
 

@@ -6,23 +6,24 @@ from typing import Any
 
 from robomill.cli.saying import Written, say
 from robomill.cli.simulate import asked_setup
-from robomill.errors import RobomillError
+from robomill.errors import ProjectError, RobomillError
+from robomill.files import write_whole
 
 
 def run_report(arguments: Any) -> int:
     """Run and write the page; 1 where the verdict is red or nothing can be judged."""
-    from robomill.report.html import check_place, keep, page
+    from robomill.report.html import check_replaceable, page
     from robomill.report.plain import simulation_lines
     from robomill.report.simulation_record import simulation_record
     from robomill.simulation.run import simulate
 
     place = Path(arguments.out)
-    check_place(place)
+    check_replaceable(place)
     result = simulate(asked_setup(arguments))
     record = simulation_record(result)
     rows = _remedies(result) if arguments.remedies else []
     files = Written.before([place])
-    keep(place, page(result, record, rows))
+    write_whole(place, page(result, record, rows), ProjectError)
     lines = simulation_lines(record)[:2] + [f"remedy    {row.title}, {row.what}: {row.leaves}" for row in rows]
     record["remedies"] = [vars(row) for row in rows]
     return say(arguments, record, lines, 1 if result.verdict.red else 0, files)

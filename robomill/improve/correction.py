@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray, next_true
 from robomill.progress import checkpoint
 from robomill.simulation.judging.places import STEEP
 from robomill.simulation.led import led_beside, plunges, tip_error
@@ -224,7 +224,7 @@ class Places:
         undoes it."""
         path, every = self.path, np.arange(len(pushed))
         cut = np.cumsum(~path.cutting & (path.step_length > 0.0))
-        after = np.minimum.accumulate(np.where(pushed, every, len(every) - 1)[::-1])[::-1]
+        after = next_true(pushed, len(every) - 1)
         before = np.maximum.accumulate(np.where(pushed, every, 0))
         of = every.copy()
         for near in (before, after):

@@ -9,7 +9,7 @@ from robomill.arguments import asked
 from robomill.arrays import FloatArray, of_kind
 from robomill.errors import WorkspaceError
 from robomill.extras import needed
-from robomill.files import check_place, written
+from robomill.files import check_no_folder, check_place, shown_place, written
 from robomill.workspace.fields import Field, map_columns
 from robomill.workspace.grid import Grid
 
@@ -74,8 +74,7 @@ def map_place(path: str | Path) -> Path:
     """Where a map is written. Raises WorkspaceError for a folder, and for a name that says no format."""
     check_place(path, f"a file that ends in {', '.join(SUFFIXES)}", WorkspaceError)
     place = Path(path)
-    if place.is_dir():
-        raise WorkspaceError(f"Map: {str(path)!r} is a folder; give the name of a file.")
+    check_no_folder(place, shown_place(path), WorkspaceError)
     suffix = place.suffix.lower()
     if suffix not in SUFFIXES:
         raise WorkspaceError(f"Map: {place.name!r} ends in {suffix or 'nothing'!r}; expected {', '.join(SUFFIXES)}.")

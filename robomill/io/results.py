@@ -24,12 +24,6 @@ def write_files(folder: Path, files: Mapping[str, str | bytes]) -> None:
             place.write_bytes(content.encode() if isinstance(content, str) else content)
 
 
-def write_file(path: str | Path, content: str) -> None:
-    """Write one file whole, or not at all and a ProjectError."""
-    with written(path, ProjectError) as place:
-        place.write_text(content, encoding="utf-8")
-
-
 def json_text(record: object, ascii_only: bool = False) -> str:
     """A record as one JSON object; other characters escaped with ``ascii_only``, halves of one always."""
     text = json.dumps(record, indent=1, ensure_ascii=ascii_only, allow_nan=False) + "\n"

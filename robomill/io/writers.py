@@ -9,7 +9,7 @@ import numpy as np
 from robomill.arguments import asked
 from robomill.cutting.materials import Material
 from robomill.errors import CuttingError, ProjectError, RobomillError, RobotError, SurfaceError, ToolpathError
-from robomill.files import shown_place, written
+from robomill.files import shown_place, write_whole
 from robomill.io.gcode_out import toolpath_to_gcode
 from robomill.io.materials import material_to_toml
 from robomill.io.meshes import MOST_TRIANGLES, mesh_bytes
@@ -63,7 +63,7 @@ def write_robot(path: str | Path, robot: Robot) -> Path:
     True
     """
     _check(path, robot, Robot, RobotError, (".toml", ".urdf"))
-    return _write(path, robot_to_urdf(robot) if is_urdf(str(path)) else robot_to_toml(robot), RobotError)
+    return write_whole(path, robot_to_urdf(robot) if is_urdf(str(path)) else robot_to_toml(robot), RobotError)
 
 
 @asked
@@ -96,7 +96,7 @@ def write_setup(path: str | Path, setup: SimulationSetup) -> Path:
     True
     """
     _check(path, setup, SimulationSetup, ProjectError, (".toml",))
-    return _write(path, setup_to_toml(setup), ProjectError)
+    return write_whole(path, setup_to_toml(setup), ProjectError)
 
 
 @asked
@@ -129,7 +129,7 @@ def write_material(path: str | Path, material: Material) -> Path:
     True
     """
     _check(path, material, Material, CuttingError, (".toml",))
-    return _write(path, material_to_toml(material), CuttingError)
+    return write_whole(path, material_to_toml(material), CuttingError)
 
 
 @asked
@@ -169,7 +169,7 @@ def write_gcode(path: str | Path, toolpath: Toolpath, *, units: str = "mm", titl
     """
     _check(path, toolpath, Toolpath, ToolpathError)
     check_program_name(Path(path))
-    return _write(path, toolpath_to_gcode(toolpath, units=units, title=title), ToolpathError)
+    return write_whole(path, toolpath_to_gcode(toolpath, units=units, title=title), ToolpathError)
 
 
 @asked
@@ -216,7 +216,7 @@ def write_stl(path: str | Path, surface: ZMap, *, max_faces: int = MOST_TRIANGLE
             f"{shown_place(path)}: nothing is cut from this surface, it is the stock as it was; see the verdict of the "
             "run for what is not reached, or not touched."
         )
-    return _write(path, mesh_bytes(surface, "stl", max_faces=max_faces), SurfaceError)
+    return write_whole(path, mesh_bytes(surface, "stl", max_faces=max_faces), SurfaceError)
 
 
 def _check(path: Any, value: Any, kind: type, error: type[RobomillError], ends: Sequence[str] = ()) -> None:
@@ -225,9 +225,3 @@ def _check(path: Any, value: Any, kind: type, error: type[RobomillError], ends: 
         raise error(f"Write: expected a file's name and then {WHOSE[kind]}, found {found}.")
     if ends and Path(path).suffix.lower() not in ends:
         raise error(f"{shown_place(path)}: expected a name that ends in {' or '.join(ends)}.")
-
-
-def _write(path: str | Path, content: str | bytes, error: type[RobomillError]) -> Path:
-    with written(path, error) as place:
-        place.write_bytes(content.encode() if isinstance(content, str) else content)
-    return Path(path)

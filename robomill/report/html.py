@@ -13,7 +13,7 @@ import numpy as np
 
 from robomill.arguments import asked
 from robomill.errors import ProjectError
-from robomill.files import shown_place, written
+from robomill.files import check_folder_there, check_no_folder, shown_place, write_whole
 from robomill.report import sections_told
 from robomill.report.pictures import joints_picture, path_picture, section_picture
 from robomill.report.remedies_told import Remedy, Told, told
@@ -103,18 +103,16 @@ def write_report(path: str | Path, run: SimulationSetup | SimulationResult, reme
     >>> rm.write_report(pathlib.Path(tempfile.mkdtemp()) / "report.html", rm.load_setup("paper_flute")).name
     'report.html'
     """
-    check_place(Path(path))
-    return keep(Path(path), report_html(run, remedies))
+    check_replaceable(Path(path))
+    return write_whole(path, report_html(run, remedies), ProjectError)
 
 
-def check_place(place: Path) -> None:
+def check_replaceable(place: Path) -> None:
     """Refuse a place where something stands that is no report. Raises ProjectError."""
     if place.suffix.lower() not in ENDS:
         raise ProjectError(f"{shown_place(place)}: a page is written there; give a name that ends in .html.")
-    if place.is_dir():
-        raise ProjectError(f"{shown_place(place)}: this is a folder; give the name of a file.")
-    if not place.parent.is_dir():
-        raise ProjectError(f"{shown_place(place)}: the folder {shown_place(place.parent)} is not there; make it first.")
+    check_no_folder(place, shown_place(place), ProjectError)
+    check_folder_there(place, shown_place(place), ProjectError)
     if not place.is_file():
         return
     try:
@@ -124,13 +122,6 @@ def check_place(place: Path) -> None:
         raise ProjectError(f"{shown_place(place)}: cannot be opened ({exc.strerror}); give another place.") from None
     if begins != MARK.encode():
         raise ProjectError(f"{shown_place(place)}: another file stands there that is no report; give another name.")
-
-
-def keep(place: Path, text: str) -> Path:
-    """Write a report whole, or not at all. Raises ProjectError."""
-    with written(place, ProjectError) as beside:
-        beside.write_text(text, encoding="utf-8", newline="\n")
-    return place
 
 
 def page(

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray, next_true
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tool import DISH
 from robomill.simulation.cut import Led, met_conditions, through_stock
@@ -22,8 +22,7 @@ def plunges(path: Toolpath, conditions: CutConditions) -> tuple[IntArray, BoolAr
     """(m,) of samples on the way down the first one of the level cut that goes on from there, else -1; (m,) plunges."""
     down = path.cutting & (conditions.along < -DISH)
     steep = conditions.across < STEEP
-    after = np.append(np.where(down, len(path), np.arange(len(path)))[1:], len(path))
-    then = np.minimum.accumulate(after[::-1])[::-1]  # the first sample behind that does not go down
+    then = np.append(next_true(~down, len(path))[1:], len(path))  # the first sample behind that does not go down
     level = np.append(path.cutting & ~down & ~steep, False)
     return np.where(down & level[then], then, -1), steep
 
@@ -67,8 +66,7 @@ def led_conditions(setup: SimulationSetup, path: Toolpath, told: CutConditions, 
 
 def _behind(links: BoolArray) -> IntArray:
     """(m,) samples themselves, and for those on ``links`` (m,) the first one behind the link."""
-    every = np.arange(len(links))
-    return np.minimum.accumulate(np.where(links, len(links) - 1, every)[::-1])[::-1]
+    return next_true(~links, len(links) - 1)
 
 
 def tip_error(run: SimulationResult, wanted: Toolpath) -> FloatArray:

@@ -41,6 +41,11 @@ NO_TOOLS = ToolTable()
 TOLERANCES = ("wall", "floor", "feed")
 
 
+def _own_tolerance(label: str, hint: str) -> Any:
+    """A tolerance beside the one that holds for walls, with its bounds; left out where none is stated."""
+    return quantity(label, "mm", optional=True, slip=COARSEST, tiny=FINEST, above=0.0, most=COARSEST, hint=hint)
+
+
 @in_units(SetupError, "Set-up", more=given.OTHERS, new=given.stated)
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class SimulationSetup(Replaceable, Value):
@@ -99,25 +104,12 @@ class SimulationSetup(Replaceable, Value):
     force: ForceModel
     stock: Stock | None = None
     tolerance: float = quantity("Tolerance", "mm", default=0.3e-3, above=0.0, most=COARSEST, slip=COARSEST, tiny=FINEST)
-    floor_tolerance: float | None = quantity(
-        "Tolerance of floors",
-        "mm",
-        optional=True,
-        slip=COARSEST,
-        tiny=FINEST,
-        above=0.0,
-        most=COARSEST,
-        hint="Along the tool axis. Left out: the one tolerance holds for walls and floors.",
+    floor_tolerance: float | None = _own_tolerance(
+        "Tolerance of floors", "Along the tool axis. Left out: the one tolerance holds for walls and floors."
     )
-    feed_tolerance: float | None = quantity(
+    feed_tolerance: float | None = _own_tolerance(
         "Tolerance along the feed",
-        "mm",
-        optional=True,
-        slip=COARSEST,
-        tiny=FINEST,
-        above=0.0,
-        most=COARSEST,
-        hint="Of the tip on its way, and where a cut begins or ends in the material. Left out: given, but not judged.",
+        "Of the tip on its way, and where a cut begins or ends in the material. Left out: given, but not judged.",
     )
     step: float = quantity("Step along the path", "mm", default=1e-3, above=0.0, slip=0.5, tiny=1.5e-6)
     cell: float = quantity("Surface grid", "mm", default=1e-4, above=0.0, digits=4, slip=0.04, tiny=FINEST)

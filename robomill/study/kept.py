@@ -17,7 +17,7 @@ from typing import Any
 
 from robomill.errors import RobomillError, StudyError
 from robomill.extras import needed
-from robomill.files import shown_place, written
+from robomill.files import shown_place, write_whole, written
 from robomill.io.results import json_text
 from robomill.study.described import Study
 from robomill.study.point import Row, version
@@ -68,8 +68,7 @@ class Kept:
             "responses": list(study.responses),
             "setup": study.setup.digest(),
         }
-        with written(self.folder / MARK, StudyError) as place:
-            place.write_text(json_text(record), encoding="utf-8")
+        write_whole(self.folder / MARK, json_text(record), StudyError)
 
     def _rows(self) -> dict[int, Row]:
         """Rows of all parts by point; what stops in the middle of being written has left none."""

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
+from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, next_true
 from robomill.errors import SurfaceError
 from robomill.vectors import angle_between
 
@@ -48,8 +48,7 @@ def moves_at_feed(p: FloatArray, cutting: ArrayLike | None) -> BoolArray:
 def moves_of(still: BoolArray, used: BoolArray) -> IntArray:
     """(m,) the move that every entry of a path is a part of: itself, or the next one where it stands ``still`` and all
     up to that one are ``used``; -1 for none."""
-    there = np.arange(len(still))
-    move = np.minimum.accumulate(np.where(still & used, len(still), there)[::-1])[::-1]
+    move = next_true(~(still & used), len(still))
     lost = (move == len(still)) | ~used[np.minimum(move, len(still) - 1)] | (still & ~used)
     return np.asarray(np.where(lost, -1, move))
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from robomill.arrays import as_floats, brief, check_place, digest, frozen, sealed
+from robomill.arrays import as_floats, brief, check_place, digest, frozen, next_true, sealed
 from robomill.errors import RobomillError, RobotError
 
 
@@ -184,3 +184,11 @@ def test_arrays_in_values_that_do_not_see_to_it_themselves_are_sealed_too() -> N
     inner, outer, named = np.zeros(2), np.zeros(3), np.zeros(4)
     sealed(Pair(outer, (Pair(inner, 1.0), {"named": named})))
     assert [array.flags.writeable for array in (inner, outer, named)] == [False] * 3
+
+
+@pytest.mark.parametrize("length", [0, 1, 2, 7])
+def test_the_next_true_is_the_one_that_a_look_at_each_place_finds(length: int) -> None:
+    for bits in range(2**length):
+        which = np.array([bool(bits >> k & 1) for k in range(length)], dtype=bool)
+        looked = [next((j for j in range(i, length) if which[j]), length) for i in range(length)]
+        assert next_true(which, length).tolist() == looked

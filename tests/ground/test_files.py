@@ -10,8 +10,17 @@ from pathlib import Path
 
 import pytest
 
-from robomill.errors import ProjectError
-from robomill.files import FileKind, check_size, read_file, shown_place, written
+from robomill.errors import ProjectError, RobomillError
+from robomill.files import (
+    FileKind,
+    check_folder_there,
+    check_no_folder,
+    check_size,
+    read_file,
+    shown_place,
+    write_whole,
+    written,
+)
 
 SMALL = FileKind("a few words", 1, smaller="; say less")
 MB = 1_000_000
@@ -123,3 +132,23 @@ def test_on_a_full_disk_nothing_cut_off_is_left(words: list[str], tmp_path: Path
     assert "cannot be written (File too large)" in done.stderr
     assert "Traceback" not in done.stderr
     assert {name: (full / name).read_text() for name in os.listdir(full)} == old
+
+
+def test_a_file_is_written_whole_and_text_as_utf_8(tmp_path: Path) -> None:
+    place = tmp_path / "a.txt"
+    assert write_whole(place, "½ mm\n", RobomillError) == place
+    assert place.read_bytes() == "½ mm\n".encode()
+    write_whole(place, b"\x00\xff", RobomillError)
+    assert place.read_bytes() == b"\x00\xff"
+    with pytest.raises(RobomillError, match="cannot be written"):
+        write_whole(tmp_path / "no" / "a.txt", "", RobomillError)
+    assert [each.name for each in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_a_folder_and_a_place_in_no_folder_are_refused_with_the_place_and_what_to_do(tmp_path: Path) -> None:
+    check_no_folder(tmp_path / "a.txt", "here", RobomillError)
+    check_folder_there(tmp_path / "a.txt", "here", RobomillError)
+    with pytest.raises(RobomillError, match="^here: this is a folder; give the name of a file.$"):
+        check_no_folder(tmp_path, "here", RobomillError)
+    with pytest.raises(RobomillError, match="^here: the folder .*no is not there; make it first.$"):
+        check_folder_there(tmp_path / "no" / "a.txt", "here", RobomillError)

@@ -42,12 +42,13 @@ SIDE = {
 BIG = """<style>
 /* Question and picture stand side by side from 900 px on, where the pages' columns stand under each other. */
 @media (min-width: 900px) and (max-width: 1080px) {
-  .st-key-split-ask [data-testid="stHorizontalBlock"]:has(> [data-testid="stColumn"]) {
+  :is(.st-key-split-ask, .st-key-split-steps) [data-testid="stHorizontalBlock"]:has(> [data-testid="stColumn"]) {
     flex-wrap: nowrap !important; gap: 1.2rem; }
-  .st-key-split-ask [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] {
-    flex: 55 1 0 !important; min-width: 0 !important; width: auto !important; }
+  :is(.st-key-split-ask, .st-key-split-steps) [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] {
+    flex: 1 1 0 !important; min-width: 0 !important; width: auto !important; }
+  .st-key-split-ask [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] { flex-grow: 55 !important; }
   .st-key-split-ask [data-testid="stHorizontalBlock"] > [data-testid="stColumn"]:last-child {
-    flex: 45 1 0 !important; }
+    flex-grow: 45 !important; }
 }
 @media (max-width: 1100px) {
   [class*="st-key-learn-answers"] label p { font-size: 20px !important; }

@@ -55,12 +55,6 @@ html { font-size: 140% !important; }
 .js-plotly-plot .js-line, .js-plotly-plot .xgrid, .js-plotly-plot .ygrid { stroke-width: 4px !important; }
 </style>"""
 LOOKS = """<style>
-@media (min-width: 900px) and (max-width: 1080px) {
-  .st-key-split-steps [data-testid="stHorizontalBlock"]:has(> [data-testid="stColumn"]) {
-    flex-wrap: nowrap !important; gap: 1.2rem; }
-  .st-key-split-steps [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] {
-    flex: 1 1 0 !important; min-width: 0 !important; width: auto !important; }
-}
 .rm-ask.rm-long { font-size: 1.75rem; }
 .st-key-learn-steps .rm-say { font-size: 1.25rem !important; line-height: 1.35; }
 .rm-bars { display: grid; grid-template-columns: minmax(0, max-content) minmax(7rem, 1fr) max-content;
