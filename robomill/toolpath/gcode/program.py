@@ -79,12 +79,12 @@ class Program:
     dwell: FloatArray
     tool: IntArray
     lift: FloatArray
-    away: BoolArray = field(default_factory=lambda: np.zeros((1, 3), dtype=bool))
-    units: str = ""
-    dialect: str = "linuxcnc"
-    lines: int = 0
-    dwells: int = 0
-    dwell_time: float = 0.0
+    away: BoolArray
+    units: str
+    dialect: str
+    lines: int
+    dwells: int
+    dwell_time: float
     findings: tuple[Finding, ...] = field(default=(), compare=False)
     messages: tuple[tuple[int, str], ...] = field(default=(), compare=False)
 

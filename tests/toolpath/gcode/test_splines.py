@@ -105,3 +105,10 @@ def test_a_nurbs_has_so_many_control_points_at_most_its_start_with_them(count, m
     else:
         with pytest.raises(GCodeError, match=r"^Line 10: a spline has more than 8 control points; split it\.$"):
             read(f"{moves}\nG5.3")
+
+
+def test_a_curve_begins_where_the_tool_stands_whatever_weight_is_said_there():
+    """A place of no weight would be none of the curve's."""
+    more = "X7 Y5 P1\nX9 Y-3 P2\nX12 Y0 P1\nG5.3"
+    plain, none = read(f"G5.2 P1 L3\n{more}"), read(f"G5.2 P0 L3\n{more}")
+    np.testing.assert_allclose(np.concatenate(none), np.concatenate(plain), atol=1e-9)
