@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from robomill.identification.result import IdentificationResult as IdentificationResult
     from robomill.improve.advice import Advice as Advice
     from robomill.improve.advice import advise as advise
+    from robomill.improve.box_design import BoxDesign as BoxDesign
+    from robomill.improve.box_design import design_box as design_box
     from robomill.improve.compensation import Compensation as Compensation
     from robomill.improve.design import Design as Design
     from robomill.improve.design import design as design
@@ -151,6 +153,8 @@ _PUBLIC = {
     "IdentificationResult": "robomill.identification.result",
     "Advice": "robomill.improve.advice",
     "advise": "robomill.improve.advice",
+    "BoxDesign": "robomill.improve.box_design",
+    "design_box": "robomill.improve.box_design",
     "Design": "robomill.improve.design",
     "design": "robomill.improve.design",
     "Place": "robomill.improve.placed",

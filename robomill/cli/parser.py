@@ -270,15 +270,13 @@ def _setup(sub: argparse.ArgumentParser) -> None:
 
 
 def _outside(sub: argparse.ArgumentParser, what: str) -> None:
-    sub.add_argument(
-        "--allow-outside", action="store_true", help=f"let {what} name files that are not in its own folder or below"
-    )
+    sub.add_argument("--allow-outside", action="store_true", help=f"let {what} name files outside its own folder")
 
 
 def _design_options(sub: argparse.ArgumentParser) -> None:
     _setup(sub)
     sub.add_argument(
-        "--tolerance-mm", "--tol", type=number, metavar="MM", help="of walls and floors, mm (that of the set-up)"
+        "--tolerance-mm", "--tol", type=number, metavar="MM", help="of walls and floors, mm (the set-up's)"
     )
     sub.add_argument(
         "--measure",
@@ -287,6 +285,9 @@ def _design_options(sub: argparse.ArgumentParser) -> None:
         help="what has to keep it: what the verdict judges (default), one of its parts, or the tip's deviation",
     )
     sub.add_argument("--most", type=number, metavar="TIMES", help="how many times as stiff a joint may be made (10)")
+    sub.add_argument("--box", metavar="X,Y,Z:X,Y,Z", help="a box of the workspace in the place of the cut, mm")
+    sub.add_argument("--force", metavar="FX,FY,FZ", help="what pushes the tip at every point of the box, N")
+    sub.add_argument("--every", type=number, metavar="MM", help="how far apart its points are, mm (100)")
 
 
 def _asked_for(sub: argparse.ArgumentParser) -> None:

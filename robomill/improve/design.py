@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked, made_by
-from robomill.arrays import FloatArray, as_floats, brief, digest, frozen, of_kind
+from robomill.arrays import FloatArray, digest, frozen, of_kind
 from robomill.compliance.deflection import shares_along
 from robomill.errors import SetupError
 from robomill.frames import Columns
+from robomill.improve.asked_joints import SETTLED, checked_bounds, checked_weight, words_of_joints
 from robomill.improve.judged import Judged, Measure, judged, refuse_corrected
 from robomill.improve.least_cost import Errors, Least, least_cost, least_share
 from robomill.improve.sensitivity import stiffened
@@ -30,7 +31,6 @@ STIFFEST = 10.0  # times as stiff: the bound where none is given
 ROUNDS = 8  # of solving and running the cut with what was found
 WITHIN = 1.0 - 1e-4  # of the tolerance is aimed at, so that what is found keeps it
 HALVED = 6  # times, where the least cost was not found
-SETTLED = 1e-3  # change of a stiffness ratio, of itself, that is none
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -112,16 +112,11 @@ class Design(Tabled):
         """What to stiffen, or why that does not do."""
         if not self.feasible:
             return f"Cannot be met: {self.reason}."
-        limit, numbers = _limits(self.setup, self.measure), self.setup.robot.joint_numbers
-        named = [
-            f"joint {number} {format_short(ratio, '1', 3)} times"
-            for number, ratio in zip(numbers, self.stiffness_ratio, strict=True)
-            if abs(ratio - 1.0) > SETTLED
-        ]
-        if not named:
+        limit = _limits(self.setup, self.measure)
+        some = words_of_joints(self.setup.robot.joint_numbers, self.stiffness_ratio)
+        if not some:
             return f"The cut keeps {limit} with the joints as they are."
-        some = " and ".join(", ".join(named).rsplit(", ", 1))
-        return f"{some[0].upper()}{some[1:]} as stiff keep{'s' * (len(named) == 1)} {limit}."
+        return f"{some[0][0].upper()}{some[0][1:]} as stiff keep{'s' * (some[1] == 1)} {limit}."
 
     @asked
     def front(self, count: int = 25) -> Front:
@@ -208,14 +203,10 @@ def design(
     """
     of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
     refuse_corrected(setup)
-    setup = _asked_for(setup, tolerance, tolerance_mm)
+    setup = asked_for(setup, tolerance, tolerance_mm)
     n = setup.robot.n
-    ratios = _bounds(bounds, n)
-    weights = as_floats(weight, "Weight", (), error=SetupError)
-    if weights.shape not in ((), (n,)) or (weights <= 0.0).any():
-        words = f"expected numbers above zero, one for all {n} joints or one for each"
-        raise SetupError(f"Weight: {words}; found {brief(weight)}.", where="weight")
-    weights = np.broadcast_to(weights, (n,))
+    ratios = checked_bounds(bounds, n)
+    weights = checked_weight(weight, n)
     before = simulate(setup)
     _check(before, measure)
     search = _Search(setup, measure, weights, 1.0 / ratios[:, 1], 1.0 / ratios[:, 0])
@@ -252,7 +243,7 @@ class _Search:
                 errors = linear(result, now, x, rounds < ROUNDS // 2)
                 errors = replace(errors, bound=errors.bound * aim)
                 found = least_cost(errors, self.weight, self.low, self.high)
-                best = _nearest(errors, self.weight, self.low, self.high) if found is None else found
+                best = nearest(errors, self.weight, self.low, self.high) if found is None else found
                 residual = best.residual
                 stays = bool(np.abs(np.log(best.x / x)).max() < SETTLED)
                 if stays and (now.share <= 1.0 or found is None):
@@ -289,7 +280,7 @@ def _between(x: FloatArray, end: FloatArray, part: float) -> FloatArray:
     return np.asarray(x ** (1.0 - part) * end**part)
 
 
-def _nearest(errors: Errors, weight: FloatArray, low: FloatArray, high: FloatArray) -> Least:
+def nearest(errors: Errors, weight: FloatArray, low: FloatArray, high: FloatArray) -> Least:
     """As small as the errors can be within the bounds, at the least cost at which they are."""
     least = least_share(errors, low, high)
     cheap = least_cost(replace(errors, bound=errors.bound * least.value / WITHIN), weight, low, high)
@@ -324,7 +315,7 @@ def _limits(setup: SimulationSetup, measure: Measure) -> str:
     return f"{format_limit(wall, 'mm')} on walls and {format_limit(floor, 'mm')} on floors"
 
 
-def _asked_for(setup: SimulationSetup, tolerance: float | None, tolerance_mm: float | None) -> SimulationSetup:
+def asked_for(setup: SimulationSetup, tolerance: float | None, tolerance_mm: float | None) -> SimulationSetup:
     if setup.measured_map is not None:
         raise SetupError(
             "The compliance of this set-up is a measured map, in which no joint is known: take the map out "
@@ -338,26 +329,6 @@ def _asked_for(setup: SimulationSetup, tolerance: float | None, tolerance_mm: fl
     said = {**setup.provenance, "tolerance": Provenance("user", "asked for")}
     asked_for = declared.settled(asked_for, SetupError, "Design")
     return setup.replace(tolerance=asked_for, floor_tolerance=None, provenance=said)
-
-
-def _bounds(bounds: ArrayLike, n: int) -> FloatArray:
-    given = np.asarray(bounds, dtype=object)
-    if given.shape not in ((2,), (n, 2)):
-        raise SetupError(
-            f"Bounds of the stiffness ratio: expected two numbers, the least and the most times as stiff, such as "
-            f"(1, 4), or two for each of {n} joints; found {brief(bounds)}.",
-            where="bounds",
-        )
-    shape = (n, 2) if given.ndim == 2 else (2,)
-    found = np.broadcast_to(as_floats(bounds, "bounds", shape, error=SetupError), (n, 2))
-    for joint, (low, high) in enumerate(found, 1):
-        if not 0.0 < low <= high:
-            raise SetupError(
-                f"Bounds of the stiffness ratio of free joint {joint}: found {low:g} to {high:g}, expected two numbers "
-                "above zero, the smaller one first.",
-                where="bounds",
-            )
-    return np.asarray(found)
 
 
 def _check(result: SimulationResult, measure: Measure) -> None:

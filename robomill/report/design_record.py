@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+from robomill.improve.box_design import BoxDesign
 from robomill.improve.design import Design
 from robomill.report.records import shown
 from robomill.simulation.origin.assumptions import assumed_of_setup
@@ -57,6 +58,47 @@ def design_lines(record: dict[str, Any]) -> list[str]:
         lines.append(f"{name:9} {deviation_words(values)}")
     lines.append(f"verdict   {record['verdict_sentence']}")
     return lines
+
+
+def box_record(found: BoxDesign) -> dict[str, Any]:
+    """Joints, and how far a stated force pushes the tip at the points of a box before and with them."""
+    robot, worst = found.setup.robot, found.worst
+    return {
+        "robomill": __version__,
+        "name": found.setup.name,
+        "robot": robot.name,
+        "joints": list(robot.joint_numbers),
+        "force_N": shown(found.force, "N"),
+        "tolerance_mm": shown(found.tolerance, "mm"),
+        "points": found.cells,
+        "reached": len(found.points),
+        "feasible": found.feasible,
+        "reason": found.reason or None,
+        "sentence": found.sentence,
+        "stiffness_ratio": shown(found.stiffness_ratio, "1"),
+        "C_theta": shown(found.C_theta, "1"),
+        "cost": shown(found.cost, "1"),
+        "residual": shown(found.residual, "1"),
+        "before": {"max_deviation_mm": shown(float(found.before.max()), "mm")},
+        "max_deviation_mm": shown(float(found.after.max()), "mm"),
+        "worst_at_mm": shown(found.points[worst], "mm"),
+        "digest": found.digest(),
+    }
+
+
+def box_lines(record: dict[str, Any]) -> list[str]:
+    """The answer first, then joint by joint."""
+    lines = [record["sentence"]]
+    for number, ratio, C in zip(record["joints"], record["stiffness_ratio"], record["C_theta"], strict=True):
+        lines.append(f"joint {number}   {ratio:8.3f} times as stiff   {C:.3e} rad/(N m)")
+    at = ", ".join(f"{each:.0f}" for each in record["worst_at_mm"])
+    return [
+        *lines,
+        f"cost      {record['cost']:.3f} (1 is one joint made twice as stiff)",
+        f"before    {record['before']['max_deviation_mm']:.4f} mm at most",
+        f"then      {record['max_deviation_mm']:.4f} mm at most, at ({at}) mm",
+        f"points    {record['reached']} of {record['points']} are reached by the upright tool",
+    ]
 
 
 def deviation_words(record: dict[str, Any]) -> str:

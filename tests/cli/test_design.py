@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import robomill as rm
@@ -67,3 +68,38 @@ def test_a_cut_that_leaves_no_wall_says_none_of_it(tmp_path: Path, capsys: pytes
     said = capsys.readouterr().out
     assert "wall none, floor 0." in said
     assert "nan" not in said
+
+
+BOX = ["--box=-300,-1500,-100:300,-1100,100", "--force=60,100,-30"]
+
+
+def test_over_a_box_every_point_keeps_the_tolerance(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "paper_flute", *BOX, "--tolerance-mm", "0.2", "--json"]) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record["feasible"]
+    assert record["points"] == record["reached"] == 7 * 5 * 3
+    robot = rm.load_setup("paper_flute").robot.replace(C_theta=record["C_theta"])
+    x = [each * 1e-3 for each in record["worst_at_mm"]]
+    theta = rm.inverse_kinematics(robot, rm.pose_from_world([*x, 0.0, 0.0])).theta
+    pushed = np.linalg.norm(rm.cartesian_compliance(robot, theta) @ [60.0, 100.0, -30.0])
+    assert record["max_deviation_mm"] == pytest.approx(pushed * 1e3, rel=1e-6) == pytest.approx(0.2, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (BOX[:1], "--force FX,FY,FZ in N; one of them is not given"),
+        ([*BOX, "--measure", "wall"], "in a box there is no part"),
+        (["--box=100,0,0:0,0,0", BOX[1]], "its x ends before it begins"),
+        ([BOX[0], "--force=1,2"], "--force"),
+        ([*BOX, "--every", "0"], "step"),
+    ],
+)
+def test_a_box_that_is_not_one_is_refused(capsys: pytest.CaptureFixture[str], options: list[str], words: str) -> None:
+    assert main(["design", "paper_flute", *options]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_over_a_box_that_cannot_be_met_it_says_where_and_exits_1(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "paper_flute", *BOX, "--tolerance-mm", "0.05", "--most", "2"]) == 1
+    assert capsys.readouterr().out.startswith("Cannot be met:")
