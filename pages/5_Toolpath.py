@@ -34,7 +34,7 @@ view.headline(source, path, reach, result, unit)
 other.tiles(view.tiles(source, path, reach, result, unit), view.tiles_of_b)
 # there without a result, too: what comes between tiles and board later would push the board from beneath the mouse
 mathematics(partial(of_the_run, result, decides_at(result)) if result is not None else tuple, "toolpath")
-question.panel(path, "" if result is None else result.verdict.premise)
+asked = question.panel(path, "" if result is None else result.verdict.premise)
 
 program = source.kind == "program" and not drawing.shown()
 left, right = ui.split([1, 2] if program else [1.2, 1.75] if not drawing.shown() else [1, 1.2], "steps")
@@ -49,7 +49,7 @@ with left:
         lines_inputs(source, project.view)
     if source.kind in ("program", "points"):
         with st.expander("**Tools**", expanded=bool(setup.tools), key="toolpath.open.tools"):
-            tools.panel()
+            tools.panel(ask=not asked)
     with st.container(border=True):
         part_zero()
 

@@ -128,7 +128,7 @@ def page(
     result: SimulationResult, record: dict[str, Any], remedies: Sequence[Told] = (), when: datetime | None = None
 ) -> str:
     """The page of a run and its record."""
-    made = (when or datetime.now().astimezone()).strftime("%d %B %Y, %H:%M UTC%z").lstrip("0")
+    made = moment(when or datetime.now().astimezone())
     robot = result.setup.robot
     parts = [
         sections_told.header(record, made, robot.title or robot.name),
@@ -144,6 +144,15 @@ def page(
         _made_with(record, made),
     ]
     return _whole(record["name"], parts)
+
+
+def moment(when: datetime) -> str:
+    """Day and time of a report, and how far that clock is from UTC: ``7 March 2026, 09:05 UTC+5:30``."""
+    east = when.utcoffset()
+    minutes = 0 if east is None else round(east.total_seconds() / 60.0)
+    hours, rest = divmod(abs(minutes), 60)
+    zone = f"{'+' if minutes > 0 else '−'}{hours}{f':{rest:02d}' if rest else ''}" if minutes else ""
+    return f"{when.day} {when:%B %Y, %H:%M} UTC{zone}"
 
 
 def _whole(name: str, parts: Sequence[object]) -> str:

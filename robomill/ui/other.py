@@ -10,18 +10,18 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 
-from robomill.errors import RobomillError
+from robomill.errors import ProjectError, RobomillError
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces, session
 from robomill.ui.keeping import autosave
-from robomill.ui.keeping.shelf import PLACE
+from robomill.ui.keeping.shelf import PLACE, side_of
 from robomill.ui.pieces import Tile
-from robomill.ui.project import Project, preset_setup, presets, project_from_toml
+from robomill.ui.project import Project, preset_setup, presets, project_from_toml, project_to_toml
 from robomill.ui.work import cached, job, running
 from robomill.ui.work.job import Underway
 
-EXAMPLE, KEPT, HERE = "example", "kept", "here"  # where B is from; "here" is what only this session has
+EXAMPLE, KEPT, HERE = "example", "kept", "here"  # where B is from; "here" is what only this session can hold
 HELD, READ, RUN = "other.held", "other.read", "other.run"
 
 
@@ -68,7 +68,14 @@ def choose(which: str) -> None:
 
 
 def pin(name: str, project: Project) -> None:
-    """Hold the project in force against a ``project`` that only this session has."""
+    """Hold the project in force against a ``project``, after a reload as well where work is kept at all."""
+    key, place = autosave.line().key, side_of(f"{name}\n{project.digest()}")
+    session.drop(HELD)
+    with suppress(ProjectError):  # what cannot be kept is held by this session
+        if key:
+            autosave.shelf().put(key, place, (name, 0.0), [project_to_toml(project)])
+            choose(f"{KEPT}:{place}")
+            return
     choose(HERE)
     session.keep(HELD, Other(name, project))
 

@@ -33,10 +33,11 @@ NAME = "name"
 MAX_TABLE_MB = 2
 
 
-def panel() -> None:
-    """The table with its ways in, or the way to one where the set-up has one cutter for all."""
+def panel(*, ask: bool = True) -> None:
+    """The table with its ways in, or the way to one where the set-up has one cutter for all; ``ask`` for the tools that
+    are missing, where nothing else on the page does."""
     setup = session.project().setup
-    for number in missing(setup.tools, _cut_with()):
+    for number in missing(setup.tools, _cut_with()) if ask else ():
         _ask(number)
     if setup.tools:
         _table(setup.tools)

@@ -18,7 +18,12 @@ LOOK = """() => {
     return it.width > 0 && (each.scrollWidth > each.clientWidth + 1 && getComputedStyle(each).display !== 'inline'
       || it.right > window.innerWidth || it.bottom > box.bottom + 2);
   }).map((each) => each.textContent);
-  return { top: box.top, height: box.height, seen: bar.contains(middle) || middle.contains(bar), cut,
+  const parts = [...bar.querySelectorAll('.rm-cell, .rm-gauge, .st-key-bar-worst')].map((each) =>
+    [each.textContent, each.getBoundingClientRect()]).filter(([, it]) => it.width > 0);
+  const over = parts.flatMap(([name, it], i) => parts.slice(i + 1).filter(([, that]) =>
+    it.left < that.right - 1 && that.left < it.right - 1 && it.top < that.bottom - 1 && that.top < it.bottom - 1
+  ).map(([other]) => `${name} / ${other}`));
+  return { over, top: box.top, height: box.height, seen: bar.contains(middle) || middle.contains(bar), cut,
     bars: document.querySelectorAll('.rm-top').length, heads: document.querySelectorAll('h1').length };
 }"""
 
@@ -45,7 +50,21 @@ def test_the_bar_stays_on_every_page(page: Any, url: str, width: int, most: int)
             assert 44 <= found["height"] <= most, (name, found)
             assert found["seen"], (name, found)
             assert found["cut"] == [], (name, found)
+            assert found["over"] == [], (name, found)
             assert found["bars"] == 1, name
+
+
+@pytest.mark.parametrize("preset", ["heart", "paper_flute"])
+def test_nothing_in_the_bar_lies_over_anything_else(page: Any, url: str, preset: str) -> None:
+    """A verdict in many words ("within tolerance, tight") and a force that is computed leave no room for a link."""
+    page.goto(f"{url}/?preset={preset}")
+    page.wait_for_selector(".st-key-bar-worst", timeout=60_000)
+    idle(page)
+    for width in (1440, 1200, 1024, 900, 800, 600, 390):
+        page.set_viewport_size({"width": width, "height": 800})
+        page.wait_for_timeout(300)
+        found = page.evaluate(LOOK)
+        assert (found["over"], found["cut"]) == ([], []), width
 
 
 def test_a_deep_link_on_a_fresh_server_has_its_page_its_bar_and_the_named_menu(page: Any) -> None:

@@ -6,14 +6,19 @@ from __future__ import annotations
 import dataclasses
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import PAGES, go, store, words
+from conftest import PAGES, ROOT, go, store, words
 from streamlit.testing.v1 import AppTest
 
 import robomill as rm
-from robomill.ui import other
+from robomill.ui import other, session
+from robomill.ui.keeping import autosave
+from robomill.ui.keeping.settings import Settings
+from robomill.ui.keeping.shelf import Shelf
+from robomill.ui.keeping.writer import Line
 from robomill.ui.maps.sides import SIDES, WHOSE
 from robomill.ui.project import Project, View, preset_setup, project_from_toml, project_to_toml
 from robomill.ui.session import Store
@@ -190,3 +195,27 @@ def test_a_long_run_of_b_is_asked_for_and_a_is_there_meanwhile(app: AppTest, mon
 def test_what_is_compared_with_is_kept_with_the_project() -> None:
     project = Project(A, View(beside="example:heart"))
     assert project_from_toml(project_to_toml(project)).view.beside == "example:heart"
+
+
+def test_a_b_from_a_file_is_there_after_a_reload(app: AppTest, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Another session of the same browser, which has the project in force alone, finds B where it was kept."""
+    shelf = Shelf(Settings(folder=tmp_path))
+    monkeypatch.setattr(autosave, "line", lambda: Line("a1" * 32))
+    monkeypatch.setattr(autosave, "shelf", lambda: shelf)
+    pinned: list[str] = []
+
+    def pin() -> None:
+        other.pin("A softer arm", Project(SOFTER))
+        pinned.append(session.project().view.beside)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(session, "store", lambda: store(app))
+        pin()
+    again = AppTest.from_file(str(ROOT / "app.py"), default_timeout=60).run()
+    held = store(again)
+    held.project = held.project.replace(view=_look(held, pinned[0]))
+    again.run()
+    assert not again.exception
+    assert values(again, "B")[0] == format_si(rm.simulate(SOFTER).verdict.wall.value, "mm", sign=True)
+    pressed(again, "other.take")
+    assert store(again).project.setup.digest() == SOFTER.digest()

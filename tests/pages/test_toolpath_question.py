@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from conftest import box, errors, go, store, words
 from streamlit.testing.v1 import AppTest
@@ -141,3 +143,44 @@ def test_the_block_around_a_path_in_the_air_says_how_high_it_stands(app: AppTest
     assert "Stock: a block around the cuts, 192.0 × 12.0 × 26.0 mm, its top at Z = 51.0 mm." in words(app).replace(
         "\u00a0", " "
     )
+
+
+TWO_TOOLS = (
+    "G21 G90\nT1 M6\nS8000 M3\nG0 X-20 Y0 Z5\nG1 Z-1 F300\nG1 X20 F600\nG0 Z20\n"
+    "T2 M6\nS9000 M3\nG0 X-20 Y12 Z5\nG1 Z-1 F300\nG1 X20 F600\nG0 Z20\nM2\n"
+)
+
+
+def test_each_of_two_tools_is_asked_for_once_and_the_answer_makes_their_table(app: AppTest) -> None:
+    """One cutter's size would be no answer: the set-up would be refused for want of a table."""
+    bring(app, TWO_TOOLS)
+    asked = [each.key.removeprefix("toolpath.question.") for each in app.text_input if "question" in each.key]
+    assert asked == ["diameter.1:mm", "flutes.1", "diameter.2:mm", "flutes.2", "tolerance:mm"]
+    assert "cuts and nobody has said what it is" not in words(app)  # once is enough
+    for name, typed in (("diameter.1:mm", "6"), ("flutes.1", "2"), ("diameter.2:mm", "10,5")):
+        app.text_input(key=f"toolpath.question.{name}").set_value(typed).run()
+    app.button(key="toolpath.question.answer").click().run()
+    assert errors(app)[-1] == "Tool 2: it cuts, and its diameter or its flutes are not said; type both."
+    assert app.text_input(key="toolpath.question.diameter.2:mm").value == "10.500"
+    app.text_input(key="toolpath.question.flutes.2").set_value("3").run()
+    app.button(key="toolpath.question.answer").click().run()
+    assert not app.exception
+    assert errors(app) == []
+    tools = store(app).project.setup.tools
+    said = {number: (tool.cutter.diameter, tool.cutter.flutes) for number, tool in tools.items() if tool.cutter}
+    assert said == {1: (pytest.approx(6e-3), 2), 2: (pytest.approx(10.5e-3), 3)}
+    assert all("flutes" not in tool.assumed and "kind" in tool.assumed for tool in tools.values())
+    assert verdict(app) in ("ok", "tight", "out")
+    assert not [key for key in store(app).values if key.startswith("toolpath.question")]
+
+
+def test_improve_says_no_share_of_the_tolerance_before_that_is_said(app: AppTest) -> None:
+    bring(app, POCKET.replace("G1 Z-1 F300", "G0 Z-1"))
+    assert verdict(app) == "unjudged"
+    go(app, "7_Improve")
+    assert not app.exception
+    title = re.search(r'<h1 class="rm-title">(.*?)</h1>', words(app))
+    assert title is not None
+    assert "%" not in title[1]
+    assert ": wall error of " in title[1] or ": floor error of " in title[1]
+    assert "if the tool is pushed with 100 N" in title[1]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import subprocess
+from datetime import datetime, timedelta, timezone
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from screenshots import CHROMIUM
 import robomill as rm
 from robomill.cli import main
 from robomill.errors import ProjectError
-from robomill.report.html import MARK
+from robomill.report.html import MARK, moment
 from robomill.simulation.judging.verdict_words import TITLES
 
 SLOT = rm.load_setup("paper_flute")
@@ -222,3 +223,11 @@ def test_the_robot_is_called_as_people_call_it() -> None:
     text = Page(rm.report_html(SLOT.replace(robot=rm.load_robot("kuka_kr270")))).text
     assert "Robot KUKA KR270-2F, compliances published" in text
     assert "kuka_kr270" not in text
+
+
+@pytest.mark.parametrize(
+    ("hours", "zone"), [(0.0, "UTC"), (2.0, "UTC+2"), (-3.5, "UTC\u22123:30"), (5.75, "UTC+5:45"), (None, "UTC")]
+)
+def test_the_moment_of_a_report_says_how_far_its_clock_is_from_utc(hours: float | None, zone: str) -> None:
+    there = None if hours is None else timezone(timedelta(hours=hours))
+    assert moment(datetime(2026, 3, 7, 9, 5, tzinfo=there)) == f"7 March 2026, 09:05 {zone}"

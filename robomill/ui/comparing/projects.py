@@ -92,11 +92,12 @@ def _b(named: Sequence[Head]) -> None:
 def choices(named: Sequence[Head]) -> dict[str, str]:
     """What can be compared with, by what ``other.choose`` takes."""
     names = {NOTHING: "Nothing"}
-    held = session.kept(other.HELD)
-    if held is not None:
-        names[other.HERE] = held.name
     names |= {f"{other.KEPT}:{head.place}": f"Kept: {head.name}" for head in named}
-    return names | {f"{other.EXAMPLE}:{name}": f"Example: {preset_setup(name).name}" for name in presets()}
+    names |= {f"{other.EXAMPLE}:{name}": f"Example: {preset_setup(name).name}" for name in presets()}
+    held = other.other()
+    if held is not None:  # a file, or the project as it was
+        names.setdefault(session.project().view.beside, held.name)
+    return names
 
 
 def _side_by_side(titles: Mapping[str, str]) -> None:

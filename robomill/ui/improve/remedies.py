@@ -325,6 +325,13 @@ def sentence(found: Sequence[Found], result: SimulationResult, now: Left, unit: 
     left = found[0].left
     if left is None:
         return "What would fix it?"
+    if result.verdict.level == "unjudged":  # a share of the tolerance would be a judgement
+        name, size = _decides(result)
+        rests = f", {result.verdict.premise}" if result.verdict.premise else ", where it is judged"
+        return (
+            f"{found[0].remedy.title}: {name} error of {format_si(size, unit)} becomes "
+            f"{left.error.removeprefix(f'{name} ')}{rests}. Nothing is within tolerance or out of it yet."
+        )
     if not left.share < now.share - LEAST:
         return "Nothing that was tried makes this cut noticeably truer."
     if now.sure:

@@ -21,7 +21,7 @@ class Settings:
 
     entry_MB, all_MB   of one entry and of all; the oldest go first
     days               after which an entry that was not touched goes
-    tabs, names        entries of one browser: of its tabs, and kept under a name
+    tabs, names        entries of one browser: of its tabs (and as many that these are held against), and under a name
     """
 
     on: bool = True

@@ -24,7 +24,7 @@ FIRST = "# robomill work "
 SEPARATOR = "\n\f"
 HEAD_BYTES = 2000
 SWEEP_S = 3600.0
-KEY, PLACE = re.compile(r"[0-9a-f]{64}"), re.compile(r"(tab|name)-[0-9a-f]{16}")
+KEY, PLACE = re.compile(r"[0-9a-f]{64}"), re.compile(r"(tab|name|side)-[0-9a-f]{16}")
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ class Shelf:
         return bool(PLACE.fullmatch(place)) and self._file(key, place).exists()
 
     def heads(self, key: str, kind: str = "") -> list[Head]:
-        """The entries of a browser, the last written first; ``kind`` "tab" or "name" picks some of them."""
+        """The entries of a browser, the last written first; ``kind`` "tab", "name" or "side" picks some of them."""
         found = []
         with contextlib.suppress(OSError):
             for file in self._folder(key).glob(f"{kind}*.toml"):
@@ -165,7 +165,7 @@ class Shelf:
         others = [head for head in there.values() if head.place.startswith(kind) and head.place != place]
         if kind == "name" and len(others) >= self.settings.names:
             raise ProjectError(f"{len(others)} projects are kept, and more are not; delete one first.")
-        for head in others[max(int(self.settings.tabs) - 1, 0) :] if kind == "tab" else ():
+        for head in others[max(int(self.settings.tabs) - 1, 0) :] if kind != "name" else ():
             self._file(key, head.place).unlink(missing_ok=True)
 
     def _write(self, file: Path, data: bytes) -> None:
@@ -208,6 +208,11 @@ class Shelf:
 def place_of(name: str) -> str:
     """Where the project kept under ``name`` stands."""
     return f"name-{hashlib.sha256(name.encode()).hexdigest()[:16]}"
+
+
+def side_of(fingerprint: str) -> str:
+    """Where a project stands that another one is held against."""
+    return f"side-{hashlib.sha256(fingerprint.encode()).hexdigest()[:16]}"
 
 
 def _head(line: bytes, place: str) -> Head | None:

@@ -1,5 +1,6 @@
 """What is it cutting? Asked in one row of a program that somebody brought, until somebody has said it."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -10,30 +11,38 @@ from robomill.cutting.force import ForceModel
 from robomill.cutting.forces import FORCES, model_of
 from robomill.cutting.materials import Material, alternatives
 from robomill.cutting.tool import Cutter
-from robomill.errors import ToolpathError
+from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
+from robomill.errors import CuttingError, ToolpathError
 from robomill.io.materials import sample_materials
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.simulation.origin.sources import changed_sources
 from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.tools import cutting_numbers
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.ui import pieces, session
 from robomill.ui.entry import declared, inputs, typed
 from robomill.ui.entry.box import NumberBox, box_of
+from robomill.ui.tools import missing
 from robomill.units import format_many, format_si
 
 KEY, MATERIAL = "toolpath.question", "material"
 SIZE = ("diameter", "flutes")
 BOXES = (*SIZE, "n_s", "tolerance")
+MOST_TOOLS = 4  # are asked for one by one; more come by a table
 SAID = Provenance("user", "said of the program when it was brought")
 
 
-def panel(path: Toolpath | None, premise: str) -> None:
-    """The row, where nobody has said yet what the project's program cuts; ``premise`` is what its numbers rest on."""
+def panel(path: Toolpath | None, premise: str) -> bool:
+    """The row, where nobody has said yet what the project's program cuts; ``premise`` is what its numbers rest on.
+
+    Answers whether it asks for tools.
+    """
     setup = session.project().setup
     if not setup.carried_from:
-        return
+        return False
+    lacking = _lacking(setup, path)
     with st.container(border=True, key="toolpath-question"):
         pieces.strong("What is it cutting?")
         hold = f"hold {premise}, and nothing is judged" if premise else "say nothing of this program"
@@ -43,17 +52,56 @@ def panel(path: Toolpath | None, premise: str) -> None:
         if path is not None and path.cutting.any():
             pieces.note(f"{_stock(setup)} Another one is given on the Milling page.")
         boxes = _boxes(setup, path)
+        for number in lacking:
+            _row_of(_of_tool(number))
         first, rest = pieces.split([1.0, 0.42 * len(boxes)], "question")
         with first:
             titles = {name: row.title for name, row in _rows().items()}
             inputs.pick("Material", f"{KEY}.{MATERIAL}", titles, _first(setup.force).name, inputs.LISTED)
         with rest:
-            declared.in_row(list(boxes), lambda name: _box(name, *boxes[name]))
+            _row_of(boxes)
         with typed.said_below(), st.container(horizontal=True, gap="small"):
             inputs.button("This is what it cuts", f"{KEY}.answer", "check", _answer, path, type="primary")
             if premise:
                 keep = f"Keep it: {premise.removeprefix('if ')}"
                 inputs.button(keep, f"{KEY}.keep", "", _accept, setup, type="tertiary")
+    return bool(lacking)
+
+
+def _lacking(setup: SimulationSetup, path: Toolpath | None) -> list[int]:
+    """Numbers of the tools that cut and that nobody has described, where they are few enough to be asked for here."""
+    found = [] if path is None else missing(setup.tools, cutting_numbers(path).tolist())
+    return found if len(found) <= MOST_TOOLS else []
+
+
+def _of_tool(number: int) -> dict[str, tuple[NumberBox, float | None]]:
+    """The boxes of a tool that the program calls by its ``number``, with what is in them."""
+    said, shown = quantities(Cutter), {"optional": True, "placeholder": "needed"}
+    return {
+        f"{name}.{number}": (
+            box_of(
+                said[name],
+                unit=declared.in_view(said[name].unit),
+                label=f"{said[name].label} of tool {number}",
+                **shown,
+            ),
+            session.kept(f"{KEY}.{name}.{number}"),
+        )
+        for name in SIZE
+    }
+
+
+def _tools(setup: SimulationSetup, lacking: Sequence[int]) -> ToolTable:
+    """The table with the tools that were asked for. Raises the refusal of a box that is empty."""
+    made = {tool.number: tool for tool in setup.tools.tools}
+    for number in lacking:
+        diameter, flutes = (value for _, value in _of_tool(number).values())
+        if diameter is None or flutes is None:
+            raise CuttingError(f"Tool {number}: it cuts, and its diameter or its flutes are not said; type both.")
+        known = made.get(number, TableTool(number))
+        new = Cutter("flat", diameter, flutes=int(flutes))
+        made[number] = replace(known, cutter=new, assumed=tuple(name for name in ASKED if name != "flutes"))
+    return ToolTable(tuple(made.values()))
 
 
 def _stock(setup: SimulationSetup) -> str:
@@ -66,6 +114,10 @@ def _stock(setup: SimulationSetup) -> str:
     return f"Stock: {'a block around the cuts' if setup.stock is None else whose}, {size}, its top at Z = {top}."
 
 
+def _row_of(boxes: dict[str, tuple[NumberBox, float | None]]) -> None:
+    declared.in_row(list(boxes), lambda name: _box(name, *boxes[name]))
+
+
 def _box(name: str, box: NumberBox, value: float | None) -> None:
     key = f"{KEY}.{name}"
     inputs.value(key, box, value, partial(session.keep, key))
@@ -75,6 +127,8 @@ def forget() -> None:
     """Nothing of an answer that was begun for another program."""
     for name in (MATERIAL, *BOXES):
         session.drop(f"{KEY}.{name}")
+    for key in [each for each in session.store().values if each.startswith(tuple(f"{KEY}.{name}." for name in SIZE))]:
+        session.drop(key)
 
 
 def _boxes(setup: SimulationSetup, path: Toolpath | None) -> dict[str, tuple[NumberBox, float | None]]:
@@ -82,7 +136,7 @@ def _boxes(setup: SimulationSetup, path: Toolpath | None) -> dict[str, tuple[Num
     where the program does not."""
     said = {**quantities(SimulationSetup), **quantities(GCodeSource), **quantities(Cutter)}
     first = {name: getattr(setup.cutter, name) for name in SIZE} | {"n_s": None, "tolerance": setup.tolerance}
-    names = [name for name in BOXES if not (name in SIZE and setup.tools)]
+    names = [name for name in BOXES if not (name in SIZE and (setup.tools or _lacking(setup, path)))]
     if path is None or path.turns or setup.source.kind != "program":
         names.remove("n_s")
     shown: dict[str, dict[str, Any]] = {"n_s": {"optional": True, "placeholder": "needed"}}
@@ -120,6 +174,8 @@ def _answer(path: Toolpath | None) -> None:
     model: Any = model_of(row)
     force = model(cutter=cutter, material=row, alternatives=alternatives(row, rows.values()))
     changed: dict[str, Any] = {"cutter": cutter, "force": force, "engagement": True}
+    if lacking := _lacking(setup, path):
+        changed["tools"] = _tools(setup, lacking)
     changed |= {"tolerance": found["tolerance"], "floor_tolerance": None, "feed_tolerance": None}
     if "n_s" in found and setup.source.kind == "program":
         changed["source"] = replace(setup.source, n_s=found["n_s"])

@@ -187,6 +187,10 @@ def test_a_browser_has_so_many_tabs_and_so_many_names(tmp_path: Path) -> None:
     for i in range(6):
         put(shelf, place=f"tab-{i:016x}")
     assert [h.place for h in shelf.heads(KEY, "tab")] == [f"tab-{i:016x}" for i in (5, 4, 3)]
+    for i in range(6):
+        put(shelf, place=f"side-{i:016x}")
+    assert [h.place for h in shelf.heads(KEY, "side")] == [f"side-{i:016x}" for i in (5, 4, 3)]
+    assert len(shelf.heads(KEY, "tab")) == 3
     for name in ("one", "two", "two"):
         put(shelf, place=place_of(name))
     with pytest.raises(ProjectError, match="delete one"):
