@@ -53,6 +53,7 @@ GOT = {
     "Advice": "advise",
     "Compensation": "compensate",
     "ComplianceMap": "compliance_map",
+    "BoxDesign": "design_box",
     "Design": "design",
     "Drawing": "read_drawing",
     "Field": "field",
