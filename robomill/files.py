@@ -113,11 +113,11 @@ def write_whole(path: str | Path, content: str | bytes, error: type[RobomillErro
 
 
 @contextmanager
-def written(path: str | Path, error: type[RobomillError]) -> Iterator[Path]:
+def written(path: str | Path, error: type[RobomillError], advice: str = "give another place.") -> Iterator[Path]:
     """Where to write what shall stand at ``path``: beside it, and put in its place when it is complete.
 
-    Nothing is left where that fails, and what stood there before stays; raises ``error`` then. A pipe or a device is
-    written to as it is.
+    Nothing is left where that fails, and what stood there before stays; raises ``error`` then, with the ``advice``. A
+    pipe or a device is written to as it is.
     """
     try:
         target = Path(os.path.realpath(path))
@@ -137,4 +137,4 @@ def written(path: str | Path, error: type[RobomillError]) -> Iterator[Path]:
         if isinstance(exc, RobomillError):
             raise
         why = getattr(exc, "strerror", None) or exc
-        raise error(f"{shown_place(path)}: cannot be written ({why}); give another place.") from None
+        raise error(f"{shown_place(path)}: cannot be written ({why}); {advice}") from None

@@ -84,6 +84,10 @@ class Spring(Said):
         """Itself with another tool in the spindle, ``longer`` (m) than the one it was stated for."""
         return self
 
+    def doubted(self, cutters: Sequence[Cutter]) -> str:
+        """What looks like another unit, or another tool than the ``cutters`` of a cut; empty where nothing does."""
+        return ""
+
     def contribution(self, frames: ArrayLike) -> FloatArray:
         """C (..., 3, 3) m/N in {M} from joint frames (..., n + 1, 4, 4) in {M}; the last frame is {T}."""
         raise NotImplementedError

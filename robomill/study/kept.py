@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robomill.errors import RobomillError, StudyError
+from robomill.errors import StudyError
 from robomill.extras import needed
 from robomill.files import shown_place, write_whole, written
 from robomill.io.results import json_text
@@ -114,11 +114,8 @@ class Kept:
         for i, name in enumerate(self.study.responses):
             columns[name] = pa.array([row.values[i] for row in rows], text if name in WORDS else number)
         columns["reason"] = pa.array([row.reason for row in rows], text)
-        try:
-            with written(place, StudyError) as beside:
-                pq.write_table(pa.table(columns), beside)
-        except RobomillError as refused:
-            raise StudyError(f"{str(refused).removesuffix('; give another place.')}; {resume_words()}") from None
+        with written(place, StudyError, resume_words()) as beside:
+            pq.write_table(pa.table(columns), beside)
 
 
 def resume_words() -> str:

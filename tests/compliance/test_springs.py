@@ -252,3 +252,13 @@ def test_another_tool_sticks_out_as_it_says_or_as_much_more_as_it_is_longer():
         assert found.stick_out == pytest.approx(stick_out)
         spindle = SpindleSpring(1e-7)
         assert spindle.of_tool(cutter, longer) is spindle
+
+
+def test_a_spring_doubts_what_no_spindle_and_no_other_cutter_is_like() -> None:
+    thin, thick = Cutter("flat", diameter_mm=6, flutes=3), Cutter("flat", diameter_mm=10, flutes=3)
+    assert SpindleSpring(5e-8, 2e-8).doubted([thin]) == ""
+    assert SpindleSpring(5e-8, 6e-6).doubted([thin]).startswith("Spindle and holder: 6 µm/N")
+    bending = ToolBending(10e-3, 30e-3)
+    assert bending.doubted([thick]) == bending.doubted([thin, thick]) == ""
+    assert "of a tool of 10 mm, and the cutter is 6 mm wide" in bending.doubted([thin])
+    assert ToolBending(7.9e-3, 30e-3).doubted([thin]) == "", "three quarters of it are 5.9 mm"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Self
 
@@ -14,12 +15,13 @@ from robomill.errors import RobotError
 from robomill.provenance import Provenance
 from robomill.quantities import quantity
 from robomill.spelled import in_units
-from robomill.units import to_si
+from robomill.units import format_short, to_si
 
 TYPICAL = Provenance("assumed", "20 N/µm across and 50 N/µm along, typical of a milling spindle with its holder")
 
 
 STIFFEST = 1e-11  # m/N: nothing gives as little without being called rigid: was it meant in m/N?
+SOFT = 5e-6  # m/N: the softest spindles and longest tools give way a tenth as much
 SOFTEST = 1e-3  # m/N: no spindle gives as much: was it meant in um/N?
 
 
@@ -62,6 +64,13 @@ class SpindleSpring(Spring):
     def first(cls, cutter: Cutter) -> Self:
         """A typical spindle."""
         return cls(to_si(0.05, "um/N"), to_si(0.02, "um/N"), provenance=TYPICAL)
+
+    def doubted(self, cutters: Sequence[Cutter]) -> str:
+        """A spindle that gives way more than any tool bends."""
+        largest = max(self.lateral, self.axial)
+        if largest <= SOFT:
+            return ""
+        return f"{self.name.capitalize()}: {format_short(largest, 'um/N')}: was its stiffness given, in N/µm?"
 
     def contribution(self, frames: ArrayLike) -> FloatArray:
         """C (..., 3, 3) m/N in {M}."""

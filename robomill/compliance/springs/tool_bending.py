@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -22,6 +23,7 @@ E_CARBIDE = to_si(600e3, "N/mm2")
 SOFT, HARD = to_si(1e3, "N/mm2"), to_si(2e6, "N/mm2")  # a plastic, and more than diamond
 #: Bending diameter of a fluted cutter over its outer diameter.
 FLUTED_CORE = 0.8
+OTHER = 0.75  # of a diameter: a shank may be a little thicker or thinner than its cutter
 CARBIDE = Provenance("assumed", "cantilever of solid carbide, E = 600 GPa, bending diameter 0.8 of the cutter's")
 
 
@@ -112,6 +114,13 @@ class ToolBending(Spring):
         """With the diameter and stick-out of ``cutter``; where that is not given, sticking out as much more."""
         stick_out = cutter.stick_out or max(self.stick_out + longer, cutter.diameter)
         return replace(self, diameter=cutter.diameter, stick_out=stick_out)
+
+    def doubted(self, cutters: Sequence[Cutter]) -> str:
+        """A bending that is of none of the ``cutters``, the first of which is named."""
+        if any(OTHER * cutter.diameter < self.diameter < cutter.diameter / OTHER for cutter in cutters):
+            return ""
+        thick, wide = format_short(self.diameter, "mm"), format_short(cutters[0].diameter, "mm")
+        return f"{self.name.capitalize()}: it is of a tool of {thick}, and the cutter is {wide} wide: is it of another?"
 
     def contribution(self, frames: ArrayLike) -> FloatArray:
         """C (..., 3, 3) m/N in {M}."""

@@ -8,8 +8,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
-from robomill.compliance.springs.spindle import SpindleSpring
-from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.kinematics.asked import longest_reach
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
@@ -23,8 +21,6 @@ SLIP = "unit-slip"  # what nobody means: by such numbers nothing is judged
 THIN = 0.6e-3  # m: the widest cutter there is, with its metres taken for mm
 SMALL_PATH, NEAR, SHORT_TOOL = 2e-3, 0.05, 2e-3  # m
 SLIGHT, HEAVY = 1.0, 20e3  # N: hardly a cut pushes less, or more
-SOFT_SPINDLE = 5e-6  # m/N: the softest spindles and longest tools give way a tenth as much
-OTHER = 0.75  # of a diameter: a shank may be a little thicker or thinner than its cutter
 FINE, COARSE = 2e-6, 2e-3  # m a tooth
 
 
@@ -120,17 +116,9 @@ def _of_robot(robot: Robot, zero: FloatArray) -> Iterator[str]:
 
 
 def _of_springs(setup: SimulationSetup) -> Iterator[str]:
-    """A spindle that gives way more than any tool bends, and a tool's bending that is of another cutter."""
+    """What each spring doubts of itself, beside the cutters of the cut."""
     used = [setup.cutter, *(tool.cutter for tool in setup.tools.values() if tool.cutter is not None)]
-    for spring in setup.springs:
-        name = spring.name.capitalize()
-        if isinstance(spring, SpindleSpring) and (largest := max(spring.lateral, spring.axial)) > SOFT_SPINDLE:
-            yield f"{name}: {format_short(largest, 'um/N')}: was its stiffness given, in N/µm?"
-        elif isinstance(spring, ToolBending) and not any(
-            OTHER * tool.diameter < spring.diameter < tool.diameter / OTHER for tool in used
-        ):
-            thick, wide = format_short(spring.diameter, "mm"), format_short(setup.cutter.diameter, "mm")
-            yield f"{name}: it is of a tool of {thick}, and the cutter is {wide} wide: is it of another?"
+    yield from filter(None, (spring.doubted(used) for spring in setup.springs))
 
 
 def _of_force(setup: SimulationSetup, F: FloatArray) -> Iterator[str]:
