@@ -63,6 +63,7 @@ class BoxDesign(Tabled):
 
     @property
     def feasible(self) -> bool:
+        """Whether the tolerance can be kept at every point that is reached."""
         return not self.reason
 
     @property
@@ -143,8 +144,10 @@ def design_box(
         On the tool, N, in {M}: the same at every point.
     tolerance, tolerance_mm : float, optional
         Of the tip's deviation, m or mm; left out: that of the set-up.
-    bounds, weight
-        As in ``rm.design``.
+    bounds : array_like, (2,) or (n, 2)
+        Least and most times as stiff, for all free joints or for each; (1, 1) is a joint that stays.
+    weight : float or array_like (n,)
+        What making a joint twice as stiff costs.
 
     Returns
     -------

@@ -104,13 +104,18 @@ def test_a_joint_pressed_against_its_limit_lets_the_others_do_the_work():
         theta, error = numeric.descend(narrow, rm.tool_pose(narrow, goal), start, "pose")
         assert (error <= numeric.TIGHT).mean() > 0.75
         assert (np.abs(theta) <= 0.9).all()
-    # A goal that needs a joint past its limit: the free joints settle where no motion of theirs helps any more.
+    # A goal that needs a joint past its limit, unless the other joints get there another way: no joint leaves its
+    # limits, and what is left is never further than it was at the start.
     beyond = goal[:40].copy()
     beyond[:, 0] = 1.4
-    T_MT = rm.tool_pose(narrow, beyond)
-    theta, error = numeric.descend(narrow, T_MT, np.clip(beyond, -0.9, 0.9), "position")
-    assert (error > 0).all()
+    T_MT, start = rm.tool_pose(narrow, beyond), np.clip(beyond, -0.9, 0.9)
+    theta, error = numeric.descend(narrow, T_MT, start, "position")
+    miss, missed = (T_MT[:, :3, 3] - rm.tool_pose(narrow, t)[:, :3, 3] for t in (theta, start))
+    np.testing.assert_allclose(error, np.abs(miss).max(axis=1), atol=1e-12)
+    assert (np.linalg.norm(miss, axis=1) <= np.linalg.norm(missed, axis=1) + 1e-12).all()
     assert (np.abs(theta) <= 0.9).all()
+    assert (error > 0.01).any()
+    assert (error < numeric.TIGHT).any()
 
 
 def test_a_small_arm_takes_the_solution_nearest_to_where_it_stood():

@@ -189,7 +189,7 @@ def test_a_disk_that_is_full_leaves_no_half_report(
     def full(*_: object, **__: object) -> int:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_text", full)
+    monkeypatch.setattr(Path, "write_bytes", full)
     out = tmp_path / "report.html"
     assert main(["report", "paper_flute", "--out", str(out)]) == 2
     assert "No space left" in capsys.readouterr().err

@@ -186,7 +186,8 @@ def test_components_may_be_written_either_way(written, meant):
 def test_unknown_quantities_are_refused(name):
     with pytest.raises(WorkspaceError) as refusal:
         map_quantity(rm.load_robot("slavkovic_5r"), name)
-    offered = str(refusal.value).removeprefix(f"Quantity {name!r}: expected ").removesuffix(".")
+    offered = str(refusal.value).removeprefix(f"Quantity {name!r}: expected ").partition("; did you mean")[0]
+    offered = offered.removesuffix(".")
     listed = offered.replace(" or ", ", ").split(", ")
     names = list(map_quantities(rm.load_robot("slavkovic_5r")))
     # Alone, or first and last of those that differ by component or joint; together they are all there is.
