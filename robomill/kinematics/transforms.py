@@ -9,10 +9,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from robomill import rigid
 from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.quantities import Quantity
+from robomill.rigid import axis_from_tilt as axis_from_tilt
 from robomill.spelled import beside, refuse_slip
 from robomill.units import format_si
 from robomill.vectors import angle_between
@@ -62,11 +64,7 @@ def rotation_about(vector: ArrayLike) -> FloatArray:
 def transform(R: ArrayLike, p: ArrayLike) -> FloatArray:
     """(..., 4, 4) from rotations R (..., 3, 3) and points p (..., 3) in m; leading axes broadcast."""
     R, p = as_floats(R, "R", (3, 3), error=KinematicsError), as_floats(p, "p", (3,), error=KinematicsError)
-    T = np.zeros((*np.broadcast_shapes(R.shape[:-2], p.shape[:-1]), 4, 4))
-    T[..., :3, :3] = R
-    T[..., :3, 3] = p
-    T[..., 3, 3] = 1.0
-    return T
+    return rigid.transform(R, p)
 
 
 def translation(p: ArrayLike) -> FloatArray:
@@ -195,12 +193,6 @@ def tilt_from_axis(k: ArrayLike) -> FloatArray:
     across = np.hypot(k[..., 1], k[..., 2])
     A = np.where(across > 1e-12, np.arctan2(-k[..., 1], k[..., 2]), 0.0)
     return np.stack([A, np.arctan2(k[..., 0], across)], axis=-1)
-
-
-def axis_from_tilt(A: ArrayLike, B: ArrayLike) -> FloatArray:
-    """Unit tool axes k_T (..., 3) of the tilts A, B (rad)."""
-    A, B = np.broadcast_arrays(np.asarray(A, dtype=np.float64), np.asarray(B, dtype=np.float64))
-    return np.stack([np.sin(B), -np.sin(A) * np.cos(B), np.cos(A) * np.cos(B)], axis=-1)
 
 
 def rotation_from_turns(turns: ArrayLike) -> FloatArray:

@@ -11,6 +11,7 @@ from robomill.arrays import NO_NUMBERS, BoolArray, FloatArray, as_floats, brief
 from robomill.errors import RobotError
 from robomill.provenance import GIVEN, Provenance
 from robomill.quantities import Quantity
+from robomill.rigid import transform
 from robomill.robot import checks
 from robomill.spelled import one_of, refuse_slip
 from robomill.units import format_plain, from_si, to_si
@@ -334,6 +335,4 @@ def _frame(given: Mapping[str, Any], part: str, who: str) -> Any:
     p = _numbers(one_of(FRAME[part], plain, in_mm, RobotError, who), f"{part}_xyz", who)
     if p.shape != (3,):
         raise RobotError(f"{who}: {part}_xyz: expected three numbers, found {np.size(p)}.")
-    found = np.eye(4)
-    found[:3, 3] = p
-    return found
+    return transform(np.eye(3), p)

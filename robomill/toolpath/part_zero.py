@@ -12,6 +12,7 @@ from robomill.arguments import asked
 from robomill.arrays import FloatArray, as_floats, frozen
 from robomill.errors import ToolpathError
 from robomill.quantities import Quantity
+from robomill.rigid import transform
 from robomill.spelled import refuse_slip
 from robomill.units import format_si, to_si
 
@@ -91,8 +92,7 @@ def frame_from_points(zero: ArrayLike, on_x: ArrayLike, in_xy: ArrayLike) -> Tou
             "touch the third one well beside the x axis."
         )
     z = z / lever
-    T_MW = np.eye(4)
-    T_MW[:3, 0], T_MW[:3, 1], T_MW[:3, 2], T_MW[:3, 3] = x, np.cross(z, x), z, o
+    T_MW = transform(np.column_stack([x, np.cross(z, x), z]), o)
     return TouchedFrame(frozen(T_MW), base, angle, lever)
 
 

@@ -23,6 +23,7 @@ STOREYS = [
         "kinds",
         "arrays",
         "vectors",
+        "rigid",
         "errors",
         "extras",
         "frames",

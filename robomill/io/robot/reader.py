@@ -10,6 +10,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import RobotError
 from robomill.io.tables import MISSING, Table, parse_toml
 from robomill.quantities import quantities
+from robomill.rigid import transform
 from robomill.robot.model import USER_SET, Robot
 from robomill.robot.stiffness import turned_over
 
@@ -115,9 +116,7 @@ def _column(table: Table, rows: int) -> FloatArray:
 
 def _frame(table: Table) -> FloatArray:
     """(4, 4) from ``xyz_mm``/``xyz_m`` and three rows ``rotation``."""
-    T = np.eye(4)
-    T[:3, 3] = table.measures("xyz", LENGTH, 3, (0.0, 0.0, 0.0), "three numbers")
-    if table.has("rotation"):
-        T[:3, :3] = table.rows("rotation", 3, "1", 3)
+    p = table.measures("xyz", LENGTH, 3, (0.0, 0.0, 0.0), "three numbers")
+    R = table.rows("rotation", 3, "1", 3) if table.has("rotation") else np.eye(3)
     table.finish()
-    return T
+    return transform(R, p)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.rigid import transform
 
 PARALLEL = 1e-9
 
@@ -21,10 +22,7 @@ def dh_from_axes(k: FloatArray, p: FloatArray, T_MT: FloatArray) -> dict[str, Fl
         last = i + 1 == n
         along = k[i] * (k[i] @ (T_MT[:3, 3] - p[i]))
         x, origin = (_square_part(T_MT[:3, 0], k[i]), p[i] + along) if last else _common_perpendicular(k, p, i, x)
-        T = np.eye(4)
-        T[:3, :3] = np.column_stack([x, np.cross(k[i], x), k[i]])
-        T[:3, 3] = origin
-        frames.append(T)
+        frames.append(transform(np.column_stack([x, np.cross(k[i], x), k[i]]), origin))
     alpha, a, d, theta = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     for i in range(1, n):
         # Rx(alpha) Tx(a) Rz(theta) Tz(d) between neighbouring frames.
@@ -69,6 +67,4 @@ def _square_part(x: FloatArray, k: FloatArray) -> FloatArray:
 def _rigid(T: FloatArray) -> FloatArray:
     """T with its rotation made exactly orthonormal and its last row exact."""
     u, _, vt = np.linalg.svd(T[:3, :3])
-    result = np.eye(4)
-    result[:3, :3], result[:3, 3] = u @ vt, T[:3, 3]
-    return result
+    return transform(u @ vt, T[:3, 3])
