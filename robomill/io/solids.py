@@ -18,7 +18,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import SurfaceError
-from robomill.units import format_count
+from robomill.units import format_count, from_si, rounded, to_si
 
 Kind = Literal["stl", "obj", "ply", "3mf"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -28,8 +28,7 @@ MOST_PLACED, DEEPEST = 10_000, 16
 MOST_OTHERS = 100_000  # elements of a 3MF beside corners and triangles
 PIECE, STILL = 1 << 20, 8  # bytes that are unpacked at a time, and how often without any element that begins
 _FACE, _ELEMENTS = re.compile(rb"^[ \t]*f[ \t](.*)$", re.MULTILINE), re.compile(rb"element\s+\w+\s+(\d{1,18})")
-UNITS_OF_3MF = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
-"""Units of a 3MF, in mm."""
+UNITS_OF_3MF = {"micron": "um", "millimeter": "mm", "centimeter": "cm", "inch": "in", "foot": "ft", "meter": "m"}
 
 
 def kind_of(name: str) -> Kind:
@@ -85,9 +84,10 @@ def _of_3mf(data: bytes, label: str) -> dict[str, Any]:
         for each in model.iter()
         if _is(each, "object")
     }
-    scale = UNITS_OF_3MF.get(models[root].get("unit", "millimeter"))
-    if scale is None:
+    unit = UNITS_OF_3MF.get(models[root].get("unit", "millimeter"))
+    if unit is None:
         raise SurfaceError(f"{label}: the unit of the 3MF is {models[root].get('unit')!r:.40}; expected millimeter.")
+    scale = rounded(from_si(to_si(1.0, unit), "mm"))
     vertices: list[FloatArray] = []
     faces: list[Any] = []
     count = triangles = 0
