@@ -267,10 +267,11 @@ def _key() -> str:
 
 
 def _made_from() -> list[Path]:
-    """The kernel modules, what they import from this package (constants, kinds of tuples), and rules."""
-    named = {name for source in _sources() for name in IMPORTED.findall(source.read_text())}
+    """The kernel modules, rules, and what both import from this package (constants, kinds of tuples, laws)."""
+    own = {*_sources(), *PACKAGE.glob(RULES)}
+    named = {name for source in own for name in IMPORTED.findall(source.read_text())}
     imported = {PACKAGE.joinpath(*name.split(".")).with_suffix(".py") for name in named}
-    return sorted({*_sources(), *PACKAGE.glob(RULES), *(path for path in imported if path.is_file())})
+    return sorted({*own, *(path for path in imported if path.is_file())})
 
 
 def _processor() -> str:
@@ -395,6 +396,5 @@ def _say() -> None:
 
 
 if __name__ == "__main__":
-    import_module("robomill.compiled").compile_all(
-        tuple(sys.argv[1:])
-    )  # this file by its own name: what it marks is known there
+    # This file by its own name: what it marks is known there.
+    import_module("robomill.compiled").compile_all(tuple(sys.argv[1:]))

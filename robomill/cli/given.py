@@ -237,12 +237,12 @@ def tools(name: str, unit: str) -> Any:
 
 def is_apt(source: Path | bytes) -> bool:
     """Whether a program is a cutter location file."""
-    from robomill.toolpath import apt
+    from robomill.toolpath import text
 
     if isinstance(source, bytes):
-        return apt.is_apt(source)
+        return text.is_apt(source)
     try:
         with source.open("rb") as stream:
-            return apt.is_apt(stream.read(200_000))
+            return text.is_apt(stream.read(200_000))
     except OSError:
         return False  # the interpreter says what is wrong with the file

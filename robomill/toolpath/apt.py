@@ -25,10 +25,11 @@ from robomill.toolpath.apt_moves import (
     numbers_of,
     tangent_arc,
 )
-from robomill.toolpath.gcode.findings import NO_UNITS, Findings
-from robomill.toolpath.gcode.rules.motion_rules import MOST
+from robomill.toolpath.findings import NO_UNITS, Findings
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
+from robomill.toolpath.text import is_apt as is_apt  # by its old name for the rooms above
+from robomill.toolpath.tools import MOST
 from robomill.units import to_si
 
 _MOVES = frozenset(
@@ -89,12 +90,6 @@ class _State:
 
 _NAMES = re.compile(r"[A-Z]\w*\s*=.*")
 _FORWARD = re.compile(r"TLON\s*,\s*GOFWD")
-_GOTO = re.compile(rb"^[ \t]*(?:GOTO|FROM)[ \t]*/", re.IGNORECASE | re.MULTILINE)
-
-
-def is_apt(data: bytes) -> bool:
-    """True if the bytes of a file look like APT-CL (a GOTO/ or FROM/ statement near the start)."""
-    return _GOTO.search(data[:200_000]) is not None
 
 
 def read_apt(path_or_text: Source) -> Toolpath:

@@ -17,7 +17,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.arcs import CHORD_ERROR, chord_counts
+from robomill.toolpath.arcs import CHORD_ERROR, chord_counts
 from robomill.units import format_si, to_si
 
 NUMBER = re.compile(r"[-+]?(?:\d++\.?+\d*+|\.\d++)(?:[eE][-+]?\d++)?+$")  # of any length at once: it never goes back

@@ -8,7 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.toolpath.gcode.rules.motion_rules import axes
+from robomill.toolpath.arcs import Arcs
+from robomill.toolpath.plane import axes
 
 FEWEST = 3  # points of an arc that is worth fitting
 WIDEST = math.radians(330.0)  # of one arc: nearly closed ones are fitted in halves
@@ -151,15 +152,8 @@ def _in_space(plane: int, centre: FloatArray, w: float) -> FloatArray:
 
 def along_piece(start: FloatArray, piece: Piece, f: FloatArray, plane: int = 17) -> FloatArray:
     """(n, 3) m: where a piece from ``start`` (3,) m is at shares f (n,) of its move."""
-    share = ((f - piece.f0) / (piece.f1 - piece.f0) if piece.f1 > piece.f0 else np.ones(len(f)))[:, None]
-    points = start + share * (piece.end - start)
+    share = (f - piece.f0) / (piece.f1 - piece.f0) if piece.f1 > piece.f0 else np.ones(len(f))
     if piece.centre is None:
-        return np.asarray(points)
-    first, second, _ = axes(plane)
-    u = start[[first, second]] - piece.centre[[first, second]]
-    v = piece.end[[first, second]] - piece.centre[[first, second]]
-    angle = math.atan2(u[1], u[0]) + share[:, 0] * piece.sweep
-    radius = np.linalg.norm(u) + share[:, 0] * (np.linalg.norm(v) - np.linalg.norm(u))
-    points[:, first] = piece.centre[first] + radius * np.cos(angle)
-    points[:, second] = piece.centre[second] + radius * np.sin(angle)
-    return np.asarray(points)
+        return np.asarray(start + share[:, None] * (piece.end - start))
+    arc = Arcs(start[None], piece.end[None], piece.centre[None], np.array([plane]), np.array([piece.sweep]))
+    return arc.at(np.zeros(len(f), dtype=np.int64), share)

@@ -9,9 +9,10 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.extras import needed
+from robomill.toolpath.arcs import CHORD_ERROR
 from robomill.toolpath.chaining import tidy_chain
 from robomill.toolpath.contour import Contour
-from robomill.toolpath.gcode.arcs import CHORD_ERROR
+from robomill.toolpath.plane import doubled_area
 from robomill.toolpath.sketch import centre_of
 from robomill.units import format_many, format_si
 
@@ -74,8 +75,7 @@ def _beside_arc(contour: Contour, away: float) -> list[Contour]:
     """The arc about the same centre."""
     corners = contour.outline()
     a, b, c = contour.points
-    u, v = b - a, c - b
-    turns_left = u[0] * v[1] - u[1] * v[0] > 0.0
+    turns_left = doubled_area(a, b, c) > 0.0
     middle = centre_of(a, b, c)
     if middle is None:
         return _beside_open(replace(contour, shape="polyline", points=corners), away)

@@ -18,7 +18,9 @@ from robomill.arrays import FloatArray, Rows, frozen, of_kind
 from robomill.errors import ToolpathError
 from robomill.quantities import choice, quantities, quantity, settle
 from robomill.spelled import Replaceable, in_units
+from robomill.toolpath import arcs
 from robomill.toolpath.path import MOST_FEED, SLOWEST, SPINDLE, Toolpath
+from robomill.toolpath.plane import doubled_area, swept, through
 from robomill.units import format_count, format_short, format_si, from_si, to_si
 from robomill.values import Said
 
@@ -233,11 +235,10 @@ def outline(shape: Shape, points: FloatArray) -> FloatArray:
         return _chords(rim, rim, centre, clockwise=False)
     if shape == "arc":
         start, way, end = points
-        side = _cross(end - start, way - start)
         middle = centre_of(start, way, end)
         if middle is None:
             return np.array(points)
-        return _chords(start, end, middle, clockwise=side > 0)
+        return _chords(start, end, middle, clockwise=doubled_area(start, way, end) < 0)
     return np.array(points)
 
 
@@ -264,28 +265,19 @@ def _check_extent(shape: str, points: FloatArray) -> None:
         raise ToolpathError("Sketch: the corners of the rectangle are on one line; draw a line, or move a corner.")
 
 
-def _cross(a: FloatArray, b: FloatArray) -> float:
-    return float(a[0] * b[1] - a[1] * b[0])
-
-
 def centre_of(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray | None:
     """Centre of the circle through three points; None where they are on a line."""
-    ab, ac = b - a, c - a
-    twice = 2.0 * _cross(ab, ac)
-    if abs(twice) < 1e-9 * float(np.linalg.norm(ab) * np.linalg.norm(ac)):
+    sides = float(np.linalg.norm(b - a) * np.linalg.norm(c - a))
+    if 2.0 * abs(doubled_area(a, b, c)) < 1e-9 * sides:
         return None
-    u, v = float(ab @ ab), float(ac @ ac)
-    return np.asarray(a + np.array([ac[1] * u - ab[1] * v, ab[0] * v - ac[0] * u]) / twice)
+    return np.array(through(a, b, c))
 
 
 def _chords(start: FloatArray, end: FloatArray, centre: FloatArray, *, clockwise: bool) -> FloatArray:
-    from robomill.toolpath.gcode import arcs
-    from robomill.toolpath.gcode.rules import motion_rules  # the one place where arcs become chords
-
     def lifted(point: FloatArray) -> FloatArray:
         return np.array([[point[0], point[1], 0.0]])
 
-    sweep = motion_rules.swept(start, end, centre, -1 if clockwise else 1, motion_rules.FULL_TURN)
+    sweep = swept(start, end, centre, -1 if clockwise else 1)
     arc = arcs.Arcs(lifted(start), lifted(end), lifted(centre), np.array([17]), np.array([sweep]))
     counts = arcs.chord_counts(arc.sweep, arc.bend, arcs.CHORD_ERROR)
     return np.vstack([lifted(start), arc.chords(counts)])[:, :2]

@@ -33,7 +33,7 @@ from robomill.toolpath.path import (
     toolpath_from_lines,
 )
 from robomill.toolpath.sketch import Sketch
-from robomill.toolpath.text import split_lines
+from robomill.toolpath.text import is_apt, split_lines
 from robomill.toolpath.tools import Tools
 from robomill.units import format_count, format_si, format_significant, from_si
 from robomill.values import Said
@@ -149,7 +149,7 @@ class GCodeSource(Said):
         return path
 
     def _read(self, tools: Tools | None) -> Toolpath:
-        from robomill.toolpath.apt import is_apt, read_apt  # the readers load only where a program is read
+        from robomill.toolpath.apt import read_apt  # the readers load only where a program is read
         from robomill.toolpath.gcode import read_gcode
 
         data = self.text.encode()

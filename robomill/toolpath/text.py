@@ -2,6 +2,7 @@
 
 import codecs
 import os
+import re
 from pathlib import Path
 
 from robomill.errors import GCodeError
@@ -20,6 +21,7 @@ NO_PROGRAMS = (
 """Endings of other files: a program of such a name would be taken for one."""
 
 DOS_END, FILLING = b"\x1a", b"\x1a\0 \t\r\n"  # Ctrl-Z ends a program from DOS, whose last block is filled up
+_GOTO = re.compile(rb"^[ \t]*(?:GOTO|FROM)[ \t]*/", re.IGNORECASE | re.MULTILINE)
 
 
 def read_source(source: Source) -> tuple[bytes, str]:
@@ -38,6 +40,11 @@ def read_source(source: Source) -> tuple[bytes, str]:
     if _is_path(source):
         return _read_file(Path(source)), os.path.basename(source)
     return as_plain_bytes(source.encode("utf-8", "surrogateescape")), "program"
+
+
+def is_apt(data: bytes) -> bool:
+    """True if the bytes of a file look like APT-CL (a GOTO/ or FROM/ statement near the start)."""
+    return _GOTO.search(data[:200_000]) is not None
 
 
 def check_program_name(place: Path) -> None:

@@ -4,6 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+MOST = 2**31 - 1
+"""No column of whole numbers holds more; nobody turns so often, or has so many tools."""
+
 
 @dataclass(frozen=True)
 class Tool:

@@ -65,8 +65,17 @@ def functions(path: Path) -> list[ast.FunctionDef]:
     return [node for node in ast.walk(tree(path)) if isinstance(node, ast.FunctionDef)]
 
 
+def parts(name: str) -> list[str]:
+    """a, a.b and a.b.c of a.b.c."""
+    words = name.split(".")
+    return [".".join(words[: k + 1]) for k in range(len(words))]
+
+
 def imports(module: str, *, inside_functions: bool) -> set[str]:
-    """Modules of the product that ``module`` imports; those needed for annotations alone count too."""
+    """Modules of the product that ``module`` imports; those needed for annotations alone count too.
+
+    ``import a.b.c`` loads the packages a and a.b first, save those that the module itself stands in.
+    """
     found: set[str] = set()
 
     def visit(node: ast.AST) -> None:
@@ -84,7 +93,8 @@ def imports(module: str, *, inside_functions: bool) -> set[str]:
             visit(child)
 
     visit(tree(MODULES[module]))
-    return (found & set(MODULES)) - {module}
+    loaded = {part for name in found for part in parts(name)} - set(parts(module))
+    return ((found | loaded) & set(MODULES)) - {module}
 
 
 @pytest.mark.parametrize("inside_functions", [False, True], ids=["at the top", "inside functions too"])

@@ -362,6 +362,12 @@ def test_the_digest_covers_every_source(tmp_path, monkeypatch):
     before = compiled._key()
     (room / "other.py").write_text("LIMIT = 2")
     assert compiled._key() != before
+    # And what rules take, which are compiled too.
+    (room / "some_rules.py").write_text("from robomill.room.law import turned")
+    (room / "law.py").write_text("def turned(): ...")
+    before = compiled._key()
+    (room / "law.py").write_text("def turned(): return 1")
+    assert compiled._key() != before
 
 
 @pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500"])

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.apt import is_apt, read_apt
+from robomill.toolpath.apt import read_apt
 from robomill.toolpath.gcode import Tool, interpret
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.support import SUPPORT
+from robomill.toolpath.text import is_apt
 
 DATA = Path(__file__).resolve().parents[1] / "toolpath" / "gcode" / "data"
 TOOLS = {n: Tool(n, 3e-3, (0.0, 0.0, 1e-3)) for n in range(1, 20)}

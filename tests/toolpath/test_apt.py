@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.apt import is_apt, read_apt
+from robomill.toolpath.apt import read_apt
 from robomill.toolpath.gcode import read_gcode
+from robomill.toolpath.text import is_apt
 
 FILE = """PARTNO/ BLADE
 $$ a comment

@@ -16,9 +16,9 @@ from robomill.arrays import FARTHEST, FloatArray
 from robomill.errors import ToolpathError
 from robomill.extras import needed
 from robomill.progress import checkpoint
+from robomill.toolpath.arcs import CHORD_ERROR, chord_counts
 from robomill.toolpath.chaining import SHORTEST
 from robomill.toolpath.contour import Contour
-from robomill.toolpath.gcode.arcs import CHORD_ERROR, chord_counts
 from robomill.toolpath.sketch import MAX_POINTS, Shape, centre_of, outline
 from robomill.units import format_count, to_si
 

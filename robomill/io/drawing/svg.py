@@ -29,7 +29,7 @@ from robomill.io.drawing.svg_viewports import (
     pixels,
     target_of,
 )
-from robomill.toolpath.gcode.arcs import CHORD_ERROR
+from robomill.toolpath.arcs import CHORD_ERROR
 from robomill.units import format_count
 
 DEEPEST = 200  # elements in elements, twice as many where some are used by others

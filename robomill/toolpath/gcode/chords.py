@@ -7,7 +7,8 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import arcs
+from robomill.rigid import axis_from_tilt
+from robomill.toolpath import arcs
 from robomill.toolpath.gcode.program import TRAVERSE, Program
 from robomill.toolpath.path import Toolpath, far_off
 from robomill.units import to_si
@@ -201,6 +202,5 @@ def _turned(v: FloatArray, angle: FloatArray, axis: int) -> FloatArray:
 
 
 def tool_axis(angles: FloatArray) -> FloatArray:
-    """k (..., 3) for rotations A, B, C (..., 3) rad: k = (sin B, -sin A cos B, cos A cos B); C spins about k."""
-    a, b = angles[..., 0], angles[..., 1]
-    return np.stack([np.sin(b), -np.sin(a) * np.cos(b), np.cos(a) * np.cos(b)], axis=-1)
+    """k (..., 3) for rotations A, B, C (..., 3) rad; C spins about k."""
+    return axis_from_tilt(angles[..., 0], angles[..., 1])

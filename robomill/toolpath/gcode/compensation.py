@@ -15,8 +15,9 @@ from robomill.toolpath.gcode.held_moves import BESIDE_ARC, SHARPEST, HeldMove
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.moves import centre_of_arc, plain_words
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
-from robomill.toolpath.gcode.rules.motion_rules import arc_length, axes, feed_speed, inverse_time, swept, turns_of
+from robomill.toolpath.gcode.rules.motion_rules import arc_length, feed_speed, inverse_time, turns_of
 from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.plane import axes, polar, swept
 
 CORNER = 0.05
 """rad: directions that differ by less go straight on."""
@@ -188,7 +189,7 @@ class Compensation:
             alpha += 2.0 * math.pi if alpha < theta else 0.0
             beta = alpha - theta - _HALF
         gamma = _HALF if self.left else -_HALF
-        side = (self.radius * math.cos(alpha + gamma), self.radius * math.sin(alpha + gamma))
+        side = polar(self.radius, alpha + gamma)
         before = self.held[0].turn if self.held else 0
         around = beta > math.pi - CORNER and before != 0 and not self._inside(before)
         if beta < -CORNER or beta > math.pi + CORNER or around:
@@ -218,9 +219,9 @@ class Compensation:
                 "the first move with cutter compensation is not longer than the cutter's radius; start farther away."
             )
         alpha = math.atan2(v - cv, u - cu) + (_HALF if self.left else -_HALF)
-        end = (u + self.radius * math.cos(alpha), v + self.radius * math.sin(alpha))
+        end = polar(self.radius, alpha, u, v)
         self.corner = (cu, cv)
-        self._hold(machine, block, (*end, w), full, direction=(math.cos(alpha), math.sin(alpha)))
+        self._hold(machine, block, (*end, w), full, direction=polar(1.0, alpha))
         self._stand(machine, *end, full, (u, v))
         self.entering = machine.other_control
 
@@ -229,7 +230,7 @@ class Compensation:
         assert self.programmed is not None
         self.entering = False
         side = direction + (_HALF if self.left else -_HALF)
-        u, v = self.programmed[0] + self.radius * math.cos(side), self.programmed[1] + self.radius * math.sin(side)
+        u, v = polar(self.radius, side, *self.programmed[:2])
         for move in self.held:
             move.end = (u, v, move.end[2])
         return u, v
@@ -254,7 +255,7 @@ class Compensation:
         if half == 0.0:
             raise self._gouge(block, "the straight move before it")
         retreat = self.radius / math.tan(half)
-        return at[0] + retreat * math.cos(back), at[1] + retreat * math.sin(back)
+        return polar(retreat, back, *at)
 
     def _arc_to_line(
         self, block: Block, turn: int, corner: tuple[float, float], direction: float
@@ -270,7 +271,7 @@ class Compensation:
         if inside == (turn > 0):
             angle = -angle
         angle += theta + math.pi
-        return previous.centre[0] + radius * math.cos(angle), previous.centre[1] + radius * math.sin(angle)
+        return polar(radius, angle, *previous.centre)
 
     def _ratio(self, block: Block, part: float, whole: float) -> float:
         ratio = part / whole if whole else math.inf
@@ -308,7 +309,7 @@ class Compensation:
         beta += -2.0 * math.pi if beta > 1.5 * math.pi else (2.0 * math.pi if beta < -_HALF else 0.0)
         away = (centre[0] - u, centre[1] - v) if inside else (u - centre[0], v - centre[1])
         gamma = math.atan2(away[1], away[0])
-        end = (u + self.radius * math.cos(gamma), v + self.radius * math.sin(gamma))
+        end = polar(self.radius, gamma, u, v)
         sweep = swept((pu, pv), (u, v), centre, turn, 0.0)
         if beta < -CORNER or beta > math.pi + CORNER or (abs(beta - math.pi) < CORNER and not inside):
             if self.held and self.held[0].turn:
@@ -320,7 +321,7 @@ class Compensation:
             raise block.refuse(BESIDE_ARC)
         elif beta > CORNER:
             delta += 0.0 if inside else math.pi
-            mid = (pu + self.radius * math.cos(delta), pv + self.radius * math.sin(delta))
+            mid = polar(self.radius, delta, pu, pv)
             self.release(machine)
             self._round(machine, block, full, mid, (pu, pv), cw)
         else:
@@ -351,13 +352,13 @@ class Compensation:
         inverse_time(machine, plain_words(block), arc_length(machine, full, (cu, cv), centre, turn))
         away = (centre[0] - u, centre[1] - v) if inside else (u - centre[0], v - centre[1])
         gamma = math.atan2(away[1], away[0])
-        eu, ev = u + self.radius * math.cos(gamma), v + self.radius * math.sin(gamma)
+        eu, ev = polar(self.radius, gamma, u, v)
         towards = math.atan2(centre[1] - ev, centre[0] - eu)
         lean = math.cos(math.atan2(cv - ev, cu - eu) - towards)
         if abs(lean) < 1e-6:
             raise self._too_small(block)
         reach = math.hypot(cv - ev, cu - eu) / 2.0 / lean
-        centre = (eu + reach * math.cos(towards), ev + reach * math.sin(towards))
+        centre = polar(reach, towards, eu, ev)
         if self.orientation not in (0, 9):
             self._hold(machine, block, (cu, cv, cw), full)
             self.release(machine)  # the arc alone is still to be ended
@@ -377,7 +378,7 @@ class Compensation:
             angle = theta + (lean if turn > 0 else -lean)
         else:
             angle = theta + math.pi + (-lean if turn > 0 else lean)
-        return centre[0] + distance * math.cos(angle), centre[1] + distance * math.sin(angle)
+        return polar(distance, angle, *centre)
 
     def _arc_to_arc(self, block: Block, centre: tuple[float, float], radius: float, turn: int) -> tuple[float, float]:
         previous = self.held[0]
@@ -390,4 +391,4 @@ class Compensation:
         towards = math.atan2(centre[1] - previous.centre[1], centre[0] - previous.centre[0])
         outward = self._inside(previous.turn) == (turn > 0)
         angle = towards + (pull if outward else -pull)
-        return previous.centre[0] + old * math.cos(angle), previous.centre[1] + old * math.sin(angle)
+        return polar(old, angle, *previous.centre)

@@ -6,7 +6,8 @@ import numpy as np
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.program import Move
-from robomill.toolpath.gcode.rules.motion_rules import ARC, FEED, axes
+from robomill.toolpath.gcode.rules.motion_rules import ARC, FEED
+from robomill.toolpath.plane import axes
 from robomill.units import format_si
 
 ROUND, LEGS, BEVEL, EACH = "round", "legs", "bevel", "each"

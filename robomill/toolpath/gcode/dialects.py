@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from robomill.errors import GCodeError
+from robomill.toolpath.findings import Findings
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.corners import LEGS, ROUND
 from robomill.toolpath.gcode.fanuc.cycles import bolt_holes
 from robomill.toolpath.gcode.fanuc.scaling import scales
-from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.machine import UNITS, Machine
 from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
 from robomill.toolpath.gcode.rules.motion_rules import LINE

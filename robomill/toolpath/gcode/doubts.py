@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from robomill.provenance import Finding, Level
-from robomill.toolpath.gcode.findings import Findings
+from robomill.toolpath.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.offsets import stored_system, system_name
 from robomill.toolpath.gcode.program import TRAVERSE, Program

@@ -10,9 +10,9 @@ from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.program import PROBE
 from robomill.toolpath.gcode.rules.cycle_rules import is_cycle
 from robomill.toolpath.gcode.rules.mode_rules import set_modes, set_plane, set_rates, switch
-from robomill.toolpath.gcode.rules.motion_rules import MOST, dwell
+from robomill.toolpath.gcode.rules.motion_rules import dwell
 from robomill.toolpath.gcode.words import Block
-from robomill.toolpath.tools import Tool
+from robomill.toolpath.tools import MOST, Tool
 
 
 def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:

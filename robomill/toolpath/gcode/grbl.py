@@ -7,7 +7,7 @@ are everywhere: what is not known is counted, as senders of grbl leave them out 
 import re
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.findings import Findings
+from robomill.toolpath.findings import Findings
 
 _G = (
     *("0", "1", "2", "3", "4", "10", "17", "18", "19", "20", "21", "28", "28.1", "30", "30.1", "38.2", "38.3", "38.4"),

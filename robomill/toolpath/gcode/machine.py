@@ -12,9 +12,9 @@ from weakref import WeakMethod
 
 from robomill.errors import GCodeError
 from robomill.provenance import Level
+from robomill.toolpath.findings import Findings
 from robomill.toolpath.gcode.codes import LETTERS
 from robomill.toolpath.gcode.corners import EACH, joined
-from robomill.toolpath.gcode.findings import Findings
 from robomill.toolpath.gcode.parameters import Parameters
 from robomill.toolpath.gcode.program import ARC, FEED, TAP, TRAVERSE, Move, Recorder
 from robomill.toolpath.gcode.rules.mode_rules import system_code

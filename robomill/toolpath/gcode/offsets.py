@@ -6,10 +6,10 @@ from robomill.toolpath.gcode.codes import COMPENSATION, g_name
 from robomill.toolpath.gcode.compensation import Compensation
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.rules.mode_rules import system_code
-from robomill.toolpath.gcode.rules.motion_rules import MOST, rotate
+from robomill.toolpath.gcode.rules.motion_rules import rotate
 from robomill.toolpath.gcode.standing import begins, stand
 from robomill.toolpath.gcode.words import Block
-from robomill.toolpath.tools import Tool
+from robomill.toolpath.tools import MOST, Tool
 from robomill.units import from_si, to_si
 
 SYSTEMS = {540: 1, 550: 2, 560: 3, 570: 4, 580: 5, 590: 6, 591: 7, 592: 8, 593: 9}

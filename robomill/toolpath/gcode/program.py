@@ -13,7 +13,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
-from robomill.toolpath.gcode import arcs
+from robomill.toolpath import arcs
 from robomill.toolpath.gcode.rules.motion_rules import ARC, FEED, PROBE, TAP, TRAVERSE
 from robomill.toolpath.gcode.rules.records import MOVE
 

@@ -10,12 +10,12 @@ import numpy as np
 from robomill.arguments import asked
 from robomill.arrays import frozen
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.arcs import CHORD_ERROR
+from robomill.toolpath.arcs import CHORD_ERROR
+from robomill.toolpath.findings import NO_UNITS
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, Dialect, choose_dialect
 from robomill.toolpath.gcode.doubts import doubt, doubt_all_points, doubt_points, doubt_second_table
 from robomill.toolpath.gcode.fanuc.macro_calls import begin_empty
-from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.gcode.foreign import language_of
 from robomill.toolpath.gcode.grbl import check_grbl
 from robomill.toolpath.gcode.interpreter import Interpreter
@@ -24,7 +24,7 @@ from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program, most_moves
 from robomill.toolpath.path import TABLES, Toolpath, far_off
-from robomill.toolpath.text import Source, named_as_file, read_source
+from robomill.toolpath.text import Source, is_apt, named_as_file, read_source
 from robomill.toolpath.tools import Tools
 
 
@@ -93,8 +93,6 @@ def interpret(
     GCodeError naming the line that is refused; with ``partial`` the moves before it are returned instead, and the
     refusal is an error among the findings.
     """
-    from robomill.toolpath.apt import is_apt  # which takes words of this package
-
     data, name = read_source(source)
     if is_apt(data):
         shown = "part.apt" if name == "program" else name

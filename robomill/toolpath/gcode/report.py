@@ -8,8 +8,8 @@ from typing import Any
 from robomill.errors import GCodeError
 from robomill.files import written
 from robomill.toolpath.gcode.program import ARC, FEED, KINDS, PLANES, TRAVERSE, Program
-from robomill.toolpath.gcode.rules.motion_rules import axes
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.plane import axes
 from robomill.units import from_si
 
 

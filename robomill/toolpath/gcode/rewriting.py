@@ -18,9 +18,9 @@ from robomill.errors import GCodeError
 from robomill.toolpath.fitting import Piece
 from robomill.toolpath.gcode.legs import Leg
 from robomill.toolpath.gcode.program import TRAVERSE, Program
-from robomill.toolpath.gcode.rules.motion_rules import axes
 from robomill.toolpath.gcode.scan import AXES, CENTRES, ROTARY, Token, joined, scan, unscaled, without
 from robomill.toolpath.gcode.trace import Executed, Modes
+from robomill.toolpath.plane import axes
 from robomill.units import format_plain, from_si
 
 DIGITS, ANGLE_DIGITS = {"mm": 4, "in": 5}, 4

@@ -1,4 +1,4 @@
-"""Tool axes that a line gives as a direction, as the angles A and B of ``chords.tool_axis`` that stand for them."""
+"""Tool axes that a line gives as a direction, as the angles A and B of ``rigid.axis_from_tilt`` that stand for them."""
 
 import math
 

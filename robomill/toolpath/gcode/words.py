@@ -7,7 +7,7 @@ from robomill.toolpath.gcode.codes import COOLANT, G_GROUPS, M_GROUPS, g_name
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.foreign import said_of
 from robomill.toolpath.gcode.parameters import MAX_SETTINGS, Parameters
-from robomill.toolpath.gcode.rules.motion_rules import MOST
+from robomill.toolpath.tools import MOST
 
 _BLANKS = str.maketrans("", "", " \t\r\f\v\x1a\xa0")
 _VALUE_LETTERS = frozenset("abcdefhijklpqrstuvwxyz$@^")

@@ -10,7 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import arcs, chords, interpret
+from robomill.toolpath import arcs
+from robomill.toolpath.gcode import chords, interpret
 from robomill.toolpath.gcode.chords import to_toolpath, tool_axis
 
 WALK = (

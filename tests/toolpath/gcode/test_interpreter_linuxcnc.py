@@ -18,7 +18,7 @@ from robomill.errors import GCodeError
 from robomill.io.setups.tool_tables import read_tool_table
 from robomill.toolpath.gcode import gcode_report, interpret, read_gcode
 from robomill.toolpath.gcode.program import ARC, KINDS, PLANES
-from robomill.toolpath.gcode.rules.motion_rules import axes
+from robomill.toolpath.plane import axes
 
 FOLDER = os.environ.get("ROBOMILL_GCODE_ORACLE", "")
 INDEX = json.loads((Path(FOLDER) / "index.json").read_text()) if FOLDER else []

@@ -15,7 +15,7 @@ import pytest
 from robomill.io.gcode_out import toolpath_to_gcode
 from robomill.toolpath.gcode import Tool, interpret, read_gcode
 from robomill.toolpath.gcode.program import KINDS, PLANES
-from robomill.toolpath.gcode.rules.motion_rules import axes
+from robomill.toolpath.plane import axes
 
 FILES = sorted((Path(__file__).parent / "data" / "programs").glob("*.ngc"))
 TOOLS = {n: Tool(n, 3e-3, (0.0, 0.0, n % 7 * 1.5e-3)) for n in range(1, 100)}

@@ -10,8 +10,8 @@ from robomill.toolpath.gcode.codes import P
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.moves import drill
 from robomill.toolpath.gcode.rules.cycle_rules import is_cycle, pecks, takes_dwell
-from robomill.toolpath.gcode.rules.motion_rules import axes
 from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.plane import axes, polar
 
 _THOUSANDTHS = 100.0
 """Nobody pecks so deep: controls count a Q without a point in steps of 0.001 mm (0.0001 in)."""
@@ -43,8 +43,7 @@ def bolt_holes(machine: Machine, block: Block, code: int) -> bool:
     radius, angle, between = words.pop("i"), words.pop("j"), words.pop("k", 360.0 / count)
     del words["l"]
     for k in range(count):
-        t = math.radians(angle + k * between)
-        place = {"x": u + radius * math.cos(t), "y": v + radius * math.sin(t)}
+        place = dict(zip("xy", polar(radius, math.radians(angle + k * between), u, v)))
         drill(machine, Block(block.line, place, motion=machine.motion))
     return True
 

@@ -10,8 +10,9 @@ from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import Machine, Scale
 from robomill.toolpath.gcode.rules.cycle_rules import is_cycle
-from robomill.toolpath.gcode.rules.motion_rules import CLOCKWISE, COUNTERCLOCKWISE, LINE, RAPID, axes, is_arc
+from robomill.toolpath.gcode.rules.motion_rules import CLOCKWISE, COUNTERCLOCKWISE, LINE, RAPID, is_arc
 from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.plane import axes
 
 _CODES = {510: "G51", 511: "G51.1", 500: "G50", 501: "G50.1", 1010: "G101", 1000: "G100"}
 _THOUSAND = 1000.0

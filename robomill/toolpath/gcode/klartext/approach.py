@@ -14,7 +14,9 @@ from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.klartext.values import NUMBER, KlartextValues
 from robomill.toolpath.gcode.offsets import compensation_on
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
+from robomill.toolpath.gcode.rules.motion_rules import MINUTE
 from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.plane import centre_by_radius, polar, turned
 from robomill.toolpath.tools import Tool
 from robomill.units import to_si
 
@@ -102,7 +104,7 @@ class KlartextApproach(KlartextValues):
         elif form == "LN":
             before = begin[0] + sizes["LEN"] * normal[0], begin[1] + sizes["LEN"] * normal[1]
         elif form == "CT":
-            before = _turned(begin, centre, -turn * math.radians(sizes["CCA"]))
+            before = _about(centre, begin, -turn * math.radians(sizes["CCA"]))
         else:
             before = _touching(centre, abs(sizes["R"]), turn, (at[0], at[1]), line)
         if form == "LCT":
@@ -138,13 +140,13 @@ class KlartextApproach(KlartextValues):
         sense = re.search(r"DR ?([-+])", rest)
         if sense is None:
             raise GCodeError.at(line, _NO_TANGENT)
-        turn = 1.0 if sense[1] == "+" else -1.0
+        turn = 1 if sense[1] == "+" else -1
         if kind == "CR":
             size = _SIZE.search(_SIDE.sub("", re.sub(r"DR ?[-+]", "", rest)))
             if size is None:
                 raise GCodeError.at(line, _NO_TANGENT)
             end = self._goal_of(places, goal, line)
-            centre = centre_of((goal[0], goal[1]), (end[0], end[1]), self.number(size[2], line), turn)
+            centre = centre_by_radius(goal, end, self.number(size[2], line), turn)
         else:
             centre = self.pole_in_plane(line)
         return -turn * (goal[1] - centre[1]), turn * (goal[0] - centre[0])
@@ -168,7 +170,7 @@ class KlartextApproach(KlartextValues):
         else:
             turn, centre = self._circle(sizes, begin, normal, side)
             if form == "CT":
-                self._turn_to(_turned(begin, centre, turn * math.radians(sizes["CCA"])), centre, turn, line)
+                self._turn_to(_about(centre, begin, turn * math.radians(sizes["CCA"])), centre, turn, line)
             else:
                 end = self._goal_of(said.places, at, line)
                 self._turn_to(_touching(centre, sizes["R"], -turn, (end[0], end[1]), line), centre, turn, line)
@@ -220,7 +222,7 @@ class KlartextApproach(KlartextValues):
         if math.dist(to, machine.p[:2]) < 1e-9:
             return
         end = [*to, *machine.p[2:]]
-        v_f = machine.feed * machine.factor / 60.0
+        v_f = machine.feed * machine.factor / MINUTE
         machine.go_arc(line, end, 17, [*centre, end[2]], 1 if turn > 0.0 else -1, v_f)
         machine.p = end
 
@@ -258,19 +260,6 @@ class KlartextApproach(KlartextValues):
         raise NotImplementedError
 
 
-def centre_of(start: Point, end: Point, radius: float, turn: float) -> Point:
-    """The centre of an arc of ``radius`` (negative: of more than half a turn) from ``start`` to ``end``.
-
-    Where it does not reach, it is the middle of the two.
-    """
-    chord = math.dist(start, end)
-    if chord < 1e-9:
-        return start
-    height = math.sqrt(max(radius * radius - 0.25 * chord * chord, 0.0)) * (1.0 if radius > 0.0 else -1.0) * turn
-    u, v = (end[0] - start[0]) / chord, (end[1] - start[1]) / chord
-    return 0.5 * (start[0] + end[0]) - v * height, 0.5 * (start[1] + end[1]) + u * height
-
-
 def _unit(course: Point, line: int) -> Point:
     size = math.hypot(*course)
     if size < 1e-9:
@@ -286,12 +275,8 @@ def _right(tangent: Point) -> Point:
     return tangent[1], -tangent[0]
 
 
-def _turned(point: Point, centre: Point, angle: float) -> Point:
-    dx, dy = point[0] - centre[0], point[1] - centre[1]
-    return (
-        centre[0] + dx * math.cos(angle) - dy * math.sin(angle),
-        centre[1] + dx * math.sin(angle) + dy * math.cos(angle),
-    )
+def _about(centre: Point, point: Point, angle: float) -> Point:
+    return turned(point[0] - centre[0], point[1] - centre[1], angle, *centre)
 
 
 def _touching(centre: Point, radius: float, turn: float, point: Point, line: int) -> Point:
@@ -300,4 +285,4 @@ def _touching(centre: Point, radius: float, turn: float, point: Point, line: int
     if far < radius * (1.0 + 1e-9):
         raise GCodeError.at(line, "APPR LCT and DEP LCT need a point outside of their arc; take a smaller R.")
     angle = math.atan2(point[1] - centre[1], point[0] - centre[0]) + turn * math.acos(radius / far)
-    return centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)
+    return polar(radius, angle, *centre)

@@ -11,12 +11,12 @@ from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.corners import LEGS, ROUND
 from robomill.toolpath.gcode.dialects import plain_numbers
-from robomill.toolpath.gcode.klartext.approach import KlartextApproach, centre_of
+from robomill.toolpath.gcode.klartext.approach import KlartextApproach
 from robomill.toolpath.gcode.klartext.values import NUMBER
-from robomill.toolpath.gcode.rules.motion_rules import axes
 from robomill.toolpath.gcode.sinumerik.lines import named_tool
 from robomill.toolpath.gcode.tool_axis import angles_of
 from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.plane import axes, centre_by_radius, polar
 
 _NUMBERED = re.compile(r"^\s*(/?)\s*(?:N?\d+(?![\d.,])\s*)?(/?)\s*")
 _LABEL = re.compile(r"^[ \t]*N?\d*[ \t]*LBL[ \t]+(\"[^\"\n]+\"|\d+)", re.MULTILINE | re.IGNORECASE)
@@ -263,8 +263,7 @@ class Klartext(KlartextApproach):
             radius = places["PR"][1] + (radius if places["PR"][0] else 0.0)
         if "PA" in places:
             angle = places["PA"][1] + (angle if places["PA"][0] else 0.0)
-        end[first] = pole[0] + radius * math.cos(math.radians(angle))
-        end[second] = pole[1] + radius * math.sin(math.radians(angle))
+        end[first], end[second] = polar(radius, math.radians(angle), *pole)
 
     def _arc(self, kind: str, words: Words, code: str, at: list[float], end: list[float], line: int) -> str:
         """G2 or G3 with what says its form; ``leaving`` is its direction at its end."""
@@ -273,13 +272,13 @@ class Klartext(KlartextApproach):
             return self._tangent(at, end, line)
         if sense is None:
             raise GCodeError.at(line, f"{kind} needs DR+ or DR-, the way round.")
-        turn, name = (1.0, "G3") if sense[1] == "+" else (-1.0, "G2")
+        turn, name = (1, "G3") if sense[1] == "+" else (-1, "G2")
         if kind == "CR":
             radius = _RADIUS.search(_SIDE.sub("", _SENSE.sub("", code)))
             if radius is None:
                 raise GCodeError.at(line, "CR needs R, its radius.")
             size = self.number(radius[1], line)
-            middle = centre_of((at[0], at[1]), (end[0], end[1]), size, turn)
+            middle = centre_by_radius(at, end, size, turn)
             self.leaving = -turn * (end[1] - middle[1]), turn * (end[0] - middle[0])
             return f"G17 {name} R{size:.12f}"
         plane, *pole = self._pole(line)

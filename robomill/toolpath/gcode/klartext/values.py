@@ -12,6 +12,7 @@ from robomill.toolpath.gcode.program import TRAVERSE
 from robomill.toolpath.gcode.sinumerik.procs import SinumerikProcs
 from robomill.toolpath.gcode.sinumerik.words import Hole
 from robomill.toolpath.gcode.words import Block, normalise
+from robomill.toolpath.plane import polar, turned
 
 NUMBER = r"[-+]? ?(?:\d+(?:\.\d*)?|\.\d+|Q[LR]?\d+)"
 FIRST_Q = {"Q": 1000, "QL": 3000, "QR": 4000}
@@ -262,7 +263,7 @@ class KlartextValues(SinumerikProcs):
                 step = (last - first) / max(count if whole else count - 1, 1)
             angles = [math.radians(first + k * step) for k in range(count)]
             radius = 0.5 * abs(self.q(244))
-            points = [(self.q(216) + radius * math.cos(t), self.q(217) + radius * math.sin(t)) for t in angles]
+            points = [polar(radius, t, self.q(216), self.q(217)) for t in angles]
         else:
             columns, rows = self._asked(242, number, line), self._asked(243, number, line)
             t = math.radians(self.q(224))
@@ -270,12 +271,7 @@ class KlartextValues(SinumerikProcs):
             for row in range(rows):
                 for column in range(columns) if row % 2 == 0 else reversed(range(columns)):
                     u, v = column * self.q(237), row * self.q(238)
-                    points.append(
-                        (
-                            self.q(225) + u * math.cos(t) - v * math.sin(t),
-                            self.q(226) + u * math.sin(t) + v * math.cos(t),
-                        )
-                    )
+                    points.append(turned(u, v, t, self.q(225), self.q(226)))
         if len(points) > MAX_PECKS:
             raise GCodeError.at(line, f"CYCL DEF {number} has more than {MAX_PECKS} holes; split it.")
         hole = self._hole_of(line)

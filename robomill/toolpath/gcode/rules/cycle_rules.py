@@ -19,13 +19,12 @@ from robomill.toolpath.gcode.rules.motion_rules import (
     INVERSE_TIME,
     NO_FEED,
     TRAVERSE,
-    axes,
     dwell,
     end_point,
     feed_speed,
-    from_plane,
     write_straight,
 )
+from robomill.toolpath.plane import axes, from_plane
 
 PECK_CLEARANCE_MM, PECK_CLEARANCE_INCH = 0.254, 0.010
 """How far above the last bottom the rapid stops in G73 and G83."""

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from numba.extending import overload
 
 from robomill.compiled import Axes, called, kernel, part
+from robomill.toolpath import plane
 from robomill.toolpath.gcode.parameters import Store
 from robomill.toolpath.gcode.rules import (
     cycle_rules,
@@ -29,7 +30,7 @@ Moves = Annotated[Any, Axes(records.MOVE, 1, written=True)]
 overload(value_rules.nearest)(lambda text, first, end: lambda text, first, end: math.inf)
 
 # What a value is made of is copied into ``value``: to hand on the store at every call would cost more than the work.
-for _module in (operator_rules, value_rules, line_rules, motion_rules, cycle_rules, mode_rules, flow_rules):
+for _module in (operator_rules, value_rules, line_rules, plane, motion_rules, cycle_rules, mode_rules, flow_rules):
     for _name, _rule in inspect.getmembers(_module, inspect.isfunction):
         if _rule.__module__ == _module.__name__ and _rule is not value_rules.nearest:
             (part if _module is value_rules and _rule is not value_rules.value else called)(_rule)

@@ -16,6 +16,8 @@ done"; ``moves.SENTENCES`` says what each code means, with the figures that are 
 import math
 
 from robomill.toolpath.gcode.codes import ANGLE, RADIUS, F, I, J, K, P, R, X
+from robomill.toolpath.plane import axes, centre_by_radius, from_plane, polar, swept, turned
+from robomill.toolpath.tools import MOST
 from robomill.units import from_si, to_si
 
 RAPID, LINE, CLOCKWISE, COUNTERCLOCKWISE = 0, 10, 20, 30
@@ -30,13 +32,7 @@ SPIRAL_SHARE = 1e-3
 RADIUS_INCH = 0.00005
 RADIUS_MM = from_si(to_si(RADIUS_INCH, "in"), "mm")
 """A radius below this is none; half a chord may exceed a given radius by this much."""
-MOST = 2**31 - 1
-"""No column of whole numbers holds more; nobody turns so often, or has so many tools."""
-FULL_TURN = 1e-8
-"""rad: an arc that would sweep less than this is a full turn, as an arc back to its start is."""
-
-_MINUTE = from_si(1.0, "1/min")
-_TURN = 2.0 * math.pi
+MINUTE = to_si(1.0, "min")
 
 (
     NO_FEED_ON_LINE,
@@ -80,19 +76,19 @@ def is_arc(motion: int) -> bool:
 
 def spindle_speed(m) -> float:
     """Commanded turns per second; 0 at constant surface speed, which is not modelled."""
-    return m.speed / _MINUTE if m.spindle_mode == CONSTANT_SPEED else 0.0
+    return m.speed / MINUTE if m.spindle_mode == CONSTANT_SPEED else 0.0
 
 
 def turning(m) -> float:
     """Turns per second as the spindle turns: 0 where it stands still, NaN where the diameter says how fast (G96)."""
     if m.spindle == 0:
         return 0.0
-    return m.speed / _MINUTE if m.spindle_mode == CONSTANT_SPEED else math.nan
+    return m.speed / MINUTE if m.spindle_mode == CONSTANT_SPEED else math.nan
 
 
 def feed_speed(m) -> float:
     """Feed rate, m/s (per turn: at the commanded spindle speed)."""
-    per_second = spindle_speed(m) if m.feed_mode == PER_TURN else 1.0 / _MINUTE
+    per_second = spindle_speed(m) if m.feed_mode == PER_TURN else 1.0 / MINUTE
     return m.feed * m.factor * per_second
 
 
@@ -112,22 +108,6 @@ def inverse_time(m, w, length: float) -> None:
 
 
 # --- points and frames
-def axes(plane):
-    """First, second and third axis of G17 (x, y, z), G18 (z, x, y) or G19 (y, z, x), or of an array of planes.
-
-    A positive turn leads from the first to the second, a helix climbs along the third.
-    """
-    third = 19 - plane
-    return (third + 1) % 3, (third + 2) % 3, third
-
-
-def from_plane(plane: int, u: float, v: float, w: float):
-    """(x, y, z) of a point at ``u``, ``v`` along the first two axes of a plane and ``w`` along the third."""
-    if plane == 17:
-        return u, v, w
-    return (v, w, u) if plane == 18 else (w, u, v)
-
-
 def dwell(m, seconds: float) -> None:
     """G4 and the dwells of cycles."""
     m.dwells += 1
@@ -158,14 +138,13 @@ def _polar(m, w, end) -> int:
         radius = w[RADIUS] if m.absolute else radius + w[RADIUS]
     if not math.isnan(w[ANGLE]):
         angle = math.radians(w[ANGLE]) if m.absolute else angle + math.radians(w[ANGLE])
-    end[0], end[1] = radius * math.cos(angle), radius * math.sin(angle)
+    end[0], end[1] = polar(radius, angle)
     return 0
 
 
 def rotate(x: float, y: float, degrees: float):
     """(x, y) turned about the origin."""
-    t = math.radians(degrees)
-    return x * math.cos(t) - y * math.sin(t), x * math.sin(t) + y * math.cos(t)
+    return turned(x, y, math.radians(degrees))
 
 
 def to_frame(m, x: float, y: float, z: float, out) -> None:
@@ -248,26 +227,10 @@ def turns_of(w, motion: int) -> int:
     return -turns if motion == CLOCKWISE else turns
 
 
-def swept(start, end, centre, turn: int, least: float) -> float:
-    """Signed angle (rad) from ``start`` to ``end`` about ``centre`` (each (u, v)) in ``turn`` started turns.
-
-    A part of a turn that is not more than ``least`` (rad), or within it of a turn, is a full turn.
-    """
-    part = math.atan2(end[1] - centre[1], end[0] - centre[0]) - math.atan2(start[1] - centre[1], start[0] - centre[0])
-    if turn < 0:
-        part = -part
-    if part <= 0.0:
-        part += _TURN
-    if part <= least or _TURN - part < least:
-        part = _TURN
-    part += (abs(turn) - 1) * _TURN
-    return part if turn > 0 else -part
-
-
 def arc_centre(m, w, motion: int, start, end):
     """(refusal, u, v): the centre of an arc from ``start`` to ``end``, each (u, v) in the plane, by I J K or by R."""
     if not math.isnan(w[R]):
-        return _centre_by_radius(m, w[R], motion, start, end)
+        return _by_radius(m, w[R], motion, start, end)
     first, second, _ = axes(m.plane)
     u = 0.0 if math.isnan(w[I + first]) else w[I + first]
     v = 0.0 if math.isnan(w[I + second]) else w[I + second]
@@ -282,20 +245,16 @@ def arc_centre(m, w, motion: int, start, end):
     return (ARC_OFF_ITS_CIRCLE if abs(r_start - r_end) > allowed else 0), u, v
 
 
-def _centre_by_radius(m, radius: float, motion: int, start, end):
-    """R above 0 is the arc of at most half a turn, below 0 the other one about the mirrored centre."""
+def _by_radius(m, radius: float, motion: int, start, end):
+    """(refusal, u, v) of an arc by R."""
     if end[0] == start[0] and end[1] == start[1]:
         return RADIUS_TO_START, 0.0, 0.0
     size, half = abs(radius), 0.5 * math.hypot(end[0] - start[0], end[1] - start[1])
     m.figures[0], m.figures[1] = size, half
     if half - size > (RADIUS_INCH if m.unit_code == INCH else RADIUS_MM) or size == 0.0:
         return RADIUS_TOO_SMALL, 0.0, 0.0
-    if half / size > 1.0 - 1e-12:
-        half = size
-    side = -1.0 if (motion == CLOCKWISE) == (radius > 0.0) else 1.0
-    towards = math.atan2(end[1] - start[1], end[0] - start[0]) + side * math.pi / 2.0
-    away = size * math.cos(math.asin(half / size))
-    return 0, (end[0] + start[0]) / 2.0 + away * math.cos(towards), (end[1] + start[1]) / 2.0 + away * math.sin(towards)
+    u, v = centre_by_radius(start, end, radius, -1 if motion == CLOCKWISE else 1)
+    return 0, u, v
 
 
 def arc_length(m, end, start, centre, turn: int) -> float:
@@ -318,7 +277,6 @@ def write_arc(m, end, middle, turn: int, v_f: float, row) -> None:
         (row.end[first], row.end[second]),
         (row.centre[first], row.centre[second]),
         turn,
-        FULL_TURN,
     )
 
 

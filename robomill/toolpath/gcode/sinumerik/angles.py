@@ -11,6 +11,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.sinumerik.lines import parted, spaced
 from robomill.toolpath.gcode.sinumerik.polar import SinumerikPolar
 from robomill.toolpath.gcode.sinumerik.words import value_end
+from robomill.toolpath.plane import polar
 
 _ANGLE = re.compile(r"\bANG[ \t]*=[ \t]*")
 _PLACE = re.compile(r"\b([XY])[ \t]*(?:=[ \t]*)?(?:(AC|IC)[ \t]*\(([^()]*)\)|([-+]?(?:\d+\.?\d*|\.\d+)))")
@@ -52,7 +53,7 @@ class SinumerikAngles(SinumerikPolar):
             text = "ANG= is the angle of a straight cut (G0, G1) in G17; arcs by their angle have AR=."
             raise GCodeError.at(line, text)
         at, absolute = self._here(), self._absolute(rest)
-        along = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        along = polar(1.0, math.radians(angle))
         said = {
             letter: self.value(inside or plain, line) + at["XY".index(letter)] * (way == "IC" or not (way or absolute))
             for letter, way, inside, plain in _PLACE.findall(rest)
@@ -90,7 +91,7 @@ class SinumerikAngles(SinumerikPolar):
             raise GCodeError.at(line, text)
         angle, rest = self._taken(self._values(code, line), line)
         said = {letter: self.value(inside or plain, line) for letter, way, inside, plain in _PLACE.findall(rest)}
-        u, v = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        u, v = polar(1.0, math.radians(angle))
         meet = along[0] * v - along[1] * u
         if len(said) != 2 or "IC" in rest or abs(meet) < 1e-9:
             raise GCodeError.at(line, text if abs(meet) >= 1e-9 else "two cuts at one angle do not meet; mend ANG=.")

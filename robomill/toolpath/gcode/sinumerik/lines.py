@@ -4,6 +4,7 @@ import re
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.rules.motion_rules import MINUTE
 from robomill.toolpath.gcode.tool_axis import angles_of
 from robomill.units import to_si
 
@@ -115,7 +116,7 @@ def _waited(found: re.Match[str], number: int, machine: Machine) -> str:
     """G4 S waits for turns of the spindle."""
     if machine.speed == 0.0:
         raise GCodeError.at(number, "G4 S waits for turns of the spindle, and no S has said how fast it turns.")
-    return f"{found[1]} P{60.0 * float(found[2]) / machine.speed:.9f}"
+    return f"{found[1]} P{MINUTE * float(found[2]) / machine.speed:.9f}"
 
 
 def _name(found: str) -> str:

@@ -10,6 +10,7 @@ import re
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.sinumerik.shapes import SinumerikShapes
 from robomill.toolpath.gcode.sinumerik.words import value_end
+from robomill.toolpath.plane import polar, turned
 
 _POLE = re.compile(r"\bG11([012])\b")
 _POLAR = re.compile(r"\b(AP|RP)[ \t]*=[ \t]*(?:(AC|IC)(?=[ \t]*\())?")
@@ -90,7 +91,7 @@ class SinumerikPolar(SinumerikShapes):
             raise GCodeError.at(line, f"a polar place needs its angle AP and radius RP; {text}.")
         self.polar_angle, self.polar_radius = angle, radius
         u, v = self.middle
-        x, y = u + radius * math.cos(math.radians(angle)), v + radius * math.sin(math.radians(angle))
+        x, y = polar(radius, math.radians(angle), u, v)
         form = ""
         if self._motion(code) in (2, 3) and not _FORM.search(code):
             at = [0.0, 0.0] if self.machine.arc_absolute else self._here()
@@ -121,7 +122,6 @@ class SinumerikPolar(SinumerikShapes):
             return f"{rest} R{math.copysign(chord / (2.0 * math.sin(half)), 180.0 - angle):.12f}"
         u, v = centre.get("I", at[0]), centre.get("J", at[1])
         t = 2.0 * half if motion == 3 else -2.0 * half
-        x = u + (at[0] - u) * math.cos(t) - (at[1] - v) * math.sin(t)
-        y = v + (at[0] - u) * math.sin(t) + (at[1] - v) * math.cos(t)
+        x, y = turned(at[0] - u, at[1] - v, t, u, v)
         origin = [0.0, 0.0] if absolute else at
         return f"{rest} X{x - origin[0]:.12f} Y{y - origin[1]:.12f}"

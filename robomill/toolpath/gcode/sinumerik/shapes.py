@@ -14,6 +14,7 @@ from robomill.toolpath.gcode.program import ARC, TRAVERSE
 from robomill.toolpath.gcode.rules.motion_rules import rotate
 from robomill.toolpath.gcode.sinumerik.words import Hole, SinumerikWords, parts
 from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.plane import doubled_area, polar, through, turned
 
 MOST_HOLES = 10_000
 _START = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?(?:[A-Z_]{2}\w*[ \t]*:(?!=)[ \t]*)?")
@@ -133,14 +134,14 @@ class SinumerikShapes(SinumerikWords):
         if name == "HOLES1":
             angle, first, step = math.radians(third), abs(fourth), abs(fifth)
             along = [first + k * step for k in range(number)]
-            points = [(u + a * math.cos(angle), v + a * math.sin(angle)) for a in along]
+            points = [polar(a, angle, u, v) for a in along]
             here = self.machine.said_point()
             if math.dist(points[-1], here[:2]) < math.dist(points[0], here[:2]):
                 points.reverse()
         else:
             between = fifth if fifth != 0.0 else 360.0 / number
             angles = [math.radians(fourth + k * between) for k in range(number)]
-            points = [(u + third * math.cos(t), v + third * math.sin(t)) for t in angles]
+            points = [polar(third, t, u, v) for t in angles]
         return points
 
     def drill_at(self, points: list[tuple[float, float]], hole: Hole, line: int) -> None:
@@ -232,19 +233,15 @@ def _grid(given: list[float], line: int) -> list[tuple[float, float]]:
         cells += [(0, k) for k in reversed(range(1, rows - 1))] if columns > 1 else []
     t = math.radians(angle)
     steps = [(i * abs(across), k * abs(along)) for i, k in cells]
-    return [(u + a * math.cos(t) - b * math.sin(t), v + a * math.sin(t) + b * math.cos(t)) for a, b in steps]
+    return [turned(a, b, t, u, v) for a, b in steps]
 
 
 def _through(start: list[float], middle: list[float], end: list[float], line: int) -> tuple[float, tuple[float, float]]:
     """Sense and centre of the arc through three points."""
-    bx, by = middle[0] - start[0], middle[1] - start[1]
-    cx, cy = end[0] - start[0], end[1] - start[1]
-    cross = bx * cy - by * cx
-    if abs(cross) < 1e-9:
+    area = doubled_area(start, middle, end)
+    if abs(area) < 1e-9:
         raise GCodeError.at(line, "CIP has three points on one line; write it as G1.")
-    b, c = bx * bx + by * by, cx * cx + cy * cy
-    centre = start[0] + (cy * b - by * c) / (2.0 * cross), start[1] + (bx * c - cx * b) / (2.0 * cross)
-    return (1.0 if cross > 0.0 else -1.0), centre
+    return (1.0 if area > 0.0 else -1.0), through(start, middle, end)
 
 
 def _tangential(

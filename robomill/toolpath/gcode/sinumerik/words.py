@@ -17,8 +17,9 @@ from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.fanuc.macro_calls import MacroCalls
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
-from robomill.toolpath.gcode.rules.motion_rules import dwell
+from robomill.toolpath.gcode.rules.motion_rules import MINUTE, dwell
 from robomill.toolpath.gcode.words import Block, normalise
+from robomill.toolpath.plane import turned
 
 FIRST_R = 1000
 MOST_R = 1000
@@ -248,13 +249,8 @@ class SinumerikWords(MacroCalls):
         if turning:
             angle += sum(said.values())
         else:
-            t = math.radians(angle)
             x, y, z = (said.get(letter, 0.0) for letter in "XYZ")
-            shift = [
-                shift[0] + x * math.cos(t) - y * math.sin(t),
-                shift[1] + x * math.sin(t) + y * math.cos(t),
-                shift[2] + z,
-            ]
+            shift = [*turned(x, y, math.radians(angle), *shift[:2]), shift[2] + z]
         if not any(shift) and angle == 0.0:
             turn_back(self.machine)
         else:
@@ -312,12 +308,12 @@ class SinumerikWords(MacroCalls):
             raise block.refuse("a drilling cycle is read in the plane G17 alone.")
         if machine.feed == 0.0 and hole.feed == 0.0 and hole.pitch == 0.0:
             raise block.refuse("a drilling cycle needs a feed rate; give an F word above 0 first.")
-        down = hole.feed * machine.factor / 60.0 if hole.feed else None
-        out = hole.out * machine.factor / 60.0 if 0.0 < hole.out < math.inf else None
+        down = hole.feed * machine.factor / MINUTE if hole.feed else None
+        out = hole.out * machine.factor / MINUTE if 0.0 < hole.out < math.inf else None
         if hole.pitch:
             if machine.speed == 0.0:
                 raise block.refuse("CYCLE84 needs a spindle speed; give an S word first.")
-            down = out = hole.pitch * machine.factor * machine.speed / 60.0
+            down = out = hole.pitch * machine.factor * machine.speed / MINUTE
         before, machine.motion = machine.motion, 840 if hole.pitch else machine.motion
         self._to(TRAVERSE, line, hole.clear)
         for depth in hole.pecks:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import contextlib
 import math
 
@@ -12,7 +11,7 @@ import pytest
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import Program, interpret
 from robomill.toolpath.gcode.chords import to_toolpath
-from robomill.toolpath.gcode.rules.motion_rules import straight_length, swept
+from robomill.toolpath.gcode.rules.motion_rules import straight_length
 
 # G17 written in another plane: x, y, z become first, second and third axis.
 PERMUTED = {17: "XYZIJK", 18: "ZXYKIJ", 19: "YZXJKI"}
@@ -74,17 +73,6 @@ def test_incremental_arcs_end_where_absolute_ones_do(third: str) -> None:
     for other in (incremental, centred):
         for name in ("end", "centre", "rotary", "sweep"):
             assert getattr(other, name) == pytest.approx(getattr(absolute, name), abs=1e-12), name
-
-
-@pytest.mark.parametrize("turn", [1, -1, 3, -2])
-@pytest.mark.parametrize("angle", [1e-12, 0.3, 2.0, math.pi, 4.0, 6.2])
-@pytest.mark.parametrize("begin", [-3.0, -0.2, 0.0, 1.5, 3.1])
-def test_swept_is_the_angle_that_turns_the_start_onto_the_end(begin: float, angle: float, turn: int) -> None:
-    centre, radius, sign = complex(2, -1), 1.7, math.copysign(1.0, turn)
-    start, end = (centre + cmath.rect(radius, begin + sign * share) for share in (0.0, angle))
-    total = swept(*((q.real, q.imag) for q in (start, end, centre)), turn, 1e-8)
-    expected = 2 * math.pi if angle < 1e-8 else angle
-    assert total == pytest.approx(sign * (expected + 2 * math.pi * (abs(turn) - 1)), abs=1e-9)
 
 
 def test_an_arc_that_lacks_a_hair_of_a_full_turn_is_one() -> None:

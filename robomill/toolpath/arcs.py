@@ -12,7 +12,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode.rules.motion_rules import axes
+from robomill.toolpath.plane import axes
 from robomill.units import from_si
 
 CHORD_ERROR = 1e-6
@@ -104,9 +104,14 @@ class Arcs:
 
     def chords(self, counts: IntArray) -> FloatArray:
         """End points (sum of counts, 3) of ``counts`` (m,) chords of each arc; the last one is its end, exactly."""
-        angle, r0, r1 = self._polar
         owner, step = steps(counts)
-        fraction = step / counts[owner]
+        points = self.at(owner, step / counts[owner])
+        points[np.cumsum(counts) - 1] = self.end
+        return points
+
+    def at(self, owner: IntArray, fraction: FloatArray) -> FloatArray:
+        """Points (n, 3) m of the arcs ``owner`` (n,) at ``fraction`` (n,) of their sweep and climb."""
+        angle, r0, r1 = self._polar
         phi = angle[owner] + fraction * self.sweep[owner]
         radius = r0[owner] + fraction * (r1 - r0)[owner]
         points = self.start[owner] + fraction[:, None] * (self.end - self.start)[owner]
@@ -114,7 +119,6 @@ class Arcs:
         rows = np.arange(len(owner))
         points[rows, first] = self.centre[owner, first] + radius * np.cos(phi)
         points[rows, second] = self.centre[owner, second] + radius * np.sin(phi)
-        points[np.cumsum(counts) - 1] = self.end
         return points
 
 

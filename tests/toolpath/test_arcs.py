@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
+from robomill.toolpath.arcs import Arcs, chord_counts
 from robomill.toolpath.gcode import interpret, read_gcode
-from robomill.toolpath.gcode.arcs import Arcs, chord_counts
 from robomill.toolpath.gcode.chords import to_toolpath
 
 PLANES = {
@@ -113,7 +113,7 @@ def test_tilted_axis_turns_in_small_steps() -> None:
 
 @pytest.mark.parametrize("turns", [3.0, 40.0, 1000.0])
 def test_the_chord_error_that_a_refusal_names_is_one_that_fits(turns: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robomill.toolpath.gcode.arcs.MAX_POINTS", 100_000)
+    monkeypatch.setattr("robomill.toolpath.arcs.MAX_POINTS", 100_000)
     sweep, radius = np.array([2 * math.pi * turns, 1.0]), np.array([0.05, 2.0])
     with pytest.raises(GCodeError, match="at most 100000 fit") as refused:
         chord_counts(sweep, radius, 1e-14)
