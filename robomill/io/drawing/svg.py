@@ -4,16 +4,10 @@ Layers are those of Inkscape, else the groups of the page. Y points up from the 
 """
 
 import io
-import math
 import re
 from collections import Counter
-from collections.abc import Iterator
-from typing import Any
 from xml.etree import ElementTree
 
-import numpy as np
-
-from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.extras import needed
 from robomill.io.drawing.dxf import PER_INCH, STUMBLES, Read, Reading, metres
@@ -29,7 +23,6 @@ from robomill.io.drawing.svg_viewports import (
     pixels,
     target_of,
 )
-from robomill.toolpath.arcs import CHORD_ERROR
 from robomill.units import format_count
 
 DEEPEST = 200  # elements in elements, twice as many where some are used by others
@@ -200,6 +193,8 @@ class Svg:
         """Its lines, with ``scale`` (m) for a pixel."""
         import svgelements
 
+        from robomill.io.drawing.svg_paths import lines_of
+
         reading = Reading(self.name)
         reading.found.left_out.update(self.left_out)
         try:
@@ -210,7 +205,7 @@ class Svg:
                 if not isinstance(element, svgelements.Shape):
                     continue
                 layer = str(element.values.get(LAYER, NO_LAYER))
-                for shape, line in _lines(abs(svgelements.Path(element)), scale, reading):
+                for shape, line in lines_of(abs(svgelements.Path(element)), scale, reading):
                     reading.take(layer, shape, line * [1.0, -1.0] + [0.0, height * scale])
         except ToolpathError:
             raise
@@ -258,83 +253,3 @@ def _text_of(data: bytes, name: str) -> str:
     if "\0" in text:
         raise ToolpathError(f"{name}: this is a binary file; expected an SVG drawing in text.")
     return re.sub(r"^\s*<\?xml[^>]*\?>", "", text)
-
-
-def _lines(path: Any, scale: float, to: Reading) -> Iterator[tuple[Any, FloatArray]]:
-    """Shape and points (r, 2) m of every stretch of a path that is drawn without lifting."""
-    run: list[Any] = []
-    for segment in path:
-        if type(segment).__name__ == "Move" and run:
-            yield _line(run, scale, to)
-            run = []
-        if type(segment).__name__ != "Move":
-            run.append(segment)
-            if type(segment).__name__ == "Close":
-                yield _line(run, scale, to)
-                run = []
-    if run:
-        yield _line(run, scale, to)
-
-
-def _line(run: list[Any], scale: float, to: Reading) -> tuple[Any, FloatArray]:
-    """One stretch: a circle where all of it is, else a line or a polyline."""
-    arcs = [each for each in run if type(each).__name__ == "Arc"]
-    others = [each for each in run if each not in arcs and abs(each.end - each.start) * scale > CHORD_ERROR]
-    begin = _at(run[0].start)
-    if arcs and not others and _one_circle(arcs, scale):
-        return "circle", np.array([_at(arcs[0].center), begin]) * scale
-    found, count = [begin[None]], 1
-    for each in run:
-        found.append(_corners(each, scale, to, count))
-        count += len(found[-1])
-    points = np.vstack(found) * scale
-    if not np.isfinite(points).all():
-        raise ValueError("a point is no number")
-    return ("line" if len(points) == 2 else "polyline"), points
-
-
-def _at(point: Any) -> FloatArray:
-    return np.array([float(point.x), float(point.y)])
-
-
-def _one_circle(arcs: list[Any], scale: float) -> bool:
-    first = arcs[0]
-    turn = sum(float(arc.sweep) for arc in arcs)
-    alike = all(
-        abs(arc.rx - arc.ry) * scale < CHORD_ERROR
-        and abs(arc.rx - first.rx) * scale < CHORD_ERROR
-        and abs(arc.center - first.center) * scale < CHORD_ERROR
-        for arc in arcs
-    )
-    return alike and math.isclose(abs(turn), 2.0 * math.pi, rel_tol=1e-9)
-
-
-def _corners(segment: Any, scale: float, to: Reading, before: int) -> FloatArray:
-    """(r, 2) px: the corners behind the start of a segment, within ``CHORD_ERROR`` of it; ``before`` come before."""
-    kind = type(segment).__name__
-    if kind == "Arc":
-        largest = max(float(segment.rx), float(segment.ry)) * scale
-        step = 2.0 * math.acos(max(1.0 - CHORD_ERROR / max(largest, CHORD_ERROR), 0.5))
-        count = max(2, math.ceil(abs(float(segment.sweep)) / step))
-    elif kind in ("QuadraticBezier", "CubicBezier"):
-        count = _bezier_chords([_at(p) * scale for p in _controls(segment)])
-    else:
-        count = 1
-    to.look(before + count)
-    if count == 1:
-        return _at(segment.end)[None]
-    return np.vstack([np.asarray(segment.npoint(np.arange(1, count) / count)), _at(segment.end)])
-
-
-def _controls(segment: Any) -> list[Any]:
-    if type(segment).__name__ == "QuadraticBezier":
-        return [segment.start, segment.control, segment.end]
-    return [segment.start, segment.control1, segment.control2, segment.end]
-
-
-def _bezier_chords(controls: list[FloatArray]) -> int:
-    """How many equal steps of the parameter keep the chords of a Bezier curve within ``CHORD_ERROR``: its second
-    derivative is at most n (n - 1) times the largest second difference of its control points."""
-    n = len(controls) - 1
-    most = max(float(np.linalg.norm(a - 2.0 * b + c)) for a, b, c in zip(controls, controls[1:], controls[2:]))
-    return max(1, math.ceil(math.sqrt(n * (n - 1) * most / (8.0 * CHORD_ERROR))))
