@@ -183,6 +183,11 @@ def quantity(label: str, unit: str = "1", *, default: Any = MISSING, **said: Any
     return _declared(Quantity(label, unit, "array" if said.get("shape") else "number", **said), default, compare)
 
 
+def again(declared: Quantity, *, default: Any = MISSING, **said: Any) -> Any:
+    """One number of a quantity that is declared elsewhere, as a dataclass field; ``said`` is what is its own."""
+    return _declared(replace(declared, **{"kind": "number", **said}), default)
+
+
 def whole(label: str, *, default: Any = MISSING, **said: Any) -> Any:
     """A whole number as a dataclass field."""
     return _declared(Quantity(label, kind="whole", **{"digits": 0, **said}), default)

@@ -16,7 +16,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray, Rows, frozen, of_kind
 from robomill.errors import ToolpathError
-from robomill.quantities import choice, quantities, quantity, settle
+from robomill.quantities import again, choice, quantities, quantity, settle
 from robomill.spelled import Replaceable, in_units
 from robomill.toolpath import arcs
 from robomill.toolpath.path import MOST_FEED, SLOWEST, SPINDLE, Toolpath
@@ -137,9 +137,7 @@ class Sketch(Replaceable, Said):
         tiny=SLOWEST,
     )
     clearance: float = quantity("Clearance", "mm", default=5e-3, least=APPROACH, digits=2, slip=DEEPEST)
-    n_s: float = quantity(
-        "Spindle", "1/min", default=0.0, least=0.0, key=SPINDLE.key, slip=SPINDLE.slip, tiny=SPINDLE.tiny
-    )
+    n_s: float = again(SPINDLE, label="Spindle", default=0.0)
     v_f: float = quantity("Feed", "mm/min", default=30e-3, above=0.0, key="feed_mm_min", compare=False, slip=FASTEST)
     depth: float = quantity("Depth", "mm", default=2e-3, above=0.0, digits=2, compare=False, slip=DEEPEST)
     grid: float = quantity("Snap", "mm", default=5e-3, least=0.0, key="snap_mm", compare=False)

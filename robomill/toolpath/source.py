@@ -19,7 +19,7 @@ from robomill.arguments import asking
 from robomill.arrays import FloatArray, Rows, digest, frozen, of_kind
 from robomill.errors import GCodeError, ToolpathError
 from robomill.provenance import Finding
-from robomill.quantities import quantity, settle
+from robomill.quantities import again, quantity, settle
 from robomill.spelled import in_units
 from robomill.toolpath.corrected import Mark, key_of, mark_of
 from robomill.toolpath.path import (
@@ -64,15 +64,8 @@ class GCodeSource(Said):
     text: str
     name: str = "program.nc"
     dialect: str = "auto"
-    n_s: float = quantity(
-        "Spindle speed",
-        "1/min",
-        default=0.0,
-        least=0.0,
-        key=SPINDLE.key,
-        slip=SPINDLE.slip,
-        tiny=SPINDLE.tiny,
-        hint="The program turns its spindle nowhere; how fast does it turn at the machine?",
+    n_s: float = again(
+        SPINDLE, default=0.0, hint="The program turns its spindle nowhere; how fast does it turn at the machine?"
     )
     table: str = ""
     wanted: PathSource | None = None
@@ -199,9 +192,7 @@ class LinesSource(Said):
     v_f: FloatArray = quantity(
         "feed", "mm/min", shape=(None,), most=FEED.most, key=FEED.key, slip=FEED.slip, tiny=FEED.tiny
     )
-    n_s: float = quantity(
-        "Spindle speed", "1/min", default=0.0, least=0.0, key=SPINDLE.key, slip=SPINDLE.slip, tiny=SPINDLE.tiny
-    )
+    n_s: float = again(SPINDLE, default=0.0)
     name: str = field(default="table of lines", compare=False)
 
     if TYPE_CHECKING:
