@@ -57,14 +57,14 @@ class Stretches:
             count = min(most, CHUNK)
             written = Rows(machine)
             store, text, flow = machine.store.arrays, lines.plain_text, structure.plain
-            done, at = flow_rules.run(machine, store, text, flow, at, count, written)
+            done, at = flow_rules.run(machine, store, text, flow, (at, count), written)
             written.keep()
             return done, at, done == count
         rows, machine.moves = recorder.free()
         self._state[0] = _state_of(machine)
         count = min(most, COMPILED_CHUNK, max(CHARACTERS // lines.longest, 1))
         store, flow = machine.store.views(), structure.views
-        done, at = self._kernels.run(self._state, store, lines.text, flow, at, count, rows)
+        done, at = self._kernels.run(self._state, store, lines.text, flow, (at, count), rows)
         for name, value in zip(_FIELDS, self._state[0].item()):
             setattr(machine, name, value.tolist() if STATE[name].shape else value)
         recorder.take(machine.moves)

@@ -113,7 +113,7 @@ class _Traced(Interpreter):
             return bool(done)
         written = Rows(self.machine)
         store, text, flow = self.machine.store.arrays, self.file.lines.plain_text, structure.plain
-        done, self.pc = flow_rules.run(self.machine, store, text, flow, self.pc, 1, written)
+        done, self.pc = flow_rules.run(self.machine, store, text, flow, (self.pc, 1), written)
         written.keep()
         self._count(done, max(self.pc - 1, 0))
         if done:

@@ -109,7 +109,7 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
         _go(m, TRAVERSE, line, end, above, rows)
         if above > clearance:
             _go(m, TRAVERSE, line, end, clearance, rows)
-        _hole(m, motion, line, end, clearance, clear, bottom, rows)
+        _hole(m, motion, line, end, (clearance, clear, bottom), rows)
     for axis in range(6):
         m.p[axis] = end[axis]
     return 0
@@ -170,11 +170,12 @@ def _go(m, kind: int, line: int, end, height: float, rows) -> None:
     m.moves += 1
 
 
-def _hole(m, motion: int, line: int, end, clearance: float, clear: float, bottom: float, rows) -> None:
-    """One hole, from above it at ``clearance`` back to ``clear``."""
+def _hole(m, motion: int, line: int, end, heights, rows) -> None:
+    """One hole, from above it at the first of its ``heights`` back to the second; the third is its bottom."""
     if motion == 870:
-        _back_bore(m, line, end, clearance, clear, bottom, rows)
+        _back_bore(m, line, end, heights, rows)
         return
+    clearance, clear, bottom = heights
     if is_tap(motion):
         _tap(m, line, end, bottom, rows)
         dwell(m, 0.0 if math.isnan(m.cycle[P]) else m.cycle[P])
@@ -211,8 +212,9 @@ def _tap(m, line: int, end, height: float, rows) -> None:
     end[first], end[second], end[third] = u, v, height
 
 
-def _back_bore(m, line: int, end, clearance: float, clear: float, bottom: float, rows) -> None:
+def _back_bore(m, line: int, end, heights, rows) -> None:
     """G87: beside the hole down to its bottom, in, up to K at feed and back, and out again."""
+    clearance, clear, bottom = heights
     first, second, third = axes(m.plane)
     u, v = end[first], end[second]
     aside_u, aside_v = u + m.cycle[I + first], v + m.cycle[I + second]

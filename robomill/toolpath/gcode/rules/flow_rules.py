@@ -32,13 +32,15 @@ ELSEWHERE, SPECIAL = 47, 48
 MOST_REPEATS = 2.0**31
 
 
-def run(m, s, text, flow, at: int, count: int, rows):
-    """(how many lines were executed, which comes next): at most ``count`` from ``at`` on, plain lines and O words.
+def run(m, s, text, flow, stretch, rows):
+    """(how many lines were executed, which comes next) of a ``stretch``, plain lines and O words: from which line on,
+    and how many at most.
 
     Up to the first line that is neither, that is refused or that means more than these rules. That one has changed
     nothing that doing it again would not; the interpreter reads it and says what is wrong. Moves are made into
     ``rows``, of which ``m.moves`` are written.
     """
+    at, count = stretch
     words, place = flow.words, first_word(flow.words, at)
     ahead = words[place].line if place < len(words) else -1
     for done in range(count):

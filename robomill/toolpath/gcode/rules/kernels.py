@@ -37,7 +37,7 @@ for _module in (operator_rules, value_rules, line_rules, plane, motion_rules, cy
 
 
 @kernel
-def run(state: State, store: Store, text: Text, flow: Flow, at: int, count: int, rows: Moves) -> tuple[int, int]:
+def run(state: State, store: Store, text: Text, flow: Flow, stretch: tuple[int, int], rows: Moves) -> tuple[int, int]:
     """``flow_rules.run`` on ``state`` (1,)."""
-    done: tuple[int, int] = flow_rules.run(state[0], store, text, flow, at, count, rows)
+    done: tuple[int, int] = flow_rules.run(state[0], store, text, flow, stretch, rows)
     return done

@@ -169,8 +169,8 @@ def test_compiled_code_reads_the_same() -> None:
     state[0] = tuple(getattr(compiled, name) for name in STATE.names)
     for i in range(len(lines)):
         plain.moves = state["moves"][0] = 0
-        done = flow_rules.run(plain, plain.store.arrays, lines.plain_text, none.plain, i, 1, rows)
-        assert kernels.run(state, compiled.store.views(), lines.text, none.views, i, 1, table) == done, written[i]
+        done = flow_rules.run(plain, plain.store.arrays, lines.plain_text, none.plain, (i, 1), rows)
+        assert kernels.run(state, compiled.store.views(), lines.text, none.views, (i, 1), table) == done, written[i]
         if done[0]:
             assert plain.store.values(1, 30) == compiled.store.values(1, 30), written[i]
             np.testing.assert_allclose(compiled.store.arrays.words, plain.store.arrays.words, rtol=1e-15)

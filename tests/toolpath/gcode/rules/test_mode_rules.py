@@ -83,7 +83,7 @@ def machine_after(text: str) -> tuple[Machine, Lines]:
 
 def run(machine: Machine, lines: Lines, first: int, count: int, rows: list[Move]) -> int:
     none = Structure(Calls()).plain
-    return flow_rules.run(machine, machine.store.arrays, lines.plain_text, none, first, count, rows)[0]
+    return flow_rules.run(machine, machine.store.arrays, lines.plain_text, none, (first, count), rows)[0]
 
 
 @pytest.mark.parametrize("line", PLAIN)
