@@ -11,6 +11,8 @@ import pytest
 from robomill.arrays import FloatArray
 from robomill.errors import CuttingError
 from robomill.quantities import (
+    Quantity,
+    again,
     choice,
     declared_types,
     described,
@@ -198,3 +200,21 @@ def test_a_joint_that_slides_has_the_unit_of_lengths_where_one_is_declared() -> 
     limit, sense = quantities(Joint)["limit"], quantities(Joint)["sense"]
     assert [limit.of_joint(slides).unit for slides in (False, True)] == ["deg", "mm"]
     assert {sense.of_joint(slides).unit for slides in (False, True)} == {sense.unit}
+
+
+def test_a_quantity_declared_elsewhere_is_one_number_of_a_field_with_what_is_its_own() -> None:
+    speeds = Quantity("Speed", "1/min", "array", name="n", key="speed_1_min", least=0.0, slip=1000.0)
+
+    @dataclass(frozen=True)
+    class Mill:
+        n_s: float = again(speeds, label="Spindle", default=2.0)
+
+        def __post_init__(self) -> None:
+            settle(self, CuttingError, "Mill")
+
+    found = quantities(Mill)["n_s"]
+    assert (found.kind, found.label, found.name, found.key) == ("number", "Spindle", "n_s", "speed_1_min")
+    assert (found.unit, found.least, found.slip) == ("1/min", 0.0, 1000.0)
+    assert Mill().n_s == found.default == 2.0
+    with pytest.raises(CuttingError, match="Mill, Spindle: found"):
+        Mill(-1.0)
