@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import operator
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,18 @@ def ends(body: str) -> list[list[float]]:
 )
 def test_q_parameters(body: str, x: float) -> None:
     assert ends(body)[-1][0] == pytest.approx(x)
+
+
+COMPARED = {"9": ("EQU", operator.eq), "10": ("NE", operator.ne), "11": ("GT", operator.gt), "12": ("LT", operator.lt)}
+
+
+@pytest.mark.parametrize("number", COMPARED)
+@pytest.mark.parametrize(("a", "b"), [(1, 2), (2, 1), (2, 2), (-2, 1), (1, -2)])
+def test_jumps_follow_what_is_compared(number: str, a: int, b: int) -> None:
+    """As Python's own operator says: X+1 is passed over where it holds."""
+    word, holds = COMPARED[number]
+    body = f"FN {number}: IF {a:+d} {word} {b:+d} GOTO LBL 2\nL X+1\nLBL 2\nL IX+5\n"
+    assert ends(body)[-1][0] == pytest.approx(5 if holds(a, b) else 6)
 
 
 def test_shifts_and_turns() -> None:
