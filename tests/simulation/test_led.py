@@ -35,3 +35,21 @@ def test_every_stage_of_a_corrected_run_is_told_from_its_beginning() -> None:
         rm.simulate(SLOT.replace(source=rm.GCodeSource(text, "x.nc", wanted=wanted)))
     assert "Where the program was meant to go" in first
     assert set(first.values()) == {0.0}
+
+
+def test_a_later_plunge_into_what_is_opened_meets_nothing_of_the_correction_of_an_earlier_one() -> None:
+    """Two holes at one place, the first told 0.1 mm aside to be there: where both are meant to be, the second meets
+    nothing. A run of the same text that is told of no other path meets a crescent. Beside it, both meet the same."""
+    cut = SLOT.replace(force=rm.process_force("al7075_t6_carbide_ref190", SLOT.cutter), engagement=True)
+
+    def pushed(second: float, wanted: bool) -> np.ndarray:
+        text = "G21 G90 S12000 M3\nG0 X0 Y0 Z5\nG0 X{0}\nG1 Z-2 F300\nG0 Z5\nG0 X{1}\nG1 Z-2 F300\nG0 Z5\nM2\n"
+        meant = rm.GCodeSource(text.format(0, second), "wanted.nc") if wanted else None
+        run = rm.simulate(cut.replace(source=rm.GCodeSource(text.format(0.1, second), "x.nc", wanted=meant)))
+        return np.array([np.linalg.norm(run.F[run.path.block == line], axis=1).max() for line in (4, 7)])
+
+    first, again = pushed(0.0, wanted=True)
+    assert first > 100.0
+    assert again == 0.0
+    assert pushed(0.0, wanted=False)[1] > 1.0
+    np.testing.assert_allclose(pushed(20.0, wanted=True), first, rtol=1e-6)
