@@ -15,7 +15,7 @@ from robomill.compliance.springs.joint_bending import JointBending
 from robomill.errors import LoadTestError, ProjectError
 from robomill.files import TABLE
 from robomill.identification.fit.estimate import identify
-from robomill.identification.fit.models import Model
+from robomill.identification.fit.models import Model, Parameter
 from robomill.identification.knowledge import Knowledge
 from robomill.identification.laboratory import MAX_LOAD
 from robomill.identification.load_test import LoadTests
@@ -386,6 +386,13 @@ def test_every_section_runs_in_every_unit(page: AppTest, units: str, joint_unit:
         pick(page, "identification.section", section)
         assert not page.exception
         assert not page.error
+
+
+def test_what_shifts_is_shown_in_the_pages_unit_and_joints_in_theirs() -> None:
+    shift, joint = Parameter("entry", axis="xy"), Parameter("joint", 2)
+    assert words.unit_of(shift, "kN m/rad", "mm") == "um/N"
+    assert words.unit_of(shift, "kN m/rad", "in") == "uin/N"
+    assert words.unit_of(joint, "kN m/rad", "in") == "kN m/rad"
 
 
 def test_what_is_known_goes_through_the_project_file() -> None:

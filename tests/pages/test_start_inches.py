@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import base64
+import json
 import re
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
-from conftest import PAGES, go
+from conftest import PAGES, go, store
+from numpy.typing import NDArray
 from streamlit.testing.v1 import AppTest
+
+from robomill.toolpath.part_zero import frame_from_points, points_of_frame
+from robomill.ui.toolpath.part_zero import TOUCHED
 
 METRIC = re.compile(r"(?<![\w_])(?:[µμ]m|mm|cm|m)(?:[²³]|/N|/min|/s|/tooth)?(?![\w'’_=])|(?<=\d)mm\b|/mm")
 SOURCES = re.compile(r'<span class="rm-badge.*?(?:</td>|</p>)', re.DOTALL)  # who says a number, in that one's own words
@@ -78,3 +85,39 @@ def test_no_metric_length_is_left_where_inches_are_chosen(app: AppTest, page: st
     shown = go(app, page)
     left = metric(shown)
     assert not left, "\n".join(f"{kind}: {text}" for kind, text in left)
+
+
+def maps(app: AppTest) -> list[NDArray[np.float64]]:
+    """The numbers of the maps that are drawn, one after the other."""
+    drawn = [json.loads(chart.proto.spec) for chart in app.get("plotly_chart")]
+    of = [trace["z"] for figure in drawn for trace in figure["data"] if trace["type"] == "heatmap"]
+    return [np.frombuffer(base64.b64decode(z["bdata"]), z["dtype"]) for z in of]
+
+
+def test_the_measured_map_and_the_laboratory_are_in_inches_too(app: AppTest) -> None:
+    """The same maps in µin/N, and readings in inches."""
+    go(app, "4_Identification")
+    app.button_group(key="identification.section").set_value("map").run()
+    in_um = maps(app)
+    app.button_group(key="view.units").set_value("in").run()
+    assert not metric(app)
+    assert len(in_um) == len(maps(app)) == 3
+    for uin, um in zip(maps(app), in_um, strict=True):
+        np.testing.assert_allclose(uin * 25.4e-3, um, rtol=1e-5)
+    app.button_group(key="identification.section").set_value("laboratory").run()
+    app.button(key="identification.lab.three").click().run()
+    assert not app.exception
+    (readings,) = [frame.value for frame in app.dataframe if "dx, in" in frame.value]
+    assert len(readings) == 3
+    assert not [name for name in readings if "mm" in name]
+    assert not metric(app)
+
+
+def test_touched_points_are_said_to_be_off_in_inches(app: AppTest) -> None:
+    app.button_group(key="view.units").set_value("in").run()
+    held = store(app)
+    touched = frame_from_points(*points_of_frame(held.project.setup.T_MW))
+    held.project = held.project.replace(setup=held.project.setup.replace(T_MW=touched.T_MW))
+    held.values[TOUCHED] = touched
+    go(app, "5_Toolpath").button_group(key="toolpath.way").set_value("points").run()
+    assert "if each point is off by 0.004 in" in "\n".join(text for _, text in said(app)).replace("\u00a0", " ")

@@ -26,7 +26,7 @@ from robomill.ui.identification import words
 from robomill.ui.identification.bench import robot_of
 from robomill.ui.identification.plan import theta_columns
 from robomill.ui.project import View
-from robomill.units import format_number, format_percent, format_si, from_si
+from robomill.units import decimals, format_number, format_percent, format_short, format_si, from_si, unit_label
 from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.identification import intervals_figure
 
@@ -242,7 +242,7 @@ def _arm(robot: Robot, trial: Trial, dark: bool, height: int) -> None:
     scene = ArmScene(
         joint_frames(robot, solved.theta),
         force=trial.F,
-        force_label=f"{trial.load:g} N",
+        force_label=format_short(trial.load, "N"),
         joints=robot.joint_numbers,
         unit=session.project().view.of("m"),
     )
@@ -278,12 +278,13 @@ def _readings(robot: Robot, tests: LoadTests | None) -> None:
     if tests is None:
         return
     assert tests.theta is not None
+    unit = session.project().view.length
     with st.expander(f"Readings ({len(tests)})", icon=":material/table:"):
         columns: dict[str, Any] = theta_columns(robot, tests.theta)
         for i, axis in enumerate("xyz"):
             columns[f"F{axis}, N"] = tests.wrench[:, i]
-        for i, axis in enumerate("xyz"):
-            columns[f"d{axis}, mm"] = np.round(from_si(tests.displacement[:, i], "mm"), 4)
+        moved = np.round(from_si(tests.displacement, unit), decimals(unit, None) + 1)
+        columns |= {f"d{axis}, {unit_label(unit)}": moved[:, i] for i, axis in enumerate("xyz")}
         st.dataframe(columns, hide_index=True, height=pieces.rows_high(len(tests), 320))
         remark = "Readings of a virtual laboratory: synthetic, no measurement of a real robot."
         text = partial(load_tests_to_csv, tests, remark)

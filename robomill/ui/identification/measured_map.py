@@ -58,7 +58,7 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
             pieces.said("warning", finding.message, "visibility")
         level = pieces.attempt(level_of, bench, field, robot, z)
         if level is not None:
-            _maps(field, level, component, view.length, dark)
+            _maps(field, level, component, view, dark)
         _cut(field, cut, view.length, dark)
         _use(field)
 
@@ -185,18 +185,18 @@ def _simulated(robot: Robot, field: MeasuredField | None) -> SimulationResult | 
         return None
 
 
-def _maps(field: MeasuredField, level: Level, component: str, unit: str, dark: bool) -> None:
-    grid = level.model.grid
+def _maps(field: MeasuredField, level: Level, component: str, view: View, dark: bool) -> None:
+    grid, unit = level.model.grid, view.of("um/N")
     i, j = ("xyz".index(c) for c in component[-2:])
     measured, model = level.measured[:, :, i, j], level.model.values(component)[:, :, 0]
     here = np.abs(field.p[:, 2] - grid.z[0]) < 1e-6
-    points = from_si(field.p[here][:, :2], unit)
-    sizes = [from_si(v, "um/N") for v in (measured, np.where(np.isfinite(measured), model, np.nan), measured - model)]
+    points = from_si(field.p[here][:, :2], view.length)
+    sizes = [from_si(v, unit) for v in (measured, np.where(np.isfinite(measured), model, np.nan), measured - model)]
     both, pair = sizes[:2], component[-2:]
     if not np.isfinite(both).any():
         pieces.note("Nothing was measured at this level.")
         return
-    title, apart = (f"{sign}C<sub>{pair}</sub>, {unit_label('um/N')}" for sign in ("", "Δ"))
+    title, apart = (f"{sign}C<sub>{pair}</sub>, {unit_label(unit)}" for sign in ("", "Δ"))
     scale = Scale(title, float(np.nanmin(both)), float(np.nanmax(both)))
     scale = scale if one_sign(pair) else Scale.signed(title, both)
     rows = (
@@ -207,15 +207,15 @@ def _maps(field: MeasuredField, level: Level, component: str, unit: str, dark: b
     for k, (column, (name, values, dots, colours)) in enumerate(
         zip(pieces.split([1, 1, 1], "maps", gap="small"), rows, strict=True)
     ):
-        panel = Map(name, values, unit=unit_label("um/N"))
-        drawn = MapSheet.over([[panel]], grid, "z", unit, {"main": colours})
+        panel = Map(name, values, unit=unit_label(unit))
+        drawn = MapSheet.over([[panel]], grid, "z", view.length, {"main": colours})
         with column, st.container(border=True):
             pieces.strong(name)
             figure = level_figure(drawn, dots, dark=dark, revision=f"map-{k}")
             pieces.figure(figure, f"ident-map-{k}", alt=f"{name} of {component} at this level.")
     with st.container(horizontal=True, vertical_alignment="center", horizontal_alignment="distribute"):
         pieces.note("The first two share one scale. Dots: measured points. Grey: not measured, so not answered.")
-        pieces.table_twin(lambda: _columns(grid, sizes, component), "measured-map")
+        pieces.table_twin(lambda: _columns(grid, sizes, f"{component}_{{}}_{unit.replace('/', '_')}"), "measured-map")
 
 
 def level_grid(field: MeasuredField, z: float) -> Grid:
@@ -227,13 +227,13 @@ def level_grid(field: MeasuredField, z: float) -> Grid:
     return Grid(axes[0], axes[1], np.array([z]))
 
 
-def _columns(grid: Grid, sizes: list[FloatArray], component: str) -> dict[str, Any]:
+def _columns(grid: Grid, sizes: list[FloatArray], name: str) -> dict[str, Any]:
     X, Y = np.meshgrid(grid.x, grid.y, indexing="ij")
-    names = ("measured", "joint_model", "difference")
+    names = map(name.format, ("measured", "joint_model", "difference"))
     return {
         "X_mm": from_si(X.ravel(), "mm"),
         "Y_mm": from_si(Y.ravel(), "mm"),
-        **{f"{component}_{n}_um_N": v.ravel() for n, v in zip(names, sizes, strict=True)},
+        **{n: v.ravel() for n, v in zip(names, sizes, strict=True)},
     }
 
 

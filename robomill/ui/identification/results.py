@@ -27,14 +27,15 @@ FIXED = ("parameter", "value", "standard error", "95 % from", "95 % to", "unit",
 
 def compliances(result: IdentificationResult, robot: Robot, joint_unit: str, dark: bool) -> None:
     """Intervals beside the paper's tables, the joint these poses hardly see, correlations, condition."""
+    length = session.project().view.length
     with st.container(border=True):
-        for k, drawn in enumerate(words.intervals(result, robot, joint_unit)):
+        for k, drawn in enumerate(words.intervals(result, robot, joint_unit, length=length)):
             first = k == 0
             pieces.figure(
                 intervals_figure(drawn, dark=dark),
                 f"ident-intervals-{k}",
                 name="compliances",
-                table=(lambda: words.parameter_columns(result, robot, joint_unit)) if first else None,
+                table=(lambda: words.parameter_columns(result, robot, joint_unit, length)) if first else None,
                 caption=_scale(drawn.logarithmic) if first else "",
                 alt="Fitted compliances with 95 % intervals beside the reference values.",
             )
@@ -89,13 +90,14 @@ def _noise(result: IdentificationResult) -> str:
 
 
 def _table(result: IdentificationResult, robot: Robot, joint_unit: str) -> None:
-    columns = words.parameter_columns(result, robot, joint_unit)
+    length = session.project().view.length
+    columns = words.parameter_columns(result, robot, joint_unit, length)
     references = [c for c in columns if c not in FIXED]
     head = ["", "value", "std. error", "95 % interval", *references]
-    common = words.unit_of(result.labels[0], joint_unit)
+    common = words.unit_of(result.labels[0], joint_unit, length)
     body = []
     for k, parameter in enumerate(result.labels):
-        unit = words.unit_of(parameter, joint_unit)
+        unit = words.unit_of(parameter, joint_unit, length)
         value, error, low, high = (columns[c][k] for c in FIXED[1:5])
         cells = (
             ["not seen", "–", "–"]
@@ -148,7 +150,7 @@ def _outliers(bench: Bench, result: IdentificationResult) -> None:
         st.info("Every test fits the others; nothing is left out.", icon=":material/check_circle:")
         return
     if rows:
-        unit = "urad" if result.single else "um"
+        unit = "urad" if result.single else session.project().view.of("um")
         named = "; ".join(
             f"row {o.row}: {format_si(abs(o.residual), unit, 0)}, {format_number(o.times, 0)} times the usual"
             for o in result.outliers[:6]

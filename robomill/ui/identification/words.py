@@ -18,9 +18,11 @@ IDENTIFIED_SET = "identified"
 SET_TITLES = {"table_2": "Table 2", "table_3": "Table 3"}
 
 
-def unit_of(parameter: Parameter, joint_unit: str) -> str:
-    """The unit a parameter is shown in: the screen's for joints and bending, um/N for what shifts."""
-    return of_joint(joint_unit, not parameter.turns) if parameter.turns or parameter.joint else "um/N"
+def unit_of(parameter: Parameter, joint_unit: str, length: str) -> str:
+    """The unit a parameter is shown in, where lengths are in ``length``: that of joints for them and for bending, um/N
+    or what stands in its place for what shifts."""
+    of_shift = in_lengths("um/N", length)
+    return of_joint(joint_unit, not parameter.turns) if parameter.turns or parameter.joint else of_shift
 
 
 def interval(low_high: FloatArray, unit: str) -> tuple[float, float]:
@@ -35,10 +37,10 @@ def number(value: float, unit: str) -> str:
 
 
 def intervals(
-    result: IdentificationResult, robot: Robot, joint_unit: str, truth: FloatArray | None = None
+    result: IdentificationResult, robot: Robot, joint_unit: str, truth: FloatArray | None = None, length: str = "mm"
 ) -> list[Intervals]:
     """One drawing for each kind and unit of parameter: the joints, then bending, then what shifts."""
-    groups = [(unit_of(p, joint_unit), p.joint is not None) for p in result.labels]
+    groups = [(unit_of(p, joint_unit, length), p.joint is not None) for p in result.labels]
     return [
         _drawing(result, robot, unit, [k for k, g in enumerate(groups) if g == (unit, joint)], truth if joint else None)
         for unit, joint in dict.fromkeys(groups)
@@ -90,9 +92,11 @@ def pretty(parameter: Parameter) -> str:
     return f"C<sub>{parameter.axis}</sub>" if parameter.kind == "entry" else parameter.label.capitalize()
 
 
-def parameter_columns(result: IdentificationResult, robot: Robot, joint_unit: str) -> dict[str, Any]:
+def parameter_columns(
+    result: IdentificationResult, robot: Robot, joint_unit: str, length: str = "mm"
+) -> dict[str, Any]:
     """The table of parameters: value, standard error, 95 % interval, share of the displacement, reference sets."""
-    units = [unit_of(p, joint_unit) for p in result.labels]
+    units = [unit_of(p, joint_unit, length) for p in result.labels]
     known = np.isfinite(result.parameter_stderr)
     value = np.array([float(shown(v, u)) for v, u in zip(result.parameters, units, strict=True)])
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -189,7 +193,7 @@ def tiles(result: IdentificationResult, joint_unit: str, cut: tuple[str, str], l
     least = Tile("Least certain joint", "none", "this model has no joints")
     if result.has_joints:
         label, half = weakest(result)
-        unit = unit_of(result.labels[result.weakest], joint_unit)
+        unit = unit_of(result.labels[result.weakest], joint_unit, length)
         low, high = interval(result.parameter_ci95[result.weakest], unit)
         note = f"{number(low, unit)} to {number(high, unit)} {unit_label(unit)}"
         least = Tile(

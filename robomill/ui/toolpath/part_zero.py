@@ -66,7 +66,7 @@ def _by_points() -> None:
         error = touched.tilt(TOUCH_ERROR)
         words += (
             f" Third point at {format_si(touched.angle, 'deg', 1)} to x; if each point is off by "
-            f"{format_si(TOUCH_ERROR, 'mm', 1)}, the axes are good to {format_si(error, 'deg', 2)}."
+            f"{format_si(TOUCH_ERROR, unit, 1)}, the axes are good to {format_si(error, 'deg', 2)}."
         )
     else:
         words += " Touch the zero, a point far along +x, and one on the side of +y."
