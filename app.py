@@ -11,7 +11,7 @@ from robomill.ui import front, other
 from robomill.ui.arm import arm_at
 from robomill.ui.start import carved, story
 from robomill.ui.toolpath.doors import take_file
-from robomill.ui.verdict import NOT_COUNTED, decides_at, tiles_of_b
+from robomill.ui.verdict import NOT_COUNTED, tiles_of_b
 from robomill.ui.worked import mathematics
 from robomill.units import format_limit
 
@@ -36,11 +36,11 @@ def start() -> None:
     ui.headline(f"Start · {setup.name}", ui.verdict_sentence(result, unit), story.cause(result, unit))
     ui.open_question(result)
     other.tiles(ui.verdict_tiles(result, unit), tiles_of_b)
-    mathematics(lambda: of_the_run(result, decides_at(result)), "start")
+    mathematics(lambda: of_the_run(result, result.decided.sample), "start")
 
     left, middle, right = ui.split([1, 1.2, 0.8], "finished", gap="small")
     with left, st.container(border=True, height="stretch"):
-        index = decides_at(result)
+        index = result.decided.sample
         if index >= 0:
             arm_at(result, index, "start-arm", HEIGHT, aspect=ASPECT)
         else:

@@ -17,7 +17,6 @@ from robomill.ui.toolpath.reach import board_reach, path_reach
 from robomill.ui.toolpath.sketch import sketch_inputs
 from robomill.ui.toolpath.sketch_pad import sketch_pad
 from robomill.ui.toolpath.sources import kind_switch
-from robomill.ui.verdict import decides_at
 from robomill.ui.work.running import path_of
 from robomill.ui.worked import mathematics
 
@@ -33,7 +32,7 @@ result = ui.attempt(ui.result, setup) if reach is not None else None
 view.headline(source, path, reach, result, unit)
 other.tiles(view.tiles(source, path, reach, result, unit), view.tiles_of_b)
 # there without a result, too: what comes between tiles and board later would push the board from beneath the mouse
-mathematics(partial(of_the_run, result, decides_at(result)) if result is not None else tuple, "toolpath")
+mathematics(partial(of_the_run, result, result.decided.sample) if result is not None else tuple, "toolpath")
 asked = question.panel(path, "" if result is None else result.verdict.premise)
 
 program = source.kind == "program" and not drawing.shown()

@@ -26,6 +26,8 @@ from robomill.values import Said
 BY_HAND = Provenance("user", "entered by hand")
 
 Frame = Literal["path", "M"]
+COMPONENTS = {"feed": "feed", "feed_normal": "feed-normal", "axial": "axial"}
+"""Of a force in the feed frame, in their order: the name in files and what people call it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from robomill.arguments import asked
-from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport, at_pose
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import deflection, displacement, shares_along, soft_direction
@@ -16,7 +15,7 @@ from robomill.learn.compared import neighbours, side_cut
 from robomill.learn.equations import component, product, settled
 from robomill.learn.exercise import Exercise, Slip
 from robomill.learn.lesson import COUNT, Bars, Choice, Lesson
-from robomill.learn.push import ASIDE, FORCE, Push, side
+from robomill.learn.push import FORCE, AsidePush
 from robomill.units import format_number, format_percent, format_si, from_si
 from robomill.workspace.ray import ray_through
 
@@ -61,24 +60,12 @@ def lesson(number: int, pose: PoseReport) -> Lesson:
     return LESSONS[number - 1](pose)
 
 
-def _told(delta: FloatArray, push: Push) -> str:
-    """A displacement in words: first along the push, then aside."""
-    order = (push.along, *(i for i in range(3) if i != push.along))
-    parts = [
-        f"{format_si(abs(float(delta[i])), 'mm', 3)} "
-        + (f"along {push.name}" if i == push.along else side(i, bool(delta[i] > 0)))
-        for i in order
-        if abs(delta[i]) > ASIDE * np.linalg.norm(delta)
-    ]
-    return " and ".join(parts) if parts else "nowhere"
-
-
 def _where(pose: PoseReport) -> Lesson:
-    push = Push.of(pose.C)
+    push = AsidePush.of(pose.C)
     delta = pose.delta(push.force)
     names = list(push.answers)
     right = push.went(delta)
-    moved = _told(delta, push)
+    moved = push.told(delta, "mm")
     choices = tuple(Choice(text, f"The model says: {moved}.") for text in push.answers.values())
     return Lesson(
         1,
@@ -98,7 +85,7 @@ def _where(pose: PoseReport) -> Lesson:
 
 
 def _which(pose: PoseReport) -> Lesson:
-    push = Push.of(pose.C)
+    push = AsidePush.of(pose.C)
     delta_joint = deflection(pose.C_joint, push.force)
     delta = delta_joint.sum(axis=0)
     share = shares_along(delta_joint, delta)
@@ -140,7 +127,7 @@ def _numbered(id: str, question: str, unit: str, answer: float, slips: Sequence[
 
 
 def _lever(pose: PoseReport) -> Lesson:
-    push = Push.of(pose.C)
+    push = AsidePush.of(pose.C)
     way = ray_through(pose.robot, pose.T_MT[:3, 3])
     taken = np.flatnonzero(np.isfinite(way.theta).all(axis=1))  # with the tool vertical, which it may not be here
     if len(taken) < 2:
@@ -190,7 +177,7 @@ def _lever(pose: PoseReport) -> Lesson:
 
 
 def _map(pose: PoseReport) -> Lesson:
-    push = Push.of(pose.C)
+    push = AsidePush.of(pose.C)
     names, _, theta = neighbours(pose)
     C = cartesian_compliance(pose.robot, theta)
     direct = C[:, push.along, push.along]
@@ -283,7 +270,7 @@ def _seeing(pose: PoseReport) -> Lesson:
 
 
 def _compensated(pose: PoseReport) -> Lesson:
-    push = Push.of(pose.C)
+    push = AsidePush.of(pose.C)
     robot, a = pose.robot, push.along
     softer = cartesian_compliance(robot.replace(C_theta=(1.0 + WRONG) * robot.C_theta), pose.theta)
     model = float(pose.C[a, a] * FORCE)
@@ -320,7 +307,7 @@ def _compensated(pose: PoseReport) -> Lesson:
 
 
 def _spend(pose: PoseReport) -> Lesson:
-    push = Push.of(pose.C)
+    push = AsidePush.of(pose.C)
     robot = pose.robot
     share = shares_along(deflection(pose.C_joint, push.force), pose.delta(push.force))
     names: list[str] = []

@@ -8,13 +8,14 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.paper import SLOT
+from robomill.units import format_si
 
 FORCE = SLOT.force  # N
 ASIDE = 0.02  # share of the displacement that counts as going somewhere
 
 
 @dataclass(frozen=True)
-class Push:
+class AsidePush:
     """A push along axis ``along`` (0, 1, 2) that leads most aside along ``aside``, and ``other`` is the third axis."""
 
     along: int
@@ -22,7 +23,7 @@ class Push:
     other: int
 
     @classmethod
-    def of(cls, C: FloatArray) -> Push:
+    def of(cls, C: FloatArray) -> AsidePush:
         """The push that leads aside most, by the compliance C (3, 3)."""
         size = np.abs(C)
         across = size - np.diag(np.diag(size))
@@ -56,6 +57,17 @@ class Push:
         if other > aside:
             return "other"
         return f"{'+' if delta[self.aside] > 0 else '-'}{self.aside}"
+
+    def told(self, delta: FloatArray, unit: str, size: str = "{}") -> str:
+        """A displacement (3,) m in words, first along the push, then aside; each length in ``unit``, set as ``size``
+        says."""
+        parts = [
+            f"{size.format(format_si(abs(float(delta[i])), unit))} "
+            + (f"along {self.name}" if i == self.along else side(i, bool(delta[i] > 0)))
+            for i in (self.along, *(i for i in range(3) if i != self.along))
+            if abs(delta[i]) > ASIDE * np.linalg.norm(delta)
+        ]
+        return " and ".join(parts) if parts else "nowhere"
 
     @property
     def column(self) -> str:

@@ -14,7 +14,8 @@ from robomill.compliance.deflection import deflection, displacement, shares_alon
 from robomill.cutting.forces.mechanistic import MechanisticForce, MechanisticRow
 from robomill.kinematics.dexterity import task_matrix
 from robomill.learn.equations import column, component, matrix, product, settled, texts
-from robomill.simulation.judging.verdict_words import Reading
+from robomill.simulation.judging.gauge import Readings
+from robomill.simulation.judging.verdict_words import FLOOR, TIP, WALL, Reading, ReadingKind
 from robomill.simulation.result import SimulationResult
 from robomill.units import from_si, unit_label
 
@@ -55,10 +56,9 @@ def at_the_pose(pose: PoseReport, F: FloatArray | None = None, delta: FloatArray
 
 def of_the_run(result: SimulationResult, i: int) -> list[Worked]:
     """Readings of the verdict, and where it is decided (sample ``i``) the force and what it does."""
-    found = []
-    for name, reading in (("Wall error", result.verdict.wall), ("Floor error", result.verdict.floor)):
-        found += _read(result, name, reading)
-    rests = result.verdict.deciding
+    verdict, gauge = result.verdict, result.gauge
+    found = _read(result, WALL, verdict.wall, gauge.walls) + _read(result, FLOOR, verdict.floor, gauge.floors)
+    rests = verdict.deciding
     if rests is not None and np.isfinite(rests[1].share):
         found.append(_share_of_tolerance(rests[1]))
     if i >= 0 and np.isfinite(result.delta[i]).all() and np.isfinite(result.F[i]).all():
@@ -142,7 +142,7 @@ def _displaced(C: FloatArray, F: FloatArray) -> list[Worked]:
             f"C in {unit_label('um/N')}, F in N, δ in µm, all in the robot frame.",
         ),
         Worked(
-            "Tip off its path",
+            TIP.label,
             r"|\boldsymbol{\delta}| = \sqrt{\delta_x^2 + \delta_y^2 + \delta_z^2}",
             rf"\sqrt{{{root}}} = {size}",
             "Sec. 4.2",
@@ -177,9 +177,8 @@ def _shares(pose: PoseReport, F: FloatArray) -> list[Worked]:
     return found
 
 
-def _read(result: SimulationResult, name: str, reading: Reading) -> list[Worked]:
+def _read(result: SimulationResult, kind: ReadingKind, reading: Reading, kept: Readings) -> list[Worked]:
     """What a gauge reads, where it is what the tip does there: several passes may have made the surface."""
-    kept = result.gauge.walls if name == "Wall error" else result.gauge.floors
     at = np.flatnonzero((kept.sample == reading.worst) & (kept.error == reading.value))
     if reading.worst < 0 or not len(at):
         return []
@@ -190,7 +189,7 @@ def _read(result: SimulationResult, name: str, reading: Reading) -> list[Worked]
     terms = " + ".join(f"({a})({b})" for a, b in zip(n, d, strict=True))
     return [
         Worked(
-            name,
+            kind.label,
             r"e = n_f\,\delta_f + n_n\,\delta_n + n_a\,\delta_a",
             rf"{terms} = {error}",
             "Sec. 4.2",

@@ -22,7 +22,7 @@ from robomill.report.tags import Html, escaped, joined, tag
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
-from robomill.simulation.stations import decides_at, section_at
+from robomill.simulation.stations import section_at
 from robomill.units import format_si
 from robomill.version import __version__
 
@@ -171,7 +171,7 @@ def _pictures(result: SimulationResult, record: dict[str, Any]) -> Html:
     """The section beside the joints, and the way along the path."""
     if result.worst < 0:
         return tag("p", "Nothing of the cut is judged, so there are no pictures of it.", class_="quiet")
-    section, joints = section_at(result, decides_at(result)), joints_picture(record)
+    section, joints = section_at(result, result.decided.sample), joints_picture(record)
     pair = []
     if section is not None:
         said = f"Section {format_si(section.station, 'mm', 1)} along the cut, line {section.block}, to scale. "

@@ -39,7 +39,7 @@ def lines_record(result: SimulationResult, most: int = MOST) -> dict[str, Any]:
     shares = np.array([np.abs(value) / each.tolerance for value, each in errors.values() if each.stated])
     share = np.fmax.reduce(shares, axis=0)
     tip = largest(judged, result.deviation[judged])
-    force = largest(judged, np.linalg.norm(result.F[judged], axis=1))
+    force = largest(judged, result.force_size[judged])
     length = np.bincount(of, np.where(path.cutting, path.step_length, 0.0), minlength=len(blocks))
     lost, missed = counted(result.not_judged), counted(result.missed & path.cutting)
     tool = np.zeros(len(blocks), dtype=int)

@@ -7,10 +7,12 @@ from typing import Any
 from robomill.provenance import Finding, named
 from robomill.report.reproduction_row import WORDS as WORDS_OF_STATUS
 from robomill.simulation.judging.strays import WORDS
+from robomill.surface.sections.measures import MEASURED
 from robomill.surface.sections.section_law import MEASURES
 from robomill.units import format_beside, format_limit, format_percent, format_share, format_value, from_si, to_si
 
 AXES = "XYZ"
+SHORT = [name for name, of in MEASURED.items() if of.short]
 SECTIONS = {kind: kind if kind != "unknown" else "-" for kind in MEASURES}
 
 
@@ -163,18 +165,9 @@ def _band_line(found: dict[str, Any]) -> str:
 def _section_line(section: dict[str, Any]) -> str:
     """What a section is and its dimensions, or why there are none."""
     start = f"          {section['station_mm']:7.2f}  {SECTIONS[section['kind']]:7s}  "
-    told = {name: section[f"{name}_mm"] for name in ("width", "depth")}
-    signed = {
-        "centre": section["centre_offset_mm"],
-        "floor": section["floor_error_mm"],
-        "left wall": section["wall_left_error_mm"],
-        "right wall": section["wall_right_error_mm"],
-        "surface": section["error_mean_mm"],
-    }
-    if section["kind"] == "groove":
-        signed = {name: signed[name] for name in ("centre", "floor")}
-    found = [f"{name} {v:.3f}" for name, v in told.items() if not math.isnan(v)]
-    found += [f"{name} {format_value(v, '1', 4, sign=True)}" for name, v in signed.items() if not math.isnan(v)]
+    names = [each for each in SHORT if section["kind"] != "groove" or each in MEASURES["groove"]]
+    known = [(MEASURED[name], section[f"{name}_mm"]) for name in names if not math.isnan(section[f"{name}_mm"])]
+    found = [f"{of.short} {format_value(v, '1', 4, True) if of.signed else f'{v:.3f}'}" for of, v in known]
     return start + (", ".join(found) or str(section["note"]) or "nothing can be measured")
 
 

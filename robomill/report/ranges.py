@@ -1,6 +1,6 @@
 """How far walls, floors and the tip may be off instead: over what is assumed or known to a band only."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 
@@ -12,7 +12,7 @@ from robomill.identification.knowledge import Knowledge
 from robomill.provenance import Kind
 from robomill.report.paper_lengths import over_lengths
 from robomill.simulation.band import deviation_band, size_band
-from robomill.simulation.judging.verdict_words import Reading
+from robomill.simulation.judging.verdict_words import Reading, Verdict
 from robomill.simulation.origin.spread import alloy_spread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.tooth import tooth
@@ -53,6 +53,11 @@ def ranges(result: SimulationResult, known: Knowledge | None) -> tuple[Range, ..
     if known is not None:
         found.append(_range(result, f"{format_percent(LEVEL)} band, {known.source}", "measured", *_band(result, known)))
     return tuple(found)
+
+
+def out_over(verdict: Verdict, found: Iterable[Range]) -> tuple[Range, ...]:
+    """Of a cut within tolerance those ranges at whose end it would be out of it."""
+    return tuple(each for each in found if verdict.level in ("ok", "tight") and each.share[1] > 1.0)
 
 
 def _band(result: SimulationResult, known: Knowledge) -> tuple[Callable[[int], FloatArray], Ends]:

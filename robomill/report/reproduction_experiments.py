@@ -50,7 +50,7 @@ def force(evidence: Evidence) -> Found:
     cutter = Cutter("flat", SLOT.diameter, flutes=SLOT.flutes)
     rows = [m for m in evidence.materials if m.kind == "mechanistic"]
     sizes = np.array([MechanisticForce(cutter, m).components(conditions)[1, 1] for m in rows])
-    used = float(np.nanmax(np.linalg.norm(evidence.flute.F, axis=1)))
+    used = float(np.nanmax(evidence.flute.force_size))
     text = (
         f"{format_si(used, 'N', 0)} is used as measured; {len(rows)} aluminium rows predict {sizes.min():.0f} to "
         f"{sizes.max():.0f} N"

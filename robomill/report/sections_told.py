@@ -3,17 +3,20 @@
 from collections.abc import Sequence
 from typing import Any
 
+from robomill.cutting.force import COMPONENTS
 from robomill.provenance import Finding, named
 from robomill.report.plain import reading_share, reading_value
 from robomill.report.remedies_told import Told
 from robomill.report.tags import Html, joined, table, tag
 from robomill.simulation.judging.strays import WORDS
-from robomill.simulation.judging.verdict_words import TITLES
-from robomill.surface.sections.groove import MEASURED
+from robomill.simulation.judging.verdict_words import END, FEED, FLOOR, TIP, TITLES, WALL, gauge_end
+from robomill.simulation.judging.verdict_words import WORDS as WORDS_OF_GRADE
+from robomill.surface.sections.measures import MEASURED
 from robomill.surface.sections.section_law import MEASURES
+from robomill.surface.sections.section_law import TITLES as TITLES_OF_KIND
 from robomill.units import format_count, format_percent, format_share, format_value
 
-READINGS = {"wall": "Wall error", "floor": "Floor error", "end": "End of the cut", "feed": "Along the feed"}
+READINGS = (WALL, FLOOR, END, FEED)
 MODEL = (
     "Static deflection: the mean cutting force bends joints (and springs, where there are any) that are linear; links "
     "are stiff, deflections small."
@@ -37,18 +40,18 @@ def header(record: dict[str, Any], made: str, robot: str) -> Html:
 
 def verdict(record: dict[str, Any]) -> Html:
     """The one verdict, how much of the tolerance is used, and over what it could be another."""
-    level, share = record["verdict"], _share(record)
+    level, share = record["verdict"], record["share"]
     parts = [tag("b", TITLES[level]), tag("p", record["verdict_sentence"])]
-    if share is not None:
-        ends = max(1.25, min(1.05 * share, 6.0))
+    if level in WORDS_OF_GRADE and record["decided_by"] != TIP.code:
+        ends = gauge_end(share)
         at, full = (f"{100 * min(each, ends) / ends:.1f}%" for each in (share, 1.0))
         inner = joined([tag("i", style=f"width:{at}"), tag("b", style=f"left:{full}")])
         parts.append(tag("div", inner, class_="gauge"))
         words = f"{format_share(share)} of the tolerance used by what decides; the mark is all of it."
         parts.append(tag("p", words, class_="quiet"))
-    out = [each["over"] for each in record["ranges"] if (each["share"][1] or 0.0) > 1.0]
-    if out and level in ("ok", "tight"):
-        parts.append(tag("p", f"It could be out of tolerance over: {', '.join(out)} (ranges below)."))
+    if record["could_be_out_over"]:
+        over = ", ".join(record["could_be_out_over"])
+        parts.append(tag("p", f"It could be out of tolerance over: {over} (ranges below)."))
     lost = record["not_judged"]
     if lost["count"]:
         words = f"{format_count(lost['count'])} of {format_count(lost['of'], 'point')} of the cut are not judged."
@@ -56,39 +59,31 @@ def verdict(record: dict[str, Any]) -> Html:
     return tag("section", *parts, class_=f"verdict {level}")
 
 
-def _share(record: dict[str, Any]) -> float | None:
-    """The largest share of a tolerance that is used, of what is judged; None where the verdict says nothing."""
-    shares = [record[name]["share"] for name in READINGS if record[name]["judged"] and record[name]["line"] is not None]
-    known = [share for share in shares if share is not None and share == share]
-    return max(known) if known and record["verdict"] in ("ok", "tight", "out") else None
-
-
 def tiles(record: dict[str, Any]) -> Html:
     """What a gauge would read, how far the tip is off, how hard it is pushed."""
     made = []
-    for name, title in READINGS.items():
-        found = record[name]
-        if name in ("end", "feed") and not found["judged"]:
+    for kind in READINGS:
+        found = record[kind.code]
+        if kind in (END, FEED) and not found["judged"]:
             continue
         if found["line"] is None:
-            made.append(_tile(title, "–", "none is left to measure"))
+            made.append(_tile(kind.label, "–", "none is left to measure"))
         else:
-            made.append(_tile(title, reading_value(found), f"{reading_share(found)}, line\u00a0{found['line']}"))
+            made.append(_tile(kind.label, reading_value(found), f"{reading_share(found)}, line\u00a0{found['line']}"))
     if record["worst_block"]:
         fate = WORDS[record["tip"]["fate"]] if record["tip"] else ""
         made.append(
             _tile(
-                "Tip off its path",
+                TIP.label,
                 mm(record["max_deviation_mm"]),
                 f"line\u00a0{record['worst_block']}; {fate}".rstrip("; "),
             )
         )
-        size = sum(each * each for each in record["force_N"]) ** 0.5
         parts = ", ".join(
-            f"{name.replace('_', ' ')} {format_value(each, 'N', 0, sign=True, with_unit=False)}"
+            f"{COMPONENTS[name]} {format_value(each, 'N', 0, sign=True, with_unit=False)}"
             for name, each in record["force_component_N"].items()
         )
-        made.append(_tile("Force there", format_value(size, "N"), parts))
+        made.append(_tile("Force there", format_value(record["force_size_N"], "N"), parts))
     return tag("div", *made, class_="tiles")
 
 
@@ -104,13 +99,12 @@ def measures(record: dict[str, Any]) -> Html | str:
     names = [name for name in MEASURES[found["kind"]] if found["near_wall"] or "_near_" not in name]
     rows = []
     for name in (each.replace("_near_", f"_{found['near_wall']}_") for each in names):
-        unit = MEASURED[name]
-        value, why = found[f"{name}_{unit}"], found["not_measured"].get(name, "")
+        of = MEASURED[name]
+        value, why = found[f"{name}_{of.unit}"], found["not_measured"].get(name, "")
         known = value is not None and value == value
-        signed = "error" in name or "offset" in name or "tilt" in name
-        shown = format_value(value, unit, sign=signed) if known else "–"
-        rows.append((name.replace("_", " ").capitalize(), shown, "" if known else why or "nothing to measure"))
-    words = f"{found['kind'].capitalize()}, {mm(found['station_mm'], 1)} along the cut, line {found['block']}"
+        shown = format_value(value, of.unit, of.digits, of.signed) if known else "–"
+        rows.append((of.label, shown, "" if known else why or "nothing to measure"))
+    words = f"{TITLES_OF_KIND[found['kind']]}, {mm(found['station_mm'], 1)} along the cut, line {found['block']}"
     said = tag("p", found["note"], class_="quiet") if found["note"] else ""
     body = table(("Measure", "Value", ""), rows, "knw") if rows else tag("p", "Nothing can be measured there.")
     return joined([tag("h2", f"Section: {words}"), body, said])

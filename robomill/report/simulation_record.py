@@ -5,34 +5,34 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.cutting.force import COMPONENTS
 from robomill.identification.knowledge import Knowledge
 from robomill.report.lines_record import lines_record
 from robomill.report.paper_lengths import TRIED, over_lengths
-from robomill.report.ranges import Range, ranges
+from robomill.report.ranges import Range, out_over, ranges
 from robomill.report.records import shown
+from robomill.simulation.judging.verdict_words import FLOOR, KINDS, WALL
 from robomill.simulation.origin.assumptions import assumed_of_setup
 from robomill.simulation.origin.origins import sources
 from robomill.simulation.origin.spread import alloy_spread, peak_force
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.stations import decides_at, largest_deviations, nearest_feed, section_at
+from robomill.simulation.stations import largest_deviations, nearest_feed, section_at
 from robomill.simulation.tooth import LEFT_OUT, tooth
-from robomill.surface.sections.groove import MEASURED, GrooveSection
+from robomill.surface.sections.groove import GrooveSection
+from robomill.surface.sections.measures import MEASURED
 from robomill.toolpath.source import wanted_of
 from robomill.version import __version__
-
-COMPONENTS = ("feed", "feed_normal", "axial")
 
 
 def simulation_record(result: SimulationResult, known: Knowledge | None = None) -> dict[str, Any]:
     """One run. ``deviation_mm``, ``joint_share_mm`` and ``force_N`` are those of the worst point, in {M}; ``known`` is
     how sure the compliances are, for the ``ranges``: left out, what the set-up knows."""
-    i = result.worst
-    section = section_at(result, decides_at(result))
+    i, wanted = result.worst, wanted_of(result.setup.source)
+    section = section_at(result, result.decided.sample)
 
     def there(values: FloatArray, unit: str) -> Any:
         return shown(values[i] if i >= 0 else np.full(values.shape[1:], np.nan), unit)
 
-    wanted = wanted_of(result.setup.source)
     verdict, noticed = result.verdict, (*result.notes, *result.surface_notes)
     missed = sorted(set(result.path.block[~result.reached].tolist()))
     return {
@@ -54,12 +54,13 @@ def simulation_record(result: SimulationResult, known: Knowledge | None = None) 
         "wanted": None if wanted is None else wanted.name,
         "ahead_mm": None if result.ahead is None else there(result.ahead, "mm"),
         "force_N": there(result.F, "N"),
+        "force_size_N": there(result.force_size, "N"),
         "force_component_N": dict(zip(COMPONENTS, there(result.force_components, "N"))),
         "force_share_mm": {name: there(result.delta_component[:, c], "mm") for c, name in enumerate(COMPONENTS)},
         "joint_shares_add_up": result.setup.measured_map is None,
         **_uncertain(result, i),
         "over_lengths": lengths_record(result, i),
-        "ranges": [range_record(each) for each in ranges(result, known or result.setup.known)],
+        **_between(result, known or result.setup.known),
         "station_mm": shown(result.path.s[i], "mm") if i >= 0 else None,
         "worst_block": result.worst_block,
         "reached": {
@@ -93,7 +94,7 @@ def groove_record(result: SimulationResult, section: GrooveSection) -> dict[str,
     i = nearest_feed(result, section.station)
     return {
         "kind": section.kind,
-        **{f"{name}_{unit}": shown(getattr(section, name), unit) for name, unit in MEASURED.items()},
+        **{f"{name}_{of.unit}": shown(getattr(section, name), of.unit) for name, of in MEASURED.items()},
         "near_wall": section.near or None,
         "not_measured": dict(section.why),
         "block": section.block,
@@ -101,6 +102,15 @@ def groove_record(result: SimulationResult, section: GrooveSection) -> dict[str,
         "force_N": shown(result.F[i], "N"),
         "force_share_mm": {name: shown(result.delta_component[i, c], "mm") for c, name in enumerate(COMPONENTS)},
         "note": section.note,
+    }
+
+
+def _between(result: SimulationResult, known: Knowledge | None) -> dict[str, Any]:
+    """Between which ends the numbers lie, and over which of these ranges the part could be out of tolerance."""
+    found = ranges(result, known)
+    return {
+        "ranges": [range_record(each) for each in found],
+        "could_be_out_over": [each.over for each in out_over(result.verdict, found)],
     }
 
 
@@ -123,7 +133,7 @@ def lengths_record(result: SimulationResult, i: int) -> dict[str, Any] | None:
 def judged_record(result: SimulationResult) -> dict[str, Any]:
     """What a gauge would read, each quantity against its tolerance, and what is not judged and why."""
     verdict, path = result.verdict, result.path
-    readings = {"wall": verdict.wall, "floor": verdict.floor, "feed": verdict.feed, "end": verdict.end}
+    readings = {name: getattr(verdict, name) for name in KINDS}
     lost = result.not_judged
     return {
         **{
@@ -138,6 +148,8 @@ def judged_record(result: SimulationResult) -> dict[str, Any]:
             }
             for name, reading in readings.items()
         },
+        "share": verdict.share,
+        "decided_by": result.decided.kind.code,
         "share_at_assumed_ends": verdict.far,
         "tip": _tip(result),
         "gone": sorted(set(path.block[result.gauge.gone].tolist())),
@@ -174,13 +186,13 @@ def _tip(result: SimulationResult) -> dict[str, Any] | None:
 
 def _tooth(result: SimulationResult) -> dict[str, Any] | None:
     """At the worst wall and floor: the deviation by the mean force, and its extremes as teeth come by."""
-    turn, verdict = tooth(result), result.verdict
+    turn, places = tooth(result), {WALL: result.verdict.wall.worst, FLOOR: result.verdict.floor.worst}
     if turn is None:
         return None
-    places = {"wall": (verdict.wall.worst, 1), "floor": (verdict.floor.worst, 2)}
     return {
-        name: {end: shown(getattr(turn, end)[i, axis], "mm") for end in ("mean", "low", "high")} | {"unit": "mm"}
-        for name, (i, axis) in places.items()
+        kind.code: {end: shown(getattr(turn, end)[i, kind.axis], "mm") for end in ("mean", "low", "high")}
+        | {"unit": "mm"}
+        for kind, i in places.items()
         if i >= 0
     }
 

@@ -24,8 +24,8 @@ from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.judging.gauge import Gauge, gauge
 from robomill.simulation.judging.strays import Stray, stray
-from robomill.simulation.judging.verdict import judge, thin_wall_notes
-from robomill.simulation.judging.verdict_words import Verdict
+from robomill.simulation.judging.verdict import decided, judge, thin_wall_notes
+from robomill.simulation.judging.verdict_words import Deciding, Verdict
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.meant import corrected_notes, jump_notes
 from robomill.simulation.origin.assumptions import Assumed, assumed_of_setup
@@ -94,6 +94,11 @@ class SimulationResult(Tabled):
     def force_components(self) -> FloatArray:
         """(m, 3) N: feed, feed-normal, axial components of the force on the tool."""
         return np.einsum("mij,mi->mj", self.R_MF, self.F)
+
+    @cached_property
+    def force_size(self) -> FloatArray:
+        """(m,) N: size of the force on the tool; NaN where it is not known."""
+        return np.asarray(np.linalg.norm(self.F, axis=1))
 
     @cached_property
     def delta_in_cut(self) -> FloatArray:
@@ -330,6 +335,11 @@ class SimulationResult(Tabled):
     def verdict(self) -> Verdict:
         """Walls and floors against their tolerances, in one sentence."""
         return judge(self, self.gauge)
+
+    @property
+    def decided(self) -> Deciding:
+        """What the verdict rests on: its kind, its size and the sample where it is."""
+        return decided(self, self.verdict)
 
     @cached_property
     def assumed(self) -> tuple[Assumed, ...]:

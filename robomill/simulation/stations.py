@@ -24,12 +24,6 @@ def nearest_judged(result: SimulationResult, station: float) -> int:
     return _nearest(result, judged, station) if len(judged) else -1
 
 
-def decides_at(result: SimulationResult) -> int:
-    """The sample of what the verdict rests on; of the tip's largest deviation where nothing decides; -1 without one."""
-    rests = result.verdict.deciding
-    return result.worst if rests is None else rests[1].worst
-
-
 def section_at(result: SimulationResult, i: int) -> GrooveSection | None:
     """The section at sample i, or the first of ``result.sections`` that shows anything; None where none does."""
     here = [result.groove(float(result.path.s[i]))] if i >= 0 else []
@@ -47,9 +41,14 @@ def place_at(path: Toolpath, station: float) -> tuple[FloatArray, FloatArray]:
     return found.centre, step / np.linalg.norm(step)
 
 
-def joint_shares(result: SimulationResult, i: int) -> FloatArray:
-    """(n,) share of each joint in the deviation at sample i; they sum to 1 where nothing beside the joints gives."""
-    return shares_along(result.delta_joint[i], result.delta[i])
+def joint_shares(result: SimulationResult, i: int, axis: int | None = None) -> FloatArray:
+    """(n,) share of each joint in the deviation at sample i, or in what of it lies along an axis of the cut (0 feed, 1
+    feed-normal, 2 axial); they sum to 1 where nothing beside the joints gives."""
+    off = result.delta[i]
+    if axis is not None:
+        along = result.R_MF[i, :, axis]
+        off = (off @ along) * along
+    return shares_along(result.delta_joint[i], off)
 
 
 def force_components(result: SimulationResult, spread: AlloySpread) -> FloatArray:

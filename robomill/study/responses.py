@@ -36,9 +36,7 @@ RESPONSES: dict[str, Response] = {
     "end_mm": Response("Largest error where cuts end in the material, mm", lambda run: _mm(run.verdict.end.value)),
     "share": Response("Share of the tolerance that is used, 1 is all of it", lambda run: float(run.verdict.share)),
     "verdict": Response("ok, tight, out, unreached, unjudged or missed", lambda run: run.verdict.level),
-    "force_N": Response(
-        "Size of the force at the worst place, N", lambda run: _at_worst(run, np.linalg.norm(run.F, axis=1))
-    ),
+    "force_N": Response("Size of the force at the worst place, N", lambda run: _at_worst(run, run.force_size)),
     "reached": Response("Share of the samples that are reached", lambda run: float(run.reached.mean())),
 }
 USUAL = ("max_deviation_mm", "wall_mm", "floor_mm", "share", "verdict")

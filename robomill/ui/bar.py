@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.report.tags import Html
-from robomill.simulation.judging.verdict_words import TIGHT_FROM, Verdict
+from robomill.simulation.judging.verdict_words import TIGHT_FROM, Verdict, gauge_end
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import other, pieces, session, verdict
@@ -19,7 +19,6 @@ from robomill.ui.work import job, running
 from robomill.ui.work.job import Underway
 from robomill.units import format_beside, format_limit, format_share, format_si
 
-ENDS_AT, MOST = 1.25, 6.0  # of the tolerance: where the gauge ends, where it ends at most
 ROOM_FOR_ZERO = 35.0  # % of the track: where the tolerance lies nearer, its number stands alone
 MILLING = "pages/6_Milling.py"
 
@@ -74,7 +73,7 @@ def _row_of_b(setup: SimulationSetup, unit: str) -> None:
 
 def _to_worst(result: SimulationResult) -> None:
     """The way to what the verdict rests on."""
-    worst = verdict.decides_at(result)
+    worst = result.decided.sample
     if worst < 0:
         return
     if st.button(
@@ -140,9 +139,9 @@ def _verdict(result: SimulationResult, tile: Tile, why: str) -> Html:
 
 def _force(result: SimulationResult) -> Html:
     """How hard it pushes at what the verdict rests on, and who says so."""
-    setup, i = result.setup, verdict.decides_at(result)
+    setup, i = result.setup, result.decided.sample
     said = setup.provenance.get("force", setup.force.provenance)
-    value = format_si(float(np.linalg.norm(result.F[i])), "N", 0) if i >= 0 else "–"
+    value = format_si(float(result.force_size[i]), "N", 0) if i >= 0 else "–"
     # A person who said a material has typed no force: it is computed.
     kind = "computed" if (said.kind, setup.force.provenance.kind) == ("user", "computed") else said.kind
     inner = f"<small>Force {pieces.badge(kind)}</small><b>{html.escape(value)}</b>"
@@ -161,7 +160,7 @@ def _gauge(found: Verdict | None, unit: str) -> Html:
     value = format_beside(abs(rests.value), rests.tolerance, unit)
     hatched = ", not judged" if found.level == "unjudged" else ""
     said = f"{value} of {allowed} allowed, {format_share(found.share)}{hatched}"
-    ends = min(max(ENDS_AT, 1.05 * found.share), MOST)
+    ends = gauge_end(found.share)
     at = 100 * min(found.share, ends) / ends
     tight, full = (100 * each / ends for each in (TIGHT_FROM, 1.0))
     zero = "0" if full > ROOM_FOR_ZERO else ""

@@ -13,7 +13,7 @@ from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport, at_pose
 from robomill.compliance.deflection import deflection, shares_along
 from robomill.improve.sensitivity import scaled_shares
-from robomill.paper import SLOT
+from robomill.learn.push import ASIDE, FORCE
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import session
@@ -21,14 +21,11 @@ from robomill.ui.cut import middle_of_cut
 from robomill.ui.entry import declared, inputs
 from robomill.ui.point import InHand, default_point, holds, in_hand
 from robomill.ui.project import MapView, View
-from robomill.ui.verdict import decides_at
-from robomill.units import format_si
+from robomill.units import format_si, unit_label
 from robomill.workspace.fields import ComplianceMap
 from robomill.workspace.reach import ReachBox
 
-FORCE = SLOT.force  # N
 NAMED = 0.08  # a joint with a smaller share is not named
-SEEN = 0.02  # of the displacement: what is less along an axis is not told
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,12 +83,7 @@ class Moved:
 
     def components(self, unit: str) -> str:
         """ "+0.230 mm in Y, −0.102 mm in Z"."""
-        told = [
-            f"{format_si(float(v), unit, sign=True)} in {axis}"
-            for axis, v in zip("XYZ", self.delta, strict=True)
-            if abs(v) > SEEN * self.size
-        ]
-        return ", ".join(told)
+        return ", ".join(f"{far} {unit_label(unit)} in {axis}" for axis, far in by_axis(self.delta, unit))
 
     def sentence(self, unit: str) -> str:
         """What pushes, and where the tip goes."""
@@ -148,6 +140,14 @@ class Decided:
         return InHand((float(x), float(y), float(z)), at_pose(robot or self.result.setup.robot, self.theta), "")
 
 
+def by_axis(delta: FloatArray, unit: str, every: bool = False) -> list[tuple[str, str]]:
+    """X, Y or Z and how far a displacement (3,) m goes along it, in ``unit`` without its name; axes along which nothing
+    of it is to be seen are left out unless ``every`` is asked for."""
+    least = ASIDE * float(np.linalg.norm(delta))
+    told = [(axis, float(v)) for axis, v in zip("XYZ", delta, strict=True) if every or abs(v) > least]
+    return [(axis, format_si(v, unit, sign=True, with_unit=False)) for axis, v in told]
+
+
 def whole(shares: Sequence[float]) -> list[int]:
     """Shares (of 1) in whole per cent whose sum is that of the shares: what is cut off most is rounded up first."""
     floors = [math.floor(100.0 * share) for share in shares]
@@ -160,7 +160,7 @@ def decided(result: SimulationResult | None) -> Decided | None:
     """Where the verdict of ``result`` is decided; None where nothing of the cut has an answer."""
     if result is None:
         return None
-    i = decides_at(result)
+    i = result.decided.sample
     if i < 0 or not (np.isfinite(result.delta[i]).all() and np.isfinite(result.F[i]).all()):
         return None
     return Decided(result, i)

@@ -8,14 +8,14 @@ import streamlit as st
 
 from robomill.arrays import digest
 from robomill.identification.knowledge import Knowledge
-from robomill.report.ranges import Range, ranges
-from robomill.simulation.judging.verdict_words import TITLES, Reading, Verdict, said, way
+from robomill.report.ranges import Range, out_over, ranges
+from robomill.simulation.judging.verdict_words import FLOOR, TIP, TITLES, WALL, Reading, ReadingKind, Verdict, said, way
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.stations import decides_at as decides_at
 from robomill.simulation.tooth import LEFT_OUT
 from robomill.ui import other, pieces, session, uncertainty
 from robomill.ui.pieces import Tile
 from robomill.ui.project import Project
+from robomill.ui.push import by_axis
 from robomill.ui.work import cached
 from robomill.units import format_beside, format_count, format_limit, format_many, format_share, format_si
 
@@ -30,14 +30,9 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     """What a gauge would read of walls and floors, the tip's deviation as detail, and the verdict."""
     made, found = plain_tiles(result, unit), ranges_of(result)
     words = {name: [range_words(each, name, unit) for each in found] for name in made}
-    if may_be_out(result, found):
+    if out_over(result.verdict, found):
         words["share"].append("so it could be out of tolerance")
     return [replace(tile, ranges=[ends for ends in words[name] if ends]) for name, tile in made.items()]
-
-
-def may_be_out(result: SimulationResult, found: tuple[Range, ...]) -> bool:
-    """Whether a cut within tolerance is out of it at one of the ends ``found``."""
-    return result.verdict.level in ("ok", "tight") and any(each.share[1] > 1.0 for each in found)
 
 
 def plain_tiles(result: SimulationResult, unit: str = "mm") -> dict[str, Tile]:
@@ -50,8 +45,7 @@ def plain_tiles(result: SimulationResult, unit: str = "mm") -> dict[str, Tile]:
         share = f"{format_count(lost)} of {format_count(total, 'point')} of the cut are not judged"
         share += " and a rapid through material" if result.rapids else ""
     made = {
-        "wall": reading_tile("Wall error", "wall", verdict, before, unit),
-        "floor": reading_tile("Floor error", "floor", verdict, before, unit),
+        **{kind.code: reading_tile(kind, verdict, before, unit) for kind in (WALL, FLOOR)},
         "tip": tip_tile(result, unit),
         "share": Tile("Verdict", WORDS[verdict.level], share, tone=tone(verdict)),
     }
@@ -101,8 +95,9 @@ def tone(verdict: Verdict) -> str:
     return OPEN if verdict.premise else TONES.get(verdict.level, verdict.level)
 
 
-def reading_tile(label: str, name: str, verdict: Verdict, before: Verdict | None, unit: str) -> Tile:
-    """One quantity of the verdict against its tolerance; ``name`` is "wall" or "floor"."""
+def reading_tile(kind: ReadingKind, verdict: Verdict, before: Verdict | None, unit: str) -> Tile:
+    """One quantity of the verdict, that of walls or of floors, against its tolerance."""
+    label, name = kind.label, kind.code
     reading: Reading = getattr(verdict, name)
     if reading.worst < 0:
         return Tile(label, "–", NOTHING.get(verdict.level, f"the cut leaves no {name}"))
@@ -127,23 +122,18 @@ def tip_tile(result: SimulationResult, unit: str) -> Tile:
     old = previous(result)
     i = result.worst
     if i < 0:
-        return Tile("Tip off its path", "–", NOTHING.get(result.verdict.level, "nothing cut"))
+        return Tile(TIP.label, "–", NOTHING.get(result.verdict.level, "nothing cut"))
     shown = partial(format_si, unit=unit)
     was = change = ""
     if old is not None:
         was = shown(old.max_deviation)
         change = format_si(result.max_deviation - old.max_deviation, unit, sign=True)
-    most = 0.02 * result.max_deviation  # what is smaller is no part of it that one reads
-    parts = [
-        f"{a} {format_si(v, unit, sign=True, with_unit=False)}"
-        for a, v in zip("XYZ", result.delta[i], strict=True)
-        if abs(v) > most
-    ]
+    parts = ", ".join(map(" ".join, by_axis(result.delta[i], unit)))
     stray = result.stray
     fate = f": {stray.words}" if stray is not None and stray.fate != "stays" else ""
-    note = f"{', '.join(parts)} · most at line {result.worst_block}{fate}"
+    note = f"{parts} · most at line {result.worst_block}{fate}"
     value = uncertainty.tile_text(result, unit) or shown(result.max_deviation)
-    return Tile("Tip off its path", value, note, was, change)
+    return Tile(TIP.label, value, note, was, change)
 
 
 def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:

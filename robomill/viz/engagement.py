@@ -3,7 +3,7 @@
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.cutting.force import ForceSpread
+from robomill.cutting.force import COMPONENTS, ForceSpread
 from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
 from robomill.units import from_si
@@ -11,7 +11,6 @@ from robomill.viz.along import Along, at_feed
 from robomill.viz.chart import Chart
 from robomill.viz.theme import axis, palette, rgba
 
-COMPONENTS = ("feed", "feed-normal", "axial")
 DASHES = ("dot", "solid", "dash")
 
 
@@ -36,7 +35,7 @@ def force_figure(
     if band is not None:
         plot.shade(band, name, rgba(p.accent, 0.18))
     plot.curve(np.linalg.norm(mean, axis=1), "mean force", {"color": p.accent, "width": 2.4}, "%{y:.1f} N")
-    for c, component in enumerate(COMPONENTS):
+    for c, component in enumerate(COMPONENTS.values()):
         line = {"color": p.text, "width": 1.6, "dash": DASHES[c]}
         plot.curve(mean[:, c], component, line, "%{y:+.1f} N", visible="legendonly")
     plot.zero()
@@ -53,7 +52,7 @@ def _band(
         sizes = np.linalg.norm(spread.F, axis=2)
         low, high, name = sizes.min(axis=0), sizes.max(axis=0), "range over published coefficients"
     elif peak is not None:
-        (low, high), name = (np.linalg.norm(F, axis=1) for F in (result.F, peak.at_peak)), "to the peak of a turn"
+        low, high, name = result.force_size, np.linalg.norm(peak.at_peak, axis=1), "to the peak of a turn"
     else:
         return None, ""
     return (at_feed(result, low[:, None])[:, 0], at_feed(result, high[:, None])[:, 0]), name

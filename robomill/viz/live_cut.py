@@ -180,7 +180,7 @@ def _samples(packing: _Packing, result: SimulationResult, frames: IntArray) -> N
     packing.add("state", state, "u1")
     packing.add("tool", result.tooling.of_step[frames], "u1")
     packing.add("size", from_si(result.deviation[frames], "mm"), "f4")
-    packing.add("force", np.linalg.norm(result.F[frames], axis=1), "f4")
+    packing.add("force", result.force_size[frames], "f4")
 
 
 def _lines(result: SimulationResult, frames: IntArray, packing: _Packing) -> dict[str, Any]:

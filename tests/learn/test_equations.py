@@ -11,7 +11,7 @@ import robomill as rm
 from robomill.compliance.at_pose import PoseReport
 from robomill.learn.equations import component, product, settled
 from robomill.learn.lessons import lesson
-from robomill.learn.push import Push
+from robomill.learn.push import AsidePush
 
 
 @pytest.fixture(scope="module")
@@ -33,15 +33,15 @@ def test_the_equation_s_terms_add_up(found: PoseReport) -> None:
 
 def test_the_product_is_c_times_f(found: PoseReport) -> None:
     moved = re.findall(
-        r"bmatrix\} (-?[\d.]+) \\\\ (-?[\d.]+) \\\\ (-?[\d.]+) \\end", product(found.C, Push.of(found.C).force)
+        r"bmatrix\} (-?[\d.]+) \\\\ (-?[\d.]+) \\\\ (-?[\d.]+) \\end", product(found.C, AsidePush.of(found.C).force)
     )[-1]
-    np.testing.assert_allclose([float(v) for v in moved], found.C[:, Push.of(found.C).along] * 100e6, atol=0.06)
+    np.testing.assert_allclose([float(v) for v in moved], found.C[:, AsidePush.of(found.C).along] * 100e6, atol=0.06)
 
 
 def test_the_product_is_for_the_push_of_the_question() -> None:
     """A matrix whose largest cross term is between X and Z, pushed along X."""
     C = 1e-6 * np.array([[1.0, 0.0, 0.9], [0.0, 2.0, 0.1], [0.9, 0.1, 4.0]])
-    push = Push.of(C)
+    push = AsidePush.of(C)
     assert (push.name, push.aside) == ("X", 2)
     force, moved = re.findall(r"bmatrix\} (-?[\d.]+) \\\\ (-?[\d.]+) \\\\ (-?[\d.]+) \\end", product(C, push.force))[
         -2:

@@ -7,13 +7,13 @@ import itertools
 import numpy as np
 import pytest
 
-from robomill.learn.push import FORCE, Push
+from robomill.learn.push import FORCE, AsidePush
 
 PAPER = np.array([[1.281, 0, 0], [0, 2.295, -1.024], [0, -1.024, 2.422]]) * 1e-6
 
 
 def test_the_paper_s_robot_is_pushed_along_y() -> None:
-    push = Push.of(PAPER)
+    push = AsidePush.of(PAPER)
     assert (push.name, push.aside, push.other) == ("Y", 2, 0)
     assert push.answers == {
         "alone": "Along Y, nowhere else",
@@ -34,13 +34,13 @@ def test_the_push_is_the_one_whose_tip_strays_by_the_largest_angle(along: int) -
         C[(along + 1) % 3, :] = C[:, (along + 1) % 3] = 0.0  # so that a single term leads aside
         C[(along + 1) % 3, (along + 1) % 3] = 1.0
         angles = [np.arccos(abs(C[i, i]) / np.linalg.norm(C[:, i])) for i in range(3)]
-        assert Push.of(C).along == int(np.argmax(np.round(angles, 6)))
+        assert AsidePush.of(C).along == int(np.argmax(np.round(angles, 6)))
 
 
 @pytest.mark.parametrize(("along", "aside"), list(itertools.permutations(range(3), 2)))
 @pytest.mark.parametrize("sign", [1, -1])
 def test_the_answer_follows_the_largest_part_aside(along: int, aside: int, sign: int) -> None:
-    push = Push(along, aside, 3 - along - aside)
+    push = AsidePush(along, aside, 3 - along - aside)
     delta = np.zeros(3)
     delta[along] = 1.0
     assert push.went(delta) == "alone"
@@ -54,5 +54,5 @@ def test_the_answer_follows_the_largest_part_aside(along: int, aside: int, sign:
 
 
 def test_an_arm_that_bends_in_no_direction_is_asked_all_the_same() -> None:
-    push = Push.of(np.zeros((3, 3)))
+    push = AsidePush.of(np.zeros((3, 3)))
     assert push.went(np.zeros(3)) in push.answers

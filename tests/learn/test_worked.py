@@ -16,7 +16,6 @@ from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup
 from robomill.learn.worked import Worked, at_the_pose, of_the_run
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.stations import decides_at
 
 NUMBER = r"-?\d+(?:\.\d+)?"
 ARMS = ("slavkovic_5r", "kuka_kr500", "fanuc_r2000ic")
@@ -125,7 +124,7 @@ def run() -> SimulationResult:
 
 
 def test_the_readings_of_a_run_multiply_out_to_what_its_verdict_says(run: SimulationResult) -> None:
-    found = by_name(of_the_run(run, decides_at(run)))
+    found = by_name(of_the_run(run, run.decided.sample))
     for name, reading in (("Wall error", run.verdict.wall), ("Floor error", run.verdict.floor)):
         tex = found[name].numbers
         total = sum(float(a) * float(b) for a, b in re.findall(rf"\(({NUMBER})\)\(({NUMBER})\)", tex))
@@ -137,14 +136,14 @@ def test_the_readings_of_a_run_multiply_out_to_what_its_verdict_says(run: Simula
     assert reads(100.0 * run.verdict.share, result_of(share))
     C, F, moved = matrices(found["Displacement of the tip"].numbers)
     np.testing.assert_allclose(C @ F, moved, atol=0.0501)
-    np.testing.assert_allclose(moved[:, 0], run.delta[decides_at(run)] * 1e6, atol=0.0501)
+    np.testing.assert_allclose(moved[:, 0], run.delta[run.decided.sample] * 1e6, atol=0.0501)
 
 
 def test_the_force_of_a_straight_edge_is_its_closed_form() -> None:
     """A flat mill without a helix in a full slot: F_n = N a (Ktc c / 4 + Kte / pi), by hand."""
     setup = load_setup(samples_dir() / "paper_flute" / "setup_process.toml")
     result = rm.simulate(setup)
-    i = decides_at(result)
+    i = result.decided.sample
     (force,) = [each for each in of_the_run(result, i) if each.name == "Force across the feed"]
     row = setup.force.row
     c, a = 0.05e-3, float(result.conditions.a_p[i])

@@ -16,8 +16,9 @@ from robomill.io.robot.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup
 from robomill.simulation.run import simulate
+from robomill.simulation.stations import joint_shares
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.improve.stiffen import made_by, meanwhile
+from robomill.ui.improve.stiffen import meanwhile
 from robomill.ui.project import preset_setup
 from robomill.viz.shares import gain_bars
 
@@ -73,8 +74,9 @@ def test_where_not_even_all_joints_are_enough_the_page_says_what_else_there_is(a
 
 def test_before_the_ranking_is_there_the_joints_that_make_the_error_are_named() -> None:
     result = simulate(preset_setup("paper_flute"))
-    name, share = made_by(result)
-    assert name == "wall error"
+    kind, _, i = result.decided
+    share = joint_shares(result, i, kind.axis)
+    assert kind.error == "wall error"
     np.testing.assert_allclose(share.sum(), 1.0, rtol=1e-12)
     assert meanwhile(result).startswith(f"The wall error at line 7 comes {100 * share[2]:.0f} % from joint 3 and ")
 

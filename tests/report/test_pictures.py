@@ -11,7 +11,7 @@ import pytest
 import robomill as rm
 from robomill.report.pictures import joint_parts, joints_picture, path_picture, section_picture
 from robomill.report.simulation_record import simulation_record
-from robomill.simulation.stations import decides_at, section_at
+from robomill.simulation.stations import section_at
 
 Element = ElementTree.Element
 
@@ -55,7 +55,7 @@ def drawn(picture: Element, look: str) -> np.ndarray:
 
 
 def test_a_section_is_drawn_to_scale_where_it_lies(result: rm.SimulationResult) -> None:
-    section = section_at(result, decides_at(result))
+    section = section_at(result, result.decided.sample)
     assert section is not None
     picture = ElementTree.fromstring(section_picture(section, result))
     (_, per_x), (_, per_y) = scales(picture)
@@ -74,7 +74,7 @@ def test_a_section_is_drawn_to_scale_where_it_lies(result: rm.SimulationResult) 
 
 
 def test_what_is_allowed_is_as_thick_as_the_tolerances(result: rm.SimulationResult) -> None:
-    section = section_at(result, decides_at(result))
+    section = section_at(result, result.decided.sample)
     assert section is not None
     setup = result.setup.replace(floor_tolerance=2.0 * result.setup.tolerance)
     other = rm.simulate(setup)

@@ -12,7 +12,7 @@ from robomill.identification.fit.models import Model
 from robomill.identification.knowledge import Knowledge
 from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup
-from robomill.report.ranges import ranges
+from robomill.report.ranges import out_over, ranges
 from robomill.simulation.origin.spread import peak_force
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
@@ -29,6 +29,16 @@ def test_assumed_lengths_leave_the_wall_and_move_the_floor(setup: SimulationSetu
     assert found.wall == pytest.approx((0.225e-3, 0.235e-3), abs=1e-6)  # C_yy is what the lengths were chosen by
     assert found.floor[0] < -0.186e-3 < -0.1024e-3 < -0.067e-3 < found.floor[1]
     assert found.share == pytest.approx((found.wall[0] / 0.3e-3, found.wall[1] / 0.3e-3))
+
+
+@pytest.mark.parametrize(("tolerance", "level", "doubtful"), [(0.3, "ok", 0), (0.232, "tight", 1), (0.2, "out", 0)])
+def test_only_of_a_cut_within_tolerance_it_is_told_over_what_it_could_be_out(
+    setup: SimulationSetup, tolerance: float, level: str, doubtful: int
+) -> None:
+    """The wall is 0.230 mm off, and 0.235 mm with the longest arm that the paper allows."""
+    result = simulate(setup.replace(tolerance=tolerance * 1e-3))
+    assert result.verdict.level == level
+    assert [each.over for each in out_over(result.verdict, ranges(result, None))] == ["assumed lengths"] * doubtful
 
 
 def test_each_row_of_the_alloy_in_force_stays_within_the_range() -> None:

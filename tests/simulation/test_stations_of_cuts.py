@@ -82,13 +82,17 @@ def test_one_way_and_one_groove(corner):
 
 def test_joint_shares_are_what_each_joint_moves_along_the_deviation(corner):
     i = corner.worst
-    alone = []
+    alone, along = [], []
     for n in range(5):
         C_theta = np.where(np.arange(5) == n, SETUP.robot.C_theta, 0.0)
         other = rm.simulate(corner.setup.replace(robot=SETUP.robot.replace(C_theta=C_theta)))
         alone.append(other.delta[i] @ corner.delta[i] / (corner.delta[i] @ corner.delta[i]))
+        along.append(other.delta_in_cut[i] / corner.delta_in_cut[i])
     np.testing.assert_allclose(stations.joint_shares(corner, i), alone, atol=1e-12)
     assert sum(alone) == pytest.approx(1.0)
+    for axis, shares in enumerate(np.transpose(along)):
+        np.testing.assert_allclose(stations.joint_shares(corner, i, axis), shares, atol=1e-9)
+        assert not np.allclose(shares, alone, atol=1e-3)
     stiff = rm.simulate(SETUP.replace(robot=SETUP.robot.replace(C_theta=np.zeros(5))))
     np.testing.assert_array_equal(stations.joint_shares(stiff, stiff.worst), 0.0)
 

@@ -11,6 +11,7 @@ import streamlit as st
 
 from robomill.cutting.unjudged import Unjudged
 from robomill.provenance import Provenance
+from robomill.simulation.judging.verdict_words import MOST
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import bar, session
@@ -70,7 +71,7 @@ def test_the_gauge_is_the_verdicts_share_and_ends_beyond_the_tolerance(
 ) -> None:
     text = shown(setup.replace(tolerance=tolerance * 1e-3))
     assert f'class="rm-top {tone}"' in text
-    assert marker(text) == pytest.approx(min(WALL / tolerance, bar.MOST), rel=5e-3)
+    assert marker(text) == pytest.approx(min(WALL / tolerance, MOST), rel=5e-3)
 
 
 def test_what_is_not_judged_is_hatched_and_never_green(setup: SimulationSetup) -> None:

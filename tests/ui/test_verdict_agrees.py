@@ -11,6 +11,7 @@ import robomill as rm
 from robomill.io.samples import samples_dir
 from robomill.report.plain import simulation_lines
 from robomill.report.simulation_record import simulation_record
+from robomill.simulation.judging.verdict_words import KINDS
 from robomill.simulation.judging.verdict_words import WORDS as JUDGED
 from robomill.simulation.result import SimulationResult
 from robomill.toolpath.source import GCodeSource
@@ -96,7 +97,7 @@ def agrees(run: SimulationResult) -> None:
         reading = getattr(found, name)
         assert (record[name]["length_out_of_tolerance_share"] > 0.0) == (reading.share > 1.0)
         assert (share_out_words(reading.share_out) == "none") == (not reading.share > 1.0)
-        told = verdict.reading_tile(name, name, found, None, "mm")
+        told = verdict.reading_tile(KINDS[name], found, None, "mm")
         if reading.worst >= 0:
             assert format_share(reading.share) in told.note
             assert re.search(rf"^{name} .*{re.escape(format_share(reading.share))}", lines, re.MULTILINE)

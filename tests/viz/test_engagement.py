@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import robomill as rm
+from robomill.cutting.force import COMPONENTS
 from robomill.io.samples import samples_dir
 from robomill.simulation.origin.spread import alloy_spread, peak_force
-from robomill.viz.engagement import COMPONENTS, force_figure
+from robomill.viz.engagement import force_figure
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +21,7 @@ def test_the_mean_force_and_one_band_are_shown_and_components_come_with_a_click(
     fig = force_figure(run, alloy_spread(run), peak_force(run), "mm", dark=False)
     shown = [trace["name"] for trace in fig.traces if trace.get("visible", True) is True]
     assert set(shown) == {"mean force", "range over published coefficients"}
-    assert [t["name"] for t in fig.traces if t.get("visible") == "legendonly"] == list(COMPONENTS)
+    assert [t["name"] for t in fig.traces if t.get("visible") == "legendonly"] == list(COMPONENTS.values())
     assert fig.layout["height"] == 320
     mean = next(trace for trace in fig.traces if trace["name"] == "mean force")
     cut = np.isfinite(mean["y"])

@@ -9,7 +9,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.cutting.conditions import PLUNGE, CutConditions
-from robomill.cutting.force import BY_HAND, ForceModel, MeanForce
+from robomill.cutting.force import BY_HAND, COMPONENTS, ForceModel, MeanForce
 from robomill.cutting.unjudged import Unjudged
 from robomill.errors import CuttingError
 from robomill.provenance import Provenance
@@ -59,7 +59,7 @@ class PathForce(ForceModel):
     @classmethod
     def first(cls, mean: MeanForce) -> dict[str, Any]:
         """The components that pushed so far."""
-        return dict(zip(("feed", "feed_normal", "axial"), map(float, mean.along_path), strict=True))
+        return dict(zip(COMPONENTS, map(float, mean.along_path), strict=True))
 
     @property
     def numbers(self) -> str:

@@ -9,6 +9,7 @@ material the wall across its end is moved by the deviation along the feed; that 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, fields
 
 import numpy as np
@@ -97,6 +98,19 @@ class Gauge(ReadOnly):
     ends: Readings
     gone: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     thin: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+    @property
+    def rms(self) -> float:
+        """m: root mean square of the errors of walls and floors, each by its own area; NaN where there are none."""
+        area = sum(float(np.sum(each.length * each.height)) for each in (self.walls, self.floors))
+        return math.sqrt((self.walls.squares + self.floors.squares) / area) if area > 0.0 else math.nan
+
+    def edges(self, tolerance: float, bins: int) -> FloatArray:
+        """(bins + 1,) m: limits of the bins of a histogram of walls and floors, alike on both sides of zero: beyond
+        ``tolerance`` (m), as far as the largest error, but not further than three times the tolerance."""
+        largest = float(np.abs(np.concatenate([self.walls.error, self.floors.error])).max(initial=0.0))
+        limit = min(max(1.15 * tolerance, 1.05 * largest), 3.0 * tolerance)
+        return np.linspace(-limit, limit, bins + 1)
 
 
 def gauge(result: Run, most: int | None = None) -> Gauge:

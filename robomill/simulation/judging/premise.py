@@ -2,8 +2,6 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from robomill.simulation.judging.seen import Run
 from robomill.simulation.origin.doubts import unit_slips
 from robomill.surface.stock_unit import OUTSIDE, unit_doubt
@@ -45,7 +43,7 @@ def _pushed(result: Run) -> str:
     force = result.setup.force
     if force.follows_cut:
         return f"if it cuts {force.numbers}"
-    return f"if the tool is pushed with {format_si(float(np.linalg.norm(result.F[result.worst])), 'N', 0)}"
+    return f"if the tool is pushed with {format_si(float(result.force_size[result.worst]), 'N', 0)}"
 
 
 def _outside(result: Run) -> bool:

@@ -9,7 +9,7 @@ from robomill.provenance import Finding, named
 from robomill.simulation.judging.gauge import Gauge, Readings
 from robomill.simulation.judging.premise import premise
 from robomill.simulation.judging.seen import Run
-from robomill.simulation.judging.verdict_words import Level, Reading, Verdict, said
+from robomill.simulation.judging.verdict_words import KINDS, TIP, Deciding, Level, Reading, Verdict, said
 from robomill.simulation.origin.assumed import far_share
 
 
@@ -26,6 +26,15 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
     found = Verdict("ok", share, "", *readings, far, gone, *premise(result, bool(deciding)))
     found = replace(found, level=_level(result, found))
     return replace(found, sentence=" ".join(words for words in said(result, found) if words))
+
+
+def decided(result: Run, verdict: Verdict) -> Deciding:
+    """What decides, of which size, and where."""
+    rests = verdict.deciding
+    if rests is None:
+        return Deciding(TIP, result.max_deviation, result.worst)
+    name, reading = rests
+    return Deciding(KINDS[name], abs(reading.value), reading.worst)
 
 
 def _level(result: Run, verdict: Verdict) -> Level:

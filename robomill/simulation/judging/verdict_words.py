@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from robomill.units import format_beside, format_count, format_percent, format_s
 from robomill.values import Value
 
 TIGHT_FROM = 0.8
+ENDS_AT, MOST = 1.25, 6.0  # of the tolerance: where a gauge of the share used ends, and where at most
 Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
 RED: tuple[Level, ...] = ("out", "unjudged", "unreached", "missed")
 WORDS: dict[Level, str] = {
@@ -30,8 +31,52 @@ NOTHING: dict[Level, str] = {
     "missed": "The path never touches the stock: move the stock or the path.",
     "unreached": "No point of the cut can be reached: move the part zero.",
 }
-WAYS = {"wall": ("to the left", "to the right"), "floor": ("too high", "too deep"), "end": ("along the feed",) * 2}
 RAPID = "a rapid runs through material that no cut removes"
+
+
+def gauge_end(share: float) -> float:
+    """The share of the tolerance up to which a gauge is drawn that shows ``share``."""
+    return min(max(ENDS_AT, 1.05 * share), MOST)
+
+
+@dataclass(frozen=True)
+class ReadingKind:
+    """A quantity of the verdict, declared once.
+
+    code    its name in a verdict and in files
+    label   its heading; ``error``: what it is in a sentence ("the wall error at line 3"); ``what`` is off then
+    axis    of the cut, along which it is: 0 feed, 1 feed-normal, 2 axial; None: whichever way the tip goes
+    ways    to which side it is off where it is more than zero, and where it is less
+    """
+
+    code: str
+    label: str
+    error: str
+    what: str
+    axis: int | None
+    ways: tuple[str, str] = ("along the feed", "along the feed")
+
+    @property
+    def an_error(self) -> str:
+        """With its article: "a wall error"."""
+        return f"{'an' if self.error[0] in 'aeiou' else 'a'} {self.error}"
+
+
+WALL = ReadingKind("wall", "Wall error", "wall error", "wall", 1, ("to the left", "to the right"))
+FLOOR = ReadingKind("floor", "Floor error", "floor error", "floor", 2, ("too high", "too deep"))
+FEED = ReadingKind("feed", "Along the feed", "error along the feed", "tip along the feed", 0)
+END = ReadingKind("end", "End of the cut", "error of an end wall", "end of the cut", 0)
+TIP = ReadingKind("tip", "Tip off its path", "deviation of the tip", "tip", None, ("", ""))
+KINDS = {kind.code: kind for kind in (WALL, FLOOR, FEED, END)}  # of which a verdict has readings
+
+
+class Deciding(NamedTuple):
+    """What a verdict rests on: the ``kind`` of reading, its ``size`` (m), and the ``sample`` of the path (-1: none).
+    Where no reading decides, that is the tip's largest deviation."""
+
+    kind: ReadingKind
+    size: float
+    sample: int
 
 
 @dataclass(frozen=True)
@@ -112,7 +157,7 @@ class Verdict(Value):
     @property
     def deciding(self) -> tuple[str, Reading] | None:
         """What uses the largest share of its tolerance, by name; None where nothing decides."""
-        named = [(name, getattr(self, name)) for name in ("wall", "floor", "feed", "end")]
+        named = [(name, getattr(self, name)) for name in KINDS]
         return max((each for each in named if each[1].decides), key=lambda each: each[1].share, default=None)
 
     @property
@@ -145,7 +190,7 @@ def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
 
 def way(name: str, reading: Reading) -> str:
     """To which side a wall, floor or end is off."""
-    return WAYS[name][0 if reading.value > 0 else 1]
+    return KINDS[name].ways[0 if reading.value > 0 else 1]
 
 
 def _at(result: Run, blocks: Iterable[int]) -> str:

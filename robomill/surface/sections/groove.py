@@ -21,6 +21,7 @@ from robomill.frames import Columns
 from robomill.progress import checkpoint
 from robomill.surface.passes import tool_axes
 from robomill.surface.raster import skin_on_line
+from robomill.surface.sections.measures import MEASURED
 from robomill.surface.sections.section import ASLANT, LIKE, NO_FLOOR, ONE_HEIGHT, REACH, STEPS, TURN, TURNS, Found, Seen
 from robomill.surface.sections.section_law import MEASURES, Kind, kind_of
 from robomill.surface.sections.trace import Line, Side, side_of
@@ -34,16 +35,6 @@ SIDES = {1.0: "left", -1.0: "right"}
 OWN_PATH = 1.5  # cutter diameters of the path, before and after a station, whose walls are its own
 SAME = 1e-7  # m: walls that stand so close are one
 ALONG = 0.02  # tangent: a flank that leans shows its lean where it runs along the feed
-# What is told of it whatever its kind, and in which unit.
-MEASURED = {
-    **dict.fromkeys(("station", "width", "depth", "centre_offset", "floor_error"), "mm"),
-    **dict.fromkeys(("wall_left_error", "wall_right_error"), "mm"),
-    **dict.fromkeys(("wall_left_angle", "wall_right_angle"), "deg"),
-    **dict.fromkeys(("wall_left_straightness", "wall_right_straightness", "flatness"), "mm"),
-    "floor_tilt": "deg",
-    **dict.fromkeys(("error_mean", "error_max", "error_rms"), "mm"),
-    "slope": "deg",
-}
 NEIGHBOUR = "another pass took away a wall that this one was told to leave, so the middle is not measured"
 
 
@@ -124,13 +115,15 @@ class GrooveSection(Tabled):
         return {f"{name}_mm": from_si(getattr(self, name), "mm") for name in ("w", "z_ideal", "z_machined")}
 
     def _said(self) -> str:
-        read = [f"{name.replace('_', ' ')} {format_si(getattr(self, name), MEASURED[name])}" for name in self.measures]
-        told = ", ".join(read) or self.note
+        told = ", ".join(map(" ".join, self._read())) or self.note
         return f"at {format_si(self.station, 'mm', 1)}: {self.kind}{': ' if told else ''}{told}"
 
     def _facts(self) -> list[tuple[str, str]]:
-        said = [(name.replace("_", " "), format_si(getattr(self, name), MEASURED[name])) for name in self.measures]
-        return [("kind", self.kind), ("line", str(self.block)), *said]
+        return [("kind", self.kind), ("line", str(self.block)), *self._read()]
+
+    def _read(self) -> list[tuple[str, str]]:
+        named = [(name, MEASURED[name].unit) for name in self.measures]
+        return [(name.replace("_", " "), format_si(getattr(self, name), unit)) for name, unit in named]
 
 
 class GrooveSections(Table, tuple[GrooveSection, ...]):
@@ -142,8 +135,8 @@ class GrooveSections(Table, tuple[GrooveSection, ...]):
         """One row a section; NaN where a kind has no such measure, or nothing can be measured there."""
         kind = np.array([section.kind for section in self], dtype=str)
         numbers = {
-            f"{name}_{unit}": from_si(np.array([getattr(section, name) for section in self], dtype=np.float64), unit)
-            for name, unit in MEASURED.items()
+            f"{name}_{of.unit}": from_si(np.array([getattr(each, name) for each in self], dtype=np.float64), of.unit)
+            for name, of in MEASURED.items()
         }
         return {"station_mm": numbers.pop("station_mm"), "kind": kind, **numbers}
 

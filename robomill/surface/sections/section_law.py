@@ -6,6 +6,14 @@ from robomill.cutting.tool import Cutter
 from robomill.surface.sections.trace import OWN, Side
 
 Kind = Literal["groove", "step", "pocket", "free", "nothing", "unknown"]
+TITLES: dict[Kind, str] = {
+    "groove": "Groove",
+    "step": "Step",
+    "pocket": "Pocket",
+    "free": "Free surface",
+    "nothing": "Nothing",
+    "unknown": "Unknown",
+}
 GROOVE = 1.2  # cutter diameters: walls further apart were made by several passes, a pocket's
 FLAT = 0.1  # of the radius: a cutter with a smaller flat leaves no straight floor
 

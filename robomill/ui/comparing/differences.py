@@ -38,7 +38,7 @@ def _outcome(setup: SimulationSetup, unit: str) -> tuple[str, ...]:
     read = [
         format_si(each.value, unit, sign=True) if each.worst >= 0 else "–" for each in (verdict.wall, verdict.floor)
     ]
-    size = np.linalg.norm(result.F[result.path.cutting], axis=-1)
+    size = result.force_size[result.path.cutting]
     size = size[np.isfinite(size)]
     most = f", up to {format_si(float(size.max()), 'N')}" if size.size else ""
     return robot, force + most, *read, WORDS[verdict.level]

@@ -6,23 +6,20 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
-from robomill.arrays import FloatArray
 from robomill.improve.stiffening import Stiffening, some_stiffer, stiffer_joints
 from robomill.simulation.estimate import run_seconds
-from robomill.simulation.judging.verdict_words import Verdict
+from robomill.simulation.judging.verdict_words import KINDS, TIP, Verdict
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
 from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
-from robomill.ui.verdict import WORDS, decides_at, previous
+from robomill.ui.verdict import WORDS, previous
 from robomill.ui.work import cached
 from robomill.units import format_percent, format_share, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 
 LEAST = 0.005  # of the tolerance; what saves less is not offered
-ERRORS = {"wall": "wall error", "floor": "floor error", "feed": "error along the feed", "end": "error of an end wall"}
-AXES = {"wall": 1, "floor": 2, "feed": 0, "end": 0}  # of feed, feed-normal and axial
 
 
 def _seconds(setup: SimulationSetup) -> float:
@@ -38,25 +35,15 @@ def found(setup: SimulationSetup) -> Stiffening:
 
 def meanwhile(result: SimulationResult) -> str:
     """Which joints make the error that decides; "" where none stands out."""
-    name, share = made_by(result)
-    numbers = result.setup.robot.joint_numbers
+    kind, _, at = result.decided
+    share, numbers = joint_shares(result, at, kind.axis), result.setup.robot.joint_numbers
     first = [int(j) for j in np.argsort(-share, kind="stable")[:2] if share[j] > LEAST]
     if not first:
         return ""
     parts = " and ".join(f"{format_percent(share[j])} from joint {numbers[j]}" for j in first)
     rest = 1.0 - float(share[first].sum())
     back = f"; all else takes {format_percent(-rest)} of it back" if rest < -LEAST else ""
-    return f"The {name} at line {result.path.block[decides_at(result)]} comes {parts}{back}."
-
-
-def made_by(result: SimulationResult) -> tuple[str, FloatArray]:
-    """What decides the verdict, and the share (n,) of each joint in it: of its deflection there, along that error."""
-    i, rests = decides_at(result), result.verdict.deciding
-    if rests is None:
-        return "deviation of the tip", joint_shares(result, i)
-    along = result.R_MF[i, :, AXES[rests[0]]]
-    whole = float(result.delta[i] @ along)
-    return ERRORS[rests[0]], np.asarray(result.delta_joint[i] @ along) / (whole or np.inf)
+    return f"The {kind.error} at line {result.path.block[at]} comes {parts}{back}."
 
 
 def changed(result: SimulationResult) -> str:
@@ -108,9 +95,9 @@ def together(ranked: Stiffening, joints: tuple[int, ...]) -> str:
 def _worst(verdict: Verdict, tip: float, unit: str) -> str:
     """What decides the verdict, in words: "a wall error of 0.230 mm"."""
     if verdict.deciding is None:
-        return f"a deviation of the tip of {format_si(tip, unit)}"
+        return f"{TIP.an_error} of {format_si(tip, unit)}"
     name, reading = verdict.deciding
-    return f"{'an' if ERRORS[name][0] == 'e' else 'a'} {ERRORS[name]} of {format_si(abs(reading.value), unit)}"
+    return f"{KINDS[name].an_error} of {format_si(abs(reading.value), unit)}"
 
 
 def columns(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> dict[str, list[Any]]:

@@ -7,7 +7,7 @@ import math
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.learn.push import FORCE, Push
+from robomill.learn.push import FORCE, AsidePush
 from robomill.ui import session
 from robomill.ui.component import component
 from robomill.units import format_si
@@ -18,18 +18,18 @@ ALONE = 10.0  # degrees from the push within which an arrow says that the tip go
 _component = component("robomill_arrow", __file__)
 
 
-def plane(push: Push) -> tuple[int, int]:
+def plane(push: AsidePush) -> tuple[int, int]:
     """The axes of the board, to the right and up: those of the push and of where it leads aside; Z points up."""
     return (push.aside, push.along) if push.along == 2 else (push.along, push.aside)
 
 
-def angle(push: Push, vector: FloatArray) -> float:
+def angle(push: AsidePush, vector: FloatArray) -> float:
     """Degrees on the board of the direction of a vector (3,)."""
     right, up = plane(push)
     return math.degrees(math.atan2(float(vector[up]), float(vector[right])))
 
 
-def answer(push: Push, degrees: float) -> str:
+def answer(push: AsidePush, degrees: float) -> str:
     """Which of the answers of the push an arrow gives."""
     right, _ = plane(push)
     turned = math.radians(degrees)
@@ -44,7 +44,7 @@ def apart(one: float, other: float) -> float:
     return abs((one - other + 180.0) % 360.0 - 180.0)
 
 
-def words(push: Push, delta: FloatArray) -> str:
+def words(push: AsidePush, delta: FloatArray) -> str:
     """How far the arrow in force is from where the tip goes; "" where none is drawn."""
     drawn = session.kept(DRAWN)
     if drawn is None:
@@ -52,7 +52,7 @@ def words(push: Push, delta: FloatArray) -> str:
     return f"Your arrow points {format_si(math.radians(apart(drawn, angle(push, delta))), 'deg', 0)} beside it."
 
 
-def board(push: Push, delta: FloatArray | None) -> None:
+def board(push: AsidePush, delta: FloatArray | None) -> None:
     """The board, with the arrow of the displacement where that is told. A new arrow is kept as the answer it gives."""
     right, up = plane(push)
     _component(

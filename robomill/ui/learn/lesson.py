@@ -17,13 +17,12 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.deflection import displacement
-from robomill.learn.push import ASIDE, Push, side
+from robomill.learn.push import FORCE, AsidePush
 from robomill.ui import fields, pieces, push, session
 from robomill.ui.arm import arm
 from robomill.ui.entry import inputs
 from robomill.ui.point import InHand, default_point, in_hand, place
 from robomill.ui.project import Project
-from robomill.ui.push import FORCE
 from robomill.ui.work import running
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, displacement_scale
@@ -125,7 +124,7 @@ def stand(project: Project) -> tuple[InHand, str]:
 @st.fragment
 def question(found: InHand) -> None:
     """The question, its four answers, the picture, and after the reveal where the tip went and why."""
-    push = Push.of(found.pose.C)
+    push = AsidePush.of(found.pose.C)
     st.html(BIG + f'<h1 class="rm-ask">Push the tool along {push.name}. Where does the tip go?</h1>')
     now = progress()
     left, right = pieces.split([55, 45], "ask", gap="medium")
@@ -147,13 +146,13 @@ def question(found: InHand) -> None:
         _push(found.pose, push, now.revealed)
 
 
-def _answer(C: FloatArray, push: Push, now: Lesson) -> None:
+def _answer(C: FloatArray, push: AsidePush, now: Lesson) -> None:
     if not now.revealed:
         st.html('<p class="rm-say">Ask the class first. Then show.</p>')
         return
     delta = displacement(C, push.force)
     unit = session.project().view.length
-    st.html(f'<p class="rm-say">{PUSH} along {push.name} moves the tip {_moves(delta, push, unit)}.</p>')
+    st.html(f'<p class="rm-say">{PUSH} along {push.name} moves the tip {push.told(delta, unit, "<b>{}</b>")}.</p>')
     if now.answer in push.answers:
         judged = "Right." if now.answer == push.went(delta) else "Look again."
         st.html(
@@ -165,16 +164,6 @@ def _answer(C: FloatArray, push: Push, now: Lesson) -> None:
         f"C in {unit_label(unit_of_C())}. Blue: along the push. Orange, outlined: the off-diagonal terms, where "
         f"the push leads aside."
     )
-
-
-def _moves(delta: FloatArray, push: Push, unit: str) -> str:
-    told = [
-        f"<b>{format_si(abs(float(delta[i])), unit)}</b> "
-        + (f"along {push.name}" if i == push.along else side(i, bool(delta[i] > 0)))
-        for i in (push.along, *(i for i in range(3) if i != push.along))
-        if abs(delta[i]) > ASIDE * np.linalg.norm(delta)
-    ]
-    return " and ".join(told) if told else "nowhere"
 
 
 def unit_of_C() -> str:
@@ -195,7 +184,7 @@ def compliance_table(C: FloatArray, along: int, unit: str = "um/N") -> str:
     return f'<table class="rm-c"><tr><th></th><th>push X</th><th>push Y</th><th>push Z</th></tr>{rows}</table>'
 
 
-def _push(pose: PoseReport, push: Push, revealed: bool) -> None:
+def _push(pose: PoseReport, push: AsidePush, revealed: bool) -> None:
     delta = pose.delta(push.force)
     unit = session.project().view.length
     scene = ArmScene(

@@ -11,7 +11,7 @@ from robomill.io.measured.load_tests import read_load_tests
 from robomill.io.robot.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.learn.equations import component, product
-from robomill.learn.push import Push
+from robomill.learn.push import AsidePush
 from robomill.report.paper import Statement
 from robomill.report.reproduction import reproduction
 from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
@@ -25,7 +25,7 @@ TONE = {"reproduced": "computed", "assumed": "assumed", "gap": "user", "not comp
 SHORT = {**WORDS, "assumed": "reproduced, assumed lengths"}
 
 
-def equations(pose: PoseReport, push: Push) -> None:
+def equations(pose: PoseReport, push: AsidePush) -> None:
     """Eqs. (13), (14) and (15) with this robot's numbers at this pose, for the push of the question."""
     st.header("The mathematics, with the numbers of now")
     left, right = pieces.split([1, 1], "mathematics", gap="large")

@@ -22,7 +22,7 @@ from robomill.learn.handout import handout, notes
 from robomill.learn.lesson import COUNT, TITLES, Bars, Lesson
 from robomill.learn.lessons import lesson
 from robomill.learn.marking import check
-from robomill.learn.push import Push
+from robomill.learn.push import AsidePush
 from robomill.ui import pieces, session
 from robomill.ui.arm import arm
 from robomill.ui.entry import inputs
@@ -162,7 +162,7 @@ def _predict(given: Lesson, pose: PoseReport, revealed: bool) -> None:
         arrow_board.forget()
 
     if given.number == DRAWN_IN:
-        push = Push.of(pose.C)
+        push = AsidePush.of(pose.C)
         pieces.note("Draw where the tip goes: click or drag, or turn the arrow with the arrow keys; or choose below.")
         arrow_board.board(push, given.moved if revealed else None)
         drawn = session.kept(arrow_board.DRAWN)
@@ -192,7 +192,7 @@ def _see(given: Lesson, pose: PoseReport) -> None:
         told = "" if chosen.told == given.answer else chosen.told
         judged = "You are right." if said == given.right else f"Look again. You said: {chosen.text}. {told}"
         if given.number == DRAWN_IN:
-            judged = f"{judged} {arrow_board.words(Push.of(pose.C), given.moved)}".rstrip()
+            judged = f"{judged} {arrow_board.words(AsidePush.of(pose.C), given.moved)}".rstrip()
     st.html(f'<p class="rm-say">{words}</p>' + (f'<p class="rm-say">{html.escape(judged)}</p>' if judged else ""))
 
 

@@ -24,7 +24,7 @@ from robomill.ui.milling import scrubber as linked
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling import station as station_views
 from robomill.ui.pieces import Tile
-from robomill.ui.verdict import NOT_COUNTED, decides_at, tiles_of_b, verdict_tiles
+from robomill.ui.verdict import NOT_COUNTED, tiles_of_b, verdict_tiles
 from robomill.ui.work import cached, running
 from robomill.ui.worked import mathematics
 from robomill.units import format_count, format_limit, format_many, format_si
@@ -60,10 +60,10 @@ def _spin_words(result: SimulationResult, unit: str) -> str:
 
 def _mean_and_peak(result: SimulationResult) -> str:
     """Which force the verdict is of, where a tooth is known to push harder."""
-    peak, i = spread_of(result)[1], decides_at(result)
+    peak, i = spread_of(result)[1], result.decided.sample
     if peak is None or i < 0:
         return ""
-    mean, most = (format_si(float(np.linalg.norm(F[i])), "N", 0) for F in (result.force_components, peak.at_peak))
+    mean, most = (format_si(float(N), "N", 0) for N in (result.force_size[i], np.linalg.norm(peak.at_peak[i])))
     return f"The verdict is of the mean force, {mean} where it decides; a tooth pushes with up to {most} there. " * (
         mean != most
     )
@@ -99,8 +99,8 @@ def _beside_titles(result: SimulationResult | None) -> None:
     setup, unit = session.project().setup, session.project().view.length
     said = {"cutter": format_count(len(setup.tools), "tool") if setup.tools else cut_panel.cutter_words()}
     said |= {"stock": cut_panel.stock_words(), "accuracy": format_limit(setup.tolerance, unit)}
-    if result is not None and (i := decides_at(result)) >= 0:
-        said["force"] = format_si(float(np.linalg.norm(result.F[i])), "N", 0)
+    if result is not None and (i := result.decided.sample) >= 0:
+        said["force"] = format_si(float(result.force_size[i]), "N", 0)
     rules = [f'.st-key-milling-open-{name} summary::after {{ content: "{words}" }}' for name, words in said.items()]
     st.html(f"<style>{' '.join(rules)}</style>")
 
@@ -147,7 +147,7 @@ def _numbers(result: SimulationResult, i: int, spread: AlloySpread | None) -> No
     linked.where(result, i, spread)
     pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
     other.tiles(tiles(result, verdict_tiles(result, session.project().view.length)), tiles_of_b)
-    mathematics(lambda: of_the_run(result, decides_at(result)), "milling")
+    mathematics(lambda: of_the_run(result, result.decided.sample), "milling")
     if result.worst >= 0:
         st.page_link("pages/7_Improve.py", label="What would fix it?", icon=":material/build:")
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.cutting.force import ForceSpread
+from robomill.cutting.force import COMPONENTS, ForceSpread
 from robomill.simulation.coupling import COUPLING
 from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
@@ -11,7 +11,7 @@ from robomill.simulation.stations import force_components, largest_deviations
 from robomill.surface.stock_unit import OUTSIDE
 from robomill.ui import pieces, session
 from robomill.units import format_many, format_si, from_si
-from robomill.viz.engagement import COMPONENTS, engagement_figure, force_figure
+from robomill.viz.engagement import engagement_figure, force_figure
 
 OF_CUTTER = (
     "stock-unit",
@@ -44,7 +44,7 @@ def force_plot(
 
 
 def _in_words(result: SimulationResult) -> str:
-    size = np.linalg.norm(result.F[result.judged], axis=1)
+    size = result.force_size[result.judged]
     if not len(size):
         return "Mean force on the tool along the path: nothing is judged."
     ends = format_many((float(size.min()), float(size.max())), "N", 0, " to ")
@@ -62,10 +62,9 @@ def force_columns(result: SimulationResult, peak: ForceSpread | None) -> dict[st
         "phi_ex_deg": from_si(c.phi_ex, "deg"),
     }
     for k, name in enumerate(COMPONENTS):
-        columns[f"F_{name.replace('-', '_')}_N"] = result.force_components[:, k]
+        columns[f"F_{name}_N"] = result.force_components[:, k]
         if peak is not None:
-            columns[f"low_{name.replace('-', '_')}_N"] = peak.low[:, k]
-            columns[f"high_{name.replace('-', '_')}_N"] = peak.high[:, k]
+            columns[f"low_{name}_N"], columns[f"high_{name}_N"] = peak.low[:, k], peak.high[:, k]
     return columns
 
 
@@ -74,7 +73,7 @@ def facts(result: SimulationResult, i: int, peak: ForceSpread | None) -> None:
     if i < 0:
         return
     mean = result.force_components[i]
-    rows = [("Mean force", format_si(float(np.linalg.norm(mean)), "N"), _three(mean) + ", what deflects here")]
+    rows = [("Mean force", format_si(float(result.force_size[i]), "N"), _three(mean) + ", what deflects here")]
     if peak is not None:
         worst = peak.at_peak[i]
         rows.append(
@@ -97,7 +96,8 @@ def facts(result: SimulationResult, i: int, peak: ForceSpread | None) -> None:
 
 
 def _three(force: FloatArray) -> str:
-    return ", ".join(f"{name} {format_si(float(v), 'N', sign=True)}" for name, v in zip(COMPONENTS, force, strict=True))
+    named = zip(COMPONENTS.values(), force, strict=True)
+    return ", ".join(f"{name} {format_si(float(v), 'N', sign=True)}" for name, v in named)
 
 
 def engagement_plot(result: SimulationResult, i: int, dark: bool) -> None:
@@ -126,7 +126,7 @@ def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) ->
         off = format_si(float(largest[row]), unit)
         mark = pieces.badge(material.provenance.kind) + (" in force" if row == 0 else "")
         rows.append((material.title, feed, normal, axial if known else "not given", off, mark))
-    head = ("Row", *(f"{name}, N" for name in COMPONENTS), "tip off, max", "")
+    head = ("Row", *(f"{name}, N" for name in COMPONENTS.values()), "tip off, max", "")
     pieces.table(rows, " nnnn ", head, strong=0)
     if not all(spread.axial):
         pieces.note("A row that gives no axial force has no part in its range: there it counts as the row in force.")

@@ -1,6 +1,5 @@
 """What the measuring room would say: section, profile along the groove, best fit, areas, a measured profile beside."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import offset_band
 from robomill.surface.deviation import Deviation
 from robomill.surface.sections.groove import GrooveSection
+from robomill.surface.sections.measures import MEASURED
 from robomill.surface.sections.metrology import GrooveProfile, compare_profile, fit_groove, groove_profile
 from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
@@ -26,7 +26,7 @@ from robomill.viz.metrology import ProfileCurves, histogram_figure, profile_figu
 
 STATIONS, FEW_STATIONS = 21, 13
 MANY_SAMPLES = 20_000  # a section takes every move into account, so long programs are measured at fewer places
-MEASURED = "milling.profile"
+PROFILE = "milling.profile"
 MAX_PROFILE_MB = 10
 BINS = 48  # of the histogram of errors
 WHAT = {
@@ -35,31 +35,6 @@ WHAT = {
     "pocket": "Pocket: several passes made the floor; measured are the floor and the nearer wall.",
     "free": "Free surface: no wall here; measured is its error along the normal.",
     "nothing": "",
-}
-LABELS = {
-    "width": "Width",
-    "depth": "Depth",
-    "centre_offset": "Centre offset",
-    "floor_error": "Floor error",
-    "floor_tilt": "Floor tilt",
-    "flatness": "Floor flatness",
-    **{f"wall_{side}_error": f"{side.capitalize()} wall error" for side in ("left", "right")},
-    **{f"wall_{side}_angle": f"{side.capitalize()} wall" for side in ("left", "right")},
-    "error_mean": "Mean error",
-    "error_max": "Largest error",
-    "error_rms": "RMS error",
-    "slope": "Slope",
-}
-SIGNED = {
-    "centre_offset": "positive to the left of the feed",
-    "floor_error": "positive: material left",
-    "error_mean": "positive: material left",
-    "error_max": "positive: material left",
-}
-ANGLES = {
-    "floor_tilt": "across, rising to the left of the feed positive",
-    "slope": "of the ideal surface",
-    **dict.fromkeys(("wall_left_angle", "wall_right_angle"), ""),
 }
 
 
@@ -83,30 +58,24 @@ def section_facts(section: GrooveSection | None) -> None:
         return
     if section.kind in WHAT:
         pieces.note(WHAT[section.kind] + (f" {section.note[0].upper()}{section.note[1:]}." if section.note else ""))
-    rows = [(LABELS[name], *_measured(section, name)) for name in _listed(section)]
+    rows = [(MEASURED[name].label, *_measured(section, name)) for name in _listed(section)]
     if rows:
         pieces.facts(rows)
 
 
 def _listed(section: GrooveSection) -> list[str]:
     """Its measures in the order of a report: both walls' lean in one table with their form beside it."""
-    return [name for name in section.measures if not name.endswith("_straightness")]
+    beside = [MEASURED[name].form for name in section.measures]
+    return [name for name in section.measures if name not in beside]
 
 
 def _measured(section: GrooveSection, name: str) -> tuple[str, str]:
     """A measure and what one must know of it."""
-    value, view = float(getattr(section, name)), session.project().view
+    value, unit, of = float(getattr(section, name)), session.project().view.length, MEASURED[name]
     if not np.isfinite(value):
         return "not measured", section.why.get(name, "")
-    if name in ANGLES:
-        beside = ANGLES[name]
-        if name.startswith("wall"):
-            form = float(getattr(section, name.replace("angle", "straightness")))
-            beside = f"straight within {format_si(form, view.length)}"
-        return format_si(value, "deg", 3 if name == "floor_tilt" else 2), beside
-    signed = name in SIGNED or name.startswith("wall")
-    remark = SIGNED.get(name, "") or ("positive to the left of the feed" if name.startswith("wall") else "")
-    return format_si(value, view.length, sign=signed), remark
+    form = f"straight within {format_si(getattr(section, of.form), unit)}" if of.form else ""
+    return of.shown(value, unit), form or of.hint
 
 
 def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bool) -> None:
@@ -119,7 +88,7 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     if not np.isfinite([found.centre_offset, found.floor_error]).any():
         pieces.note("No chart along this cut: at none of its stations a groove or a floor can be measured.")
         return
-    measured = session.kept(MEASURED)
+    measured = session.kept(PROFILE)
     fit = None
     both = np.isfinite(found.centre_offset) & np.isfinite(found.floor_error)
     if result.path.goes_one_way and both.sum() >= 3:
@@ -204,7 +173,7 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
             "Station along the groove, offset of its middle, left of the feed positive; their heads name the unit."
         )
         if measured is not None:
-            inputs.button("Remove the profile", "milling.profile.clear", "close", session.drop, MEASURED)
+            inputs.button("Remove the profile", "milling.profile.clear", "close", session.drop, PROFILE)
     if measured is None:
         return
     for words in measured.findings:
@@ -233,7 +202,7 @@ def _overlay(found: GrooveProfile, measured: MeasuredProfile | None, unit: str) 
 
 
 def _take(data: bytes, name: str) -> None:
-    session.keep(MEASURED, read_profile(data, name=name))
+    session.keep(PROFILE, read_profile(data, name=name))
 
 
 def spread_panel(result: SimulationResult, dark: bool) -> None:
@@ -250,9 +219,7 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
     if not len(gauge.walls.error) + len(gauge.floors.error):
         pieces.note("No wall and no floor of this cut is judged, so there is no error to spread.")
         return
-    largest = float(np.abs(np.concatenate([gauge.walls.error, gauge.floors.error])).max(initial=0.0))
-    limit = min(max(1.15 * floors, 1.15 * walls, 1.05 * largest), 3.0 * max(floors, walls))
-    edges = np.linspace(-limit, limit, BINS + 1)
+    edges = gauge.edges(max(walls, floors), BINS)
     area = {"walls": gauge.walls.histogram(edges), "floors": gauge.floors.histogram(edges)}
     total = max(float(sum(each.sum() for each in area.values())), 1e-300)
     share = {name: 100.0 * each / total for name, each in area.items()}
@@ -274,7 +241,7 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
             + ".",
         )
     with told:
-        pieces.facts([*_out_of_tolerance(result), *_volumes(error), *_rms(gauge, total)])
+        pieces.facts([*_out_of_tolerance(result), *_volumes(error), _rms(gauge)])
     for finding in result.surface_notes:
         pieces.said("warning", finding.sentence, "layers")
 
@@ -305,7 +272,7 @@ def _volumes(error: Deviation) -> list[tuple[str, str, str]]:
     ]
 
 
-def _rms(gauge: Gauge, area: float) -> list[tuple[str, str, str]]:
-    """Of the walls and floors drawn above, each by its own area (m^2 in all)."""
-    rms = math.sqrt((gauge.walls.squares + gauge.floors.squares) / area)
-    return [("RMS error", format_si(rms, session.project().view.length), "of walls and floors, each by its own area")]
+def _rms(gauge: Gauge) -> tuple[str, str, str]:
+    """Of the walls and floors drawn above."""
+    told = format_si(gauge.rms, session.project().view.length, missing="–")
+    return "RMS error", told, "of walls and floors, each by its own area"

@@ -11,6 +11,8 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import force_components
 from robomill.simulation.tools import cutting_numbers
 from robomill.surface.sections.groove import GrooveSection
+from robomill.surface.sections.measures import MEASURED
+from robomill.surface.sections.section_law import TITLES
 from robomill.ui import other, pieces, session, shell
 from robomill.ui.entry import declared, inputs
 from robomill.ui.milling import springs as springs_panel
@@ -24,8 +26,6 @@ from robomill.viz.theme import tool_colours
 from robomill.viz.views import section_drawing
 
 AROUND = 5
-ANGLES = ("wall_left_angle", "wall_right_angle", "floor_tilt", "slope")
-KIND_WORDS = {"free": "free surface"} | {kind: kind for kind in ("groove", "step", "pocket")}
 
 
 def code(result: SimulationResult, i: int, height: int = 300) -> None:
@@ -145,12 +145,9 @@ def section_words(section: GrooveSection, unit: str) -> str:
     """A section in words with its numbers, for whoever does not see the drawing."""
     if section.kind == "nothing":
         return f"Cross-section: {section.note}."
-    found = [
-        f"{name.replace('_', ' ')} {format_si(getattr(section, name), 'deg' if name in ANGLES else unit)}"
-        for name in section.measures
-        if np.isfinite(getattr(section, name))
-    ]
-    return f"Cross-section of a {KIND_WORDS[section.kind]}: {', '.join(found) or 'nothing can be measured'}."
+    known = [(MEASURED[name], getattr(section, name)) for name in section.measures]
+    found = [f"{of.label.lower()} {of.shown(value, unit)}" for of, value in known if np.isfinite(value)]
+    return f"Cross-section of a {TITLES[section.kind].lower()}: {', '.join(found) or 'nothing can be measured'}."
 
 
 def shares(result: SimulationResult, i: int, dark: bool) -> None:

@@ -66,10 +66,7 @@ def lead(project: Project, now: Moved, cut: Decided | None, unit: str) -> str:
 
 def tip_tile(now: Moved, before: Moved | None, unit: str) -> pieces.Tile:
     """How far the tip is displaced, and along which axes."""
-    note = " · ".join(
-        f"{axis} {format_si(float(v), unit, sign=True, with_unit=False)}"
-        for axis, v in zip("XYZ", now.delta, strict=True)
-    )
+    note = " · ".join(map(" ".join, push.by_axis(now.delta, unit, every=True)))
     value, was, change = format_si(now.size, unit), "", ""
     if before is not None and np.isfinite(before.size):
         was, change = format_si(before.size, unit), format_si(now.size - before.size, unit, sign=True)

@@ -10,6 +10,7 @@ import streamlit as st
 
 from robomill.files import PROGRAM
 from robomill.paper import SLOT
+from robomill.simulation.judging.verdict_words import TIP
 from robomill.simulation.origin.origins import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
@@ -32,7 +33,6 @@ DOORS = (
     ("I teach", "Why does a robot bend sideways?", "pages/8_Learn.py", "Start the lesson"),
 )
 CHECKED = "start.checked"
-OF = {"wall": "wall", "floor": "floor", "feed": "tip along the feed", "end": "end of the cut"}  # of what decides
 KINDS = {"paper": "published", "user": "of your own"}  # as one counts them; the others are their own word
 
 
@@ -47,9 +47,9 @@ def cause(result: SimulationResult, unit: str) -> str:
     cut = decided(result)
     if cut is None:
         return ""
-    rests = result.verdict.deciding
-    elsewhere = rests is not None and cut.moved.components(unit) != replace(cut, i=result.worst).moved.components(unit)
-    where = f"Where the {OF[rests[0]]} is farthest off, " if elsewhere and rests is not None else ""
+    kind = result.decided.kind
+    elsewhere = kind is not TIP and cut.moved.components(unit) != replace(cut, i=result.worst).moved.components(unit)
+    where = f"Where the {kind.what} is farthest off, " if elsewhere else ""
     return f"{where}{cut.moved.sentence(unit)} {cut.moved.blame(unit)}".rstrip()
 
 

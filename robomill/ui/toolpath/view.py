@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from robomill.provenance import Finding
-from robomill.simulation.judging.verdict_words import said
+from robomill.simulation.judging.verdict_words import FLOOR, WALL, said
 from robomill.simulation.reach import PathReach
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.tools import feed_notes
@@ -71,7 +71,7 @@ def tiles(
 ) -> list[pieces.Tile]:
     """The error that decides the verdict, reach, length and time, findings."""
     if path is None:
-        return [pieces.Tile(label, "–") for label in ("Wall error", "Reach", "Length of the cut", "Shapes")]
+        return [pieces.Tile(label, "–") for label in (WALL.label, "Reach", "Length of the cut", "Shapes")]
     summary = path_summary(path)
     rapids = summary.moves - summary.cuts if path.counts is None else path.counts[0]
     found = [_error_tile(result, unit)]
@@ -131,9 +131,7 @@ def findings(path: Toolpath, result: SimulationResult | None) -> tuple[Finding, 
 def _error_tile(result: SimulationResult | None, unit: str) -> pieces.Tile:
     """The error that decides the verdict; the tip's deviation where no wall and no floor is left to be measured."""
     if result is None:
-        return pieces.Tile("Wall error", "–", "not simulated yet")
-    verdict = result.verdict
-    name = "" if verdict.deciding is None else verdict.deciding[0]
-    labels = {"wall": "Wall error", "floor": "Floor error"}
-    found = reading_tile(labels[name], name, verdict, None, unit) if name in labels else tip_tile(result, unit)
+        return pieces.Tile(WALL.label, "–", "not simulated yet")
+    verdict, kind = result.verdict, result.decided.kind
+    found = reading_tile(kind, verdict, None, unit) if kind in (WALL, FLOOR) else tip_tile(result, unit)
     return dataclasses.replace(found, tone=tone(verdict))

@@ -13,7 +13,7 @@ import robomill as rm
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.tool import Cutter
 from robomill.io.samples import samples_dir
-from robomill.simulation.judging.gauge import Readings, gauge
+from robomill.simulation.judging.gauge import Gauge, Readings, gauge
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
 
@@ -486,6 +486,26 @@ def test_the_histogram_of_a_straight_slot_is_its_two_walls_and_its_floor():
     assert found.walls.histogram(edges / 4)[-1] == walls[-1], "what is beyond is in the outer bin"
     for each, area in ((found.walls, walls.sum()), (found.floors, floors.sum())):
         assert each.squares == pytest.approx(each.error[0] ** 2 * area), "the same error all along"
+
+
+def small(*cells: int) -> Readings:
+    """Readings of (error in um, length, height) each."""
+    error, length, height = np.array(cells, dtype=float).reshape(-1, 3).T
+    none = np.zeros(len(error))
+    return Readings(none.astype(int), error * 1e-6, length, height, none, np.zeros((len(error), 3)))
+
+
+def test_walls_and_floors_are_spread_by_area() -> None:
+    """Each reading as many times as it has square metres: a plain root of the mean square of all of them."""
+    walls, floors = small(40, 3, 2, -25, 1, 4), small(-90, 2, 5)
+    found = Gauge(walls, floors, small(1000, 7, 7))
+    every = 1e-6 * np.repeat([40.0, -25.0, -90.0], [6, 4, 10])
+    assert found.rms == pytest.approx(np.sqrt(np.mean(every**2)))
+    assert np.isnan(Gauge(small(), small(), small()).rms)
+    for tolerance, limit in ((20e-6, 60e-6), (50e-6, 94.5e-6), (85e-6, 97.75e-6)):
+        edges = found.edges(tolerance, 10)
+        np.testing.assert_allclose(edges, np.linspace(-limit, limit, 11), atol=1e-18)
+        assert walls.histogram(edges).sum() + floors.histogram(edges).sum() == pytest.approx(20.0)
 
 
 def test_an_error_goes_with_the_tip_as_its_way_says():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robomill.simulation.judging.gauge import Gauge, Readings
-from robomill.simulation.judging.verdict import judge
+from robomill.simulation.judging.verdict import decided, judge
 from robomill.simulation.result import SimulationResult
 
 TOLERANCES = (0.3e-3, 0.1e-3, 0.5e-3)  # wall, floor, feed
@@ -58,6 +58,10 @@ def test_the_largest_share_that_decides(result: SimulationResult, feed: bool, wa
         return any(abs(error) > times * bound for errors, bound in counted for error in errors)
 
     assert found.level == ("out" if exceeds(1.0) else "tight" if exceeds(0.8) else "ok")
+    rests = decided(run, found)
+    allowed = {0: TOLERANCES[2], 1: TOLERANCES[0], 2: TOLERANCES[1], None: TOLERANCES[0]}[rests.kind.axis]
+    assert rests.size == pytest.approx(found.share * allowed)
+    assert rests.sample in ((run.worst,) if found.deciding is None else range(len(run.path)))
     assert found.red == exceeds(1.0)
     assert exceeds(found.share * (1.0 - 1e-9))
     assert not exceeds(found.share * (1.0 + 1e-9))

@@ -15,6 +15,7 @@ from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
 from robomill.cutting.unjudged import Unjudged
 from robomill.io.materials import load_material
 from robomill.provenance import Provenance
+from robomill.simulation.judging.verdict_words import gauge_end
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
@@ -151,6 +152,13 @@ def test_an_arm_whose_compliances_nobody_has_given_is_not_judged_until_they_are(
     said = rm.simulate(setup.replace(robot=given)).verdict
     assert said.level == "ok"
     assert said.wall.value == rm.simulate(setup.replace(robot=arm)).verdict.wall.value
+
+
+@pytest.mark.parametrize(
+    ("share", "end"), [(0.0, 1.25), (0.77, 1.25), (1.0, 1.25), (1.4, 1.47), (5.0, 5.25), (40.0, 6.0)]
+)
+def test_a_gauge_shows_the_tolerance_and_what_is_used_of_it_up_to_six_times(share, end):
+    assert gauge_end(share) == pytest.approx(end)
 
 
 def test_verdicts_of_equal_runs_are_equal() -> None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robomill.learn.push import Push
+from robomill.learn.push import AsidePush
 from robomill.ui.learn.arrow import angle, answer, apart, plane
 
-ALONG_Y = Push(1, 2, 0)  # pushed along Y, led aside along Z
-ALONG_Z = Push(2, 0, 1)
-ALONG_X = Push(0, 1, 2)
+ALONG_Y = AsidePush(1, 2, 0)  # pushed along Y, led aside along Z
+ALONG_Z = AsidePush(2, 0, 1)
+ALONG_X = AsidePush(0, 1, 2)
 
 
 def test_z_points_up_on_the_board() -> None:
@@ -20,7 +20,7 @@ def test_z_points_up_on_the_board() -> None:
 
 
 @pytest.mark.parametrize("push", [ALONG_Y, ALONG_Z, ALONG_X])
-def test_an_arrow_along_a_displacement_gives_the_answer_of_that_displacement(push: Push) -> None:
+def test_an_arrow_along_a_displacement_gives_the_answer_of_that_displacement(push: AsidePush) -> None:
     """Drawn exactly where the tip goes, an arrow is judged as the tip's own displacement is."""
     for share in (-1.5, -0.5, 0.0, 0.5, 1.5):
         delta = np.zeros(3)

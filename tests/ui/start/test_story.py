@@ -9,7 +9,6 @@ from robomill.simulation.run import simulate
 from robomill.ui.project import preset_setup
 from robomill.ui.push import whole
 from robomill.ui.start.story import cause
-from robomill.ui.verdict import decides_at
 
 
 @pytest.mark.parametrize("shares", [(0.605, 0.395), (0.333, 0.333, 0.334), (0.7004, 0.2996), (0.516, 0.304, 0.1)])
@@ -30,5 +29,5 @@ def test_where_the_tip_strays_farther_at_another_place_the_cause_says_of_which_i
     """The tile beside it tells of the tip where that is farthest off: two vectors, and each says whose it is."""
     setup = preset_setup("paper_flute").replace(robot=load_robot("fanuc_r2000ic"))
     result = simulate(setup)
-    assert result.worst != decides_at(result)
+    assert result.worst != result.decided.sample
     assert cause(result, "mm").startswith("Where the wall is farthest off, 100 N on the tool moves the tip by ")
