@@ -8,9 +8,12 @@ import pytest
 from conftest import box, errors, go, store, words
 from streamlit.testing.v1 import AppTest
 
+from robomill.io.materials import load_material, sample_materials
 from robomill.io.setups.projects import setup_from_toml, setup_to_toml
+from robomill.provenance import Provenance
 from robomill.simulation.run import simulate
 from robomill.toolpath.source import GCodeSource
+from robomill.ui.rows import OWN
 
 POCKET = "G21 G90\nG0 X-20 Y0 Z5\nS8000 M3\nG1 Z-1 F300\nG1 X20 F600\nG0 Z20\nM2\n"
 SILENT = POCKET.replace("S8000 M3\n", "")
@@ -64,6 +67,22 @@ def test_the_answer_is_one_step_and_ends_the_question(app: AppTest) -> None:
     assert setup.carried_from == ""
     assert len(store(app).past) == before + 1
     assert verdict(app) in ("ok", "tight", "out")
+
+
+def test_a_row_of_ones_own_can_be_what_it_cuts(app: AppTest) -> None:
+    """Its force is that of the row, its band that of the alloy's other rows, wherever the row was added."""
+    sample = load_material("al7075_hss_ref156")
+    own = sample.replace(name="mine", title="From my own tests", provenance=Provenance("user", "our dynamometer"))
+    store(app).values[OWN] = {own.name: own}
+    bring(app, POCKET)
+    app.selectbox(key="toolpath.question.material").set_value("mine").run()
+    app.button(key="toolpath.question.answer").click().run()
+    assert errors(app) == []
+    force = store(app).project.setup.force
+    assert force.material == own
+    assert {row.name for row in force.alternatives} == {
+        row.name for row in sample_materials() if (row.alloy, row.kind) == (own.alloy, own.kind)
+    }
 
 
 def test_what_stands_may_be_kept(app: AppTest) -> None:

@@ -22,6 +22,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces, session
 from robomill.ui.entry import declared, inputs
 from robomill.ui.milling import materials as material_panel
+from robomill.ui.rows import others, rows
 from robomill.ui.work import cached, running
 from robomill.ui.work.job import Underway
 from robomill.units import format_count
@@ -89,9 +90,9 @@ def _switch(kind: str) -> None:
         if wanted is Cutter:
             given[name] = setup.cutter
         elif wanted is Material:
-            given[name] = material_panel.rows(model.kind)[model.example]
+            given[name] = rows(model.kind)[model.example]
         elif wanted == tuple[Material, ...]:
-            given[name] = material_panel.others(given["material"])
+            given[name] = others(given["material"])
         elif wanted is ForceRecord:
             session.keep(PENDING, (setup.digest(), kind))
             return

@@ -8,50 +8,30 @@ from typing import Any
 import pandas as pd
 import streamlit as st
 
-from robomill.cutting.forces import model_of
 from robomill.cutting.materials import Material
-from robomill.cutting.materials import alternatives as others_of
 from robomill.errors import CuttingError
 from robomill.files import MATERIAL
-from robomill.io.materials import material_from_toml, material_to_toml, sample_materials
+from robomill.io.materials import material_from_toml, material_to_toml
 from robomill.io.texts import read_text
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.ui import pieces, session
 from robomill.ui.entry import grid, inputs
 from robomill.ui.entry.box import box_of
+from robomill.ui.rows import force_of, keep, others, rows
 from robomill.units import unit_label
 
-OWN, NEW = "milling.materials", "milling.material"
-
-
-@st.cache_resource(show_spinner=False)
-def _samples() -> tuple[Material, ...]:
-    return tuple(sample_materials())
-
-
-def rows(kind: str) -> dict[str, Material]:
-    """Every row of a kind ("mechanistic", "kienzle"): the samples, those of this session, the one a project brings."""
-    every = [*_samples(), *session.kept(OWN, {}).values()]
-    brought = getattr(session.project().setup.force, "material", None)
-    return {m.name: m for m in (*every, *([brought] if brought is not None else [])) if m.kind == kind}
-
-
-def others(material: Material) -> tuple[Material, ...]:
-    """The other rows of its alloy: the band."""
-    return others_of(material, rows(material.kind).values())
+NEW = "milling.material"
 
 
 def _use(material: Material, from_editor: bool = False) -> None:
     """Put a row in force: in the present model, or in the one that takes rows of its kind."""
     setup = session.project().setup
-    given = {"material": material, "alternatives": others(material)}
     force: Any = setup.force
     if force.takes is type(material):
-        force = replace(force, **given)
+        force = replace(force, material=material, alternatives=others(material))
     else:
-        model: Any = model_of(material)
-        force = model(cutter=setup.cutter, **given)
+        force = force_of(material, setup.cutter)
     session.change(force=force, from_editor=from_editor)
 
 
@@ -128,7 +108,7 @@ def _take(data: bytes, name: str) -> None:
 
 def _keep(material: Material, from_editor: bool = False) -> None:
     """Add or replace a row of this session and put it in force."""
-    session.keep(OWN, {**session.kept(OWN, {}), material.name: material})
+    keep(material)
     _use(material, from_editor)
 
 

@@ -8,12 +8,11 @@ from typing import Any
 import streamlit as st
 
 from robomill.cutting.force import ForceModel
-from robomill.cutting.forces import FORCES, model_of
-from robomill.cutting.materials import Material, alternatives
+from robomill.cutting.forces import FORCES
+from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
 from robomill.errors import CuttingError, ToolpathError
-from robomill.io.materials import sample_materials
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.simulation.origin.sources import changed_sources
@@ -24,6 +23,7 @@ from robomill.toolpath.source import GCodeSource
 from robomill.ui import pieces, session
 from robomill.ui.entry import declared, inputs, typed
 from robomill.ui.entry.box import NumberBox, box_of
+from robomill.ui.rows import force_of, rows
 from robomill.ui.tools import missing
 from robomill.units import format_many, format_si
 
@@ -56,7 +56,7 @@ def panel(path: Toolpath | None, premise: str) -> bool:
             _row_of(_of_tool(number))
         first, rest = pieces.split([1.0, 0.42 * len(boxes)], "question")
         with first:
-            titles = {name: row.title for name, row in _rows().items()}
+            titles = {name: row.title for name, row in rows().items()}
             inputs.pick("Material", f"{KEY}.{MATERIAL}", titles, _first(setup.force).name, inputs.LISTED)
         with rest:
             _row_of(boxes)
@@ -149,17 +149,10 @@ def _boxes(setup: SimulationSetup, path: Toolpath | None) -> dict[str, tuple[Num
     }
 
 
-def _rows() -> dict[str, Material]:
-    return {row.name: row for row in sample_materials()}
-
-
 def _first(force: ForceModel) -> Material:
     """The row that is offered first: the one in force, or the example of the first model that takes rows."""
-    held = getattr(force, MATERIAL, None)
-    rows = _rows()
-    if held is not None and held.name in rows:
-        return rows[held.name]
-    return rows[next(model.example for model in FORCES.values() if model.takes is not None)]
+    held: Material | None = getattr(force, MATERIAL, None)
+    return held or rows()[next(model.example for model in FORCES.values() if model.takes is not None)]
 
 
 def _answer(path: Toolpath | None) -> None:
@@ -168,12 +161,9 @@ def _answer(path: Toolpath | None) -> None:
     found: dict[str, Any] = {name: value for name, (_, value) in _boxes(setup, path).items()}
     if "n_s" in found and not found["n_s"]:
         raise ToolpathError("Spindle speed: the program names none; type how fast it turns at the machine.")
-    rows = _rows()
-    row = rows[session.kept(f"{KEY}.{MATERIAL}", _first(setup.force).name)]
+    row = rows()[session.kept(f"{KEY}.{MATERIAL}", _first(setup.force).name)]
     cutter = replace(setup.cutter, **{name: found[name] for name in SIZE if name in found})
-    model: Any = model_of(row)
-    force = model(cutter=cutter, material=row, alternatives=alternatives(row, rows.values()))
-    changed: dict[str, Any] = {"cutter": cutter, "force": force, "engagement": True}
+    changed: dict[str, Any] = {"cutter": cutter, "force": force_of(row, cutter), "engagement": True}
     if lacking := _lacking(setup, path):
         changed["tools"] = _tools(setup, lacking)
     changed |= {"tolerance": found["tolerance"], "floor_tolerance": None, "feed_tolerance": None}
