@@ -7,6 +7,7 @@ a new one with less budget and more readings, and the same seed and choices give
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +25,7 @@ from robomill.units import format_percent, format_si
 
 SPREAD = 0.35  # standard deviation of the logarithm of a hidden compliance against the robot's own
 MAX_LOAD = 400.0  # N a student can hang on
+GOOD, FAIR = 80.0, 50.0  # points, of 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +37,11 @@ class Score:
     covered: FloatArray
     points: float
     sentence: str
+
+    @property
+    def grade(self) -> Literal["good", "fair", "poor"]:
+        """What so many points are."""
+        return "good" if self.points >= GOOD else "fair" if self.points >= FAIR else "poor"
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,7 @@
 """How well conditioned a configuration is: determinant, manipulability, condition, distance to the joint limits."""
 
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -97,6 +98,15 @@ def near_singular(robot: Robot, det: ArrayLike) -> BoolArray:
     An arm whose joints can nowhere do its task has nothing but rounding there.
     """
     return np.asarray(np.abs(np.asarray(det, dtype=np.float64)) <= max(NEAR * largest_determinant(robot), ROUNDING))
+
+
+def singularity_among(robot: Robot, det: ArrayLike) -> Literal["passed", "near", "none"]:
+    """What configurations of det(J) (...,) that an arm can go between meet: a singularity is passed where both signs
+    are among them."""
+    det = np.asarray(det, dtype=np.float64)
+    if (det > 0.0).any() and (det < 0.0).any():
+        return "passed"
+    return "near" if near_singular(robot, det).any() else "none"
 
 
 def manipulability(robot: Robot, theta: ArrayLike) -> FloatArray:

@@ -4,15 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.kinematics.dexterity import limit_distance
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import translation
+from robomill.lazy import cached_property
 from robomill.robot.model import Robot
 from robomill.simulation.run import configurations
 from robomill.simulation.samples import sampled
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.summary import distinct
 
 MAX_SAMPLES = 400_000
 
@@ -26,10 +28,25 @@ class PathReach:
     room: FloatArray
     reason: str
 
-    @property
+    @cached_property
     def missed(self) -> BoolArray:
         """(m,) samples at feed that cannot be reached."""
         return np.asarray(self.path.cutting & ~self.reached)
+
+    @property
+    def share(self) -> float:
+        """Of the samples at feed that are reached; 1 where there are none."""
+        return 1.0 - float(self.missed.sum()) / max(int(self.path.cutting.sum()), 1)
+
+    @cached_property
+    def missed_length(self) -> float:
+        """m: the length that these stand for."""
+        return float(self.path.step_length[self.missed].sum())
+
+    @cached_property
+    def missed_blocks(self) -> IntArray:
+        """Their source lines, each once."""
+        return distinct(self.path.block[self.missed])
 
 
 def path_reach(setup: SimulationSetup) -> PathReach:

@@ -6,6 +6,7 @@ from robomill.errors import RobomillError
 from robomill.paper import Point
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.summary import middle_of_cut as mean_of_cut
 from robomill.ui.work import running
 from robomill.ui.work.job import Underway
 
@@ -23,10 +24,8 @@ def middle_of_cut(setup: SimulationSetup) -> Point | None:
     path = path_there(setup)
     if path is None:
         return None
-    ends = setup.in_base(path.p)
-    length = np.linalg.norm(np.diff(ends, axis=0), axis=1) * path.cutting[1:]
-    if not length.sum() > 0:
+    middle = mean_of_cut(path)
+    if middle is None:
         return None
-    mean = (0.5 * (ends[1:] + ends[:-1]) * length[:, None]).sum(axis=0) / length.sum()
-    x, y, z = np.round(mean, 3) + 0.0
+    x, y, z = np.round(setup.in_base(middle), 3) + 0.0
     return float(x), float(y), float(z)

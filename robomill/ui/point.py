@@ -14,9 +14,7 @@ from robomill.ui import pieces, session
 from robomill.ui.project import MapView
 from robomill.units import format_many, format_si, unit_label
 from robomill.workspace.fields import ComplianceMap
-from robomill.workspace.reach import ReachBox
-
-SLACK = 1e-6  # m
+from robomill.workspace.reach import SLACK, ReachBox
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -15,8 +16,9 @@ from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.transforms import pose_from_world
 from robomill.progress import checkpoint
 from robomill.robot.model import Robot, check_robot
-from robomill.workspace.grid import PAPER_BOX_SIZE, Grid
+from robomill.workspace.grid import PAPER_BOX, PAPER_BOX_SIZE, Grid
 
+SLACK = 1e-6  # m
 Axes = tuple[FloatArray, FloatArray, FloatArray]
 
 
@@ -129,6 +131,16 @@ def largest_box(mask: BoolArray, low: Axes, high: Axes) -> ReachBox | None:
 def against_paper(box: ReachBox) -> dict[str, float | bool]:
     """The box beside the paper's 1200 x 600 x 500 mm: whether that fits inside, and the ratio of the volumes."""
     return {"holds_paper_box": box.holds(PAPER_BOX_SIZE), "volume_ratio": box.volume / float(np.prod(PAPER_BOX_SIZE))}
+
+
+def paper_box_in(box: ReachBox) -> Literal["inside", "outside", "turned", "larger"]:
+    """Where the paper's box stands to this one: inside; partly outside, though it has room there; it has room turned by
+    90 degrees about Z; or it is larger."""
+    if (box.lower <= PAPER_BOX[0] + SLACK).all() and (PAPER_BOX[1] - SLACK <= box.upper).all():
+        return "inside"
+    if box.holds(PAPER_BOX_SIZE):
+        return "outside"
+    return "turned" if box.holds(PAPER_BOX_SIZE[[1, 0, 2]]) else "larger"
 
 
 def _extents(low: FloatArray, high: FloatArray, count: int) -> FloatArray:

@@ -87,6 +87,9 @@ def test_points_are_earned_joint_by_joint():
     score = lab.score(lab.reveal() * (1 + error * [1, 1, -1, -1, 1]))
     np.testing.assert_allclose(score.error, error, atol=1e-12)
     assert score.points == pytest.approx(20 * (1.0 + 0.75 + 0.5 + 0.25 + 0.0))
+    assert score.grade == "fair"
+    assert lab.score(lab.reveal()).grade == "good"
+    assert lab.score(lab.reveal() * 2.0).grade == "poor"
     assert score.sentence == "50 of 100 points: joint 5 is 40 % off."
     assert np.isnan(score.covered).all()
     unseen = lab.reveal() * 1.0

@@ -27,6 +27,16 @@ def test_near_a_singular_configuration_by_the_arms_own_measure(size):
     assert dexterity.largest_determinant(robot) == pytest.approx(0.2 * size**2, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("bends", "met"),
+    [((0.5, 1.0, 2.5), "none"), ((-0.5, -1.0), "none"), ((0.01, 1.0), "near"), ((-1.0, 2.0), "passed")],
+)
+def test_an_arm_that_bends_to_both_sides_passes_its_stretched_configuration(bends, met):
+    robot = rm.load_robot("planar_2r")
+    theta = np.column_stack([np.linspace(-1.0, 1.0, len(bends)), bends])
+    assert dexterity.singularity_among(robot, dexterity.determinant(robot, theta)) == met
+
+
 def test_five_axis_rows_are_those_of_the_paper_at_a_vertical_tool():
     robot = rm.load_robot("slavkovic_5r")
     theta = rm.inverse_kinematics(robot, rm.pose_from_world([0.2, -1.3, 0.0, 0, 0])).theta

@@ -14,12 +14,12 @@ from plotly_checks import checked_figure
 from streamlit.testing.v1 import AppTest
 from streamlit.testing.v1.element_tree import TextInput
 
+from robomill.toolpath.rewritten import lines_of_path, sketch_of_path
 from robomill.toolpath.source import SketchSource
 from robomill.ui import rendered
 from robomill.ui.entry import inputs
 from robomill.ui.project import Project, preset_setup
 from robomill.ui.session import KEY, Store
-from robomill.ui.toolpath.sources import lines_of_path, sketch_of_path
 from robomill.ui.work import beside
 from robomill.viz.chart import Chart
 from robomill.viz.rendered.render_queue import RenderQueue

@@ -8,11 +8,13 @@ from conftest import errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.io.robot.robots import load_robot
+from robomill.robot.tool_frame import TOOL_AXES, tool_axis, with_tool_axis
 from robomill.simulation.run import deviation_over_spin
 from robomill.simulation.samples import sampled
 from robomill.ui import session
 from robomill.ui.project import Project
 from robomill.ui.robot import tables
+from robomill.ui.robot.frames import CHOSEN
 from robomill.units import to_si
 
 
@@ -133,12 +135,12 @@ def test_the_spin_of_a_six_axis_arm_is_chosen_and_its_influence_said(app: AppTes
     assert store(app).project.setup.spin == pytest.approx(np.pi / 6)
 
 
-@pytest.mark.parametrize("axis", tables.TOOL_AXES)
+@pytest.mark.parametrize("axis", TOOL_AXES)
 def test_the_tools_direction_is_a_choice(axis: str) -> None:
-    robot = tables.with_tool_axis(load_robot("fanuc_r2000ic"), axis)
+    robot = with_tool_axis(load_robot("fanuc_r2000ic"), axis, CHOSEN)
     k = np.eye(3)["xyz".index(axis[1])] * (1 if axis[0] == "+" else -1)
     np.testing.assert_allclose(robot.T_tool[:3, 2], k)
     np.testing.assert_allclose(robot.T_tool[:3, 3], [0.0069, 0.2453, 0.3193])
     assert np.linalg.det(robot.T_tool) == pytest.approx(1.0)
-    assert tables.tool_axis(robot) == axis
+    assert tool_axis(robot) == axis
     assert robot.provenance["tool"].kind == ("paper" if axis == "-y" else "user")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 import robomill as rm
 from robomill.io.samples import samples_dir
@@ -33,6 +34,11 @@ def test_a_path_is_missed_where_a_point_at_feed_is_not_reached_and_the_first_of_
     np.testing.assert_array_equal(found.missed, [on and not there for on, there in zip(found.path.cutting, alone)])
     assert 0 < found.missed.sum() < (~alone).sum()
     np.testing.assert_array_equal(np.isfinite(found.room), alone)
+    lost = [i for i, on in enumerate(found.path.cutting) if on and not alone[i]]
+    step = [float(np.linalg.norm(found.path.p[i] - found.path.p[i - 1])) for i in lost]
+    assert found.missed_length == pytest.approx(sum(step))
+    assert found.missed_blocks.tolist() == sorted({int(found.path.block[i]) for i in lost})
+    assert found.share == 1.0 - len(lost) / sum(map(bool, found.path.cutting))
     first = rm.inverse_kinematics(setup.robot, np.array(at)[found.missed][:1])
     assert found.reason == first.reason(0) != ""
     near = "G21 G90 S9000 M3\nG0 Y5000 Z5\nG0 Y0\nG1 Z-1 F900\nG1 X-40\nM2\n"

@@ -10,7 +10,7 @@ from robomill.errors import WorkspaceError
 from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import PAPER_BOX, Grid, box_grid
 from robomill.workspace.lines import border_and_middle_lines, line_deviation
-from robomill.workspace.reach import ReachBox, against_paper, largest_box, reach
+from robomill.workspace.reach import ReachBox, against_paper, largest_box, paper_box_in, reach
 from tests.telling import told
 
 
@@ -111,6 +111,25 @@ def test_boxes_hold_what_fits():
     assert not box.holds(np.array([1.2, 0.6, 0.5001]))
     assert not box.holds(np.array([1.2001, 0.6, 0.5]))
     assert against_paper(ReachBox(box.lower, box.upper * [2, 1, 1]))["volume_ratio"] == pytest.approx(2.0)
+
+
+def test_where_the_papers_box_stands_to_another_is_where_all_its_corners_are():
+    low, high = PAPER_BOX
+    inside = list(itertools.product(*zip(low, high, strict=True)))
+    rng = np.random.default_rng(11)
+    met = set()
+    for _ in range(300):
+        lower = low + rng.uniform(-0.5, 0.3, 3) * rng.integers(0, 2)
+        box = ReachBox(lower, lower + rng.choice([0.4, 0.6, 1.2, 1.3], 3) * rng.choice([1.0, 1.5]))
+        found = paper_box_in(box)
+        met.add(found)
+        assert (found == "inside") == all((box.lower <= p).all() and (p <= box.upper).all() for p in inside)
+        a, b, c = box.size + 1e-9
+        assert (found in ("inside", "outside")) == (a >= 1.2 and b >= 0.6 and c >= 0.5)
+        assert found != "turned" or (a >= 0.6 and b >= 1.2 and c >= 0.5)
+        assert found != "larger" or not ((a >= 0.6 and b >= 1.2 and c >= 0.5) or (a >= 1.2 and b >= 0.6 and c >= 0.5))
+    assert paper_box_in(ReachBox(low, high)) == "inside"
+    assert met == {"inside", "outside", "turned", "larger"}
 
 
 def test_a_line_is_a_row_of_poses():

@@ -31,6 +31,7 @@ from robomill.viz.arm import ArmScene, arm_figure
 from robomill.viz.identification import intervals_figure
 
 KEY = "identification.lab"
+TONES = {"good": "ok", "fair": "tight", "poor": "out"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +160,7 @@ def tiles(lab: Laboratory, result: IdentificationResult | None, handed_in: bool)
         least = pieces.Tile("Least certain", label.capitalize(), words.within(half))
     score = lab.score(result) if handed_in and result is not None else None
     covered = int(np.nansum(score.covered)) if score else 0
-    tone = "" if score is None else "ok" if score.points >= 80 else "tight" if score.points >= 50 else "out"
+    tone = "" if score is None else TONES[score.grade]
     return [
         pieces.Tile("Readings left", f"{lab.budget}", f"{_taken(lab)} taken"),
         pieces.Tile(

@@ -10,7 +10,7 @@ import streamlit as st
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.at_pose import at_pose
-from robomill.kinematics.dexterity import near_singular
+from robomill.kinematics.dexterity import singularity_among
 from robomill.learn.worked import at_the_pose
 from robomill.robot.model import Robot
 from robomill.ui import fields, pieces, session, shell
@@ -19,7 +19,7 @@ from robomill.ui.entry import declared, inputs
 from robomill.ui.maps import plane, sides
 from robomill.ui.maps.board import Planes, beneath, board
 from robomill.ui.maps.plane import Region
-from robomill.ui.point import SLACK, in_hand, middle
+from robomill.ui.point import in_hand, middle
 from robomill.ui.project import MapView, Project
 from robomill.ui.work import running
 from robomill.ui.worked import mathematics
@@ -41,9 +41,21 @@ from robomill.viz.planes import PlaneMap, extremes
 from robomill.viz.theme import palette
 from robomill.viz.voxels import voxel_trace, widen, wire_box
 from robomill.workspace.fields import ComplianceMap
-from robomill.workspace.grid import PAPER_BOX, PAPER_BOX_SIZE, Grid
+from robomill.workspace.grid import PAPER_BOX, Grid
 from robomill.workspace.quantities import MapQuantity, map_quantities, map_quantity
-from robomill.workspace.reach import ReachBox, against_paper
+from robomill.workspace.reach import ReachBox, against_paper, paper_box_in
+
+FITS = {
+    "inside": "which lies inside",
+    "outside": "which stands partly outside",
+    "turned": "which fits in turned by 90°",
+    "larger": "which does not fit in",
+}
+SINGULARITY = {
+    "passed": "passes a singularity",
+    "near": "comes close to a singularity",
+    "none": "meets no singularity",
+}
 
 
 def tiles(robot: Robot, view: MapView, box: ReachBox, known: ComplianceMap, unit: str) -> list[pieces.Tile]:
@@ -97,15 +109,7 @@ def _against(box: ReachBox, robot: Robot) -> str:
     if fields.flat(robot) is not None:
         return "in the plane of the arm"
     ratio = against_paper(box)
-    turned = box.holds(PAPER_BOX_SIZE[[1, 0, 2]])
-    there = bool((box.lower <= PAPER_BOX[0] + SLACK).all() and (PAPER_BOX[1] - SLACK <= box.upper).all())
-    if there:
-        words = "which lies inside"
-    elif ratio["holds_paper_box"]:
-        words = "which stands partly outside"
-    else:
-        words = "which fits in turned by 90°" if turned else "which does not fit in"
-    return f"{format_number(ratio['volume_ratio'], 1)} × the volume of the reference box, {words}"
+    return f"{format_number(ratio['volume_ratio'], 1)} × the volume of the reference box, {FITS[paper_box_in(box)]}"
 
 
 def sentence(robot: Robot, known: ComplianceMap | None) -> str:
@@ -121,10 +125,7 @@ def sentence(robot: Robot, known: ComplianceMap | None) -> str:
 
 def _past_singularities(robot: Robot, known: ComplianceMap) -> str:
     """Whether the arm passes a singularity (det(J) has both signs), comes close to one or meets none."""
-    det = known.det_J[known.reached]
-    if (det > 0).any() and (det < 0).any():
-        return "passes a singularity"
-    return "comes close to a singularity" if near_singular(robot, np.abs(det)).any() else "meets no singularity"
+    return SINGULARITY[singularity_among(robot, known.det_J[known.reached])]
 
 
 def _why(known: ComplianceMap) -> str:

@@ -9,17 +9,19 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.kinematics.spin import LEAST_DEVIATION, LEAST_MOTION
 from robomill.kinematics.transforms import rotation_from_turns, transform, turns_from_rotation
+from robomill.provenance import Provenance
 from robomill.quantities import Quantity
 from robomill.robot.model import TOOL_TIP, Robot
+from robomill.robot.tool_frame import TOOL_AXES, tool_axis, with_tool_axis
 from robomill.simulation.given import SPIN
 from robomill.ui import pieces, session
 from robomill.ui.entry import declared, inputs
 from robomill.ui.project import Project
-from robomill.ui.robot import tables
 from robomill.ui.work import cached
 from robomill.units import format_many, format_si
 
 MINUS, GIVEN = "−", "given"
+CHOSEN = Provenance("user", "direction of the tool chosen in the app")
 TURNS = Quantity("Turn", "deg", "array", shape=(3,), axes=tuple("ABC"), digits=3)
 BASE = replace(TOOL_TIP, label="Base")
 
@@ -29,14 +31,14 @@ def frames(project: Project) -> None:
     robot = project.setup.robot
     st.markdown("**Tool tip**, seen from the last axis and along its axes")
     declared.draw(TOOL_TIP, "robot.tip", robot.T_tool[:3, 3], _put("T_tool", "robot.tip", point=True))
-    k = tables.tool_axis(robot)
-    names = {axis: axis.replace("-", MINUS) for axis in tables.TOOL_AXES}
+    k = tool_axis(robot)
+    names = {axis: axis.replace("-", MINUS) for axis in TOOL_AXES}
     inputs.choice(
         "From the tip to the spindle, along the last axis's own",
         "robot.tool_axis",
         names if k in names else {k: "as turned below", **names},
         k,
-        lambda axis: session.change(robot=tables.with_tool_axis(session.project().setup.robot, axis)),
+        lambda axis: session.change(robot=with_tool_axis(session.project().setup.robot, axis, CHOSEN)),
         inputs.LISTED,
     )
     _turns("Tool", robot.T_tool, "robot.tool_turn", _put("T_tool", "robot.tool_turn", point=False))

@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 
 from robomill.errors import RobotError
-from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import COMPLIANCE, is_stiffness, meant, of_joint, shown
@@ -14,7 +13,6 @@ from robomill.ui.entry.box import NumberBox
 from robomill.ui.entry.cells import Cells
 from robomill.units import in_lengths, unit_label
 
-TOOL_AXES = ("-z", "+z", "-y", "+y", "-x", "+x")
 DECLARED = quantities(Robot)
 GEOMETRY = {name: DECLARED[name] for name in ("alpha", "a", "d", "theta_offset", "sign")}
 LIMIT = DECLARED["limits_all"]
@@ -23,31 +21,11 @@ SPOKEN = {"compliance": COMPLIANCE.unit, "stiffness": "kN m/rad"}
 SOFTEST = 1.0  # rad/(N m), m/N: no joint that gives more carries an arm
 
 
-def tool_axis(robot: Robot) -> str:
-    """Along which axis of the last frame z_T lies, one of ``TOOL_AXES``; "" where along none."""
-    k = robot.T_tool[:3, 2]
-    i = int(np.argmax(np.abs(k)))
-    return f"{'+' if k[i] > 0 else '-'}{'xyz'[i]}" if abs(abs(k[i]) - 1.0) < 1e-9 else ""
-
-
 def same_arm(robot: Robot, known: Robot) -> bool:
     """Whether two robots are the same whatever their joints give."""
     return all(
         np.array_equal(getattr(robot, name), getattr(known, name), equal_nan=name == "blocked") for name in FILED
     )
-
-
-def with_tool_axis(robot: Robot, axis: str) -> Robot:
-    """``robot`` with z_T along one of ``TOOL_AXES``, the tip where it was; x_T along the axis after it."""
-    if axis == tool_axis(robot) or axis not in TOOL_AXES:
-        return robot
-    i, R = "xyz".index(axis[1]), np.zeros((3, 3))
-    R[i, 2], R[(i + 1) % 3, 0] = 1.0 if axis[0] == "+" else -1.0, 1.0
-    R[:, 1] = np.cross(R[:, 2], R[:, 0])
-    T_tool = np.array(robot.T_tool)
-    T_tool[:3, :3] = R
-    said = Provenance("user", "direction of the tool chosen in the app")
-    return robot.replace(T_tool=T_tool, provenance={**robot.provenance, "tool": said})
 
 
 def compliance_frame(robot: Robot) -> pd.DataFrame:

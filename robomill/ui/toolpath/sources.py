@@ -5,18 +5,16 @@ from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
 
-import numpy as np
-
 from robomill.arrays import digest
 from robomill.cutting.tool_table import ToolTable
-from robomill.errors import GCodeError, RobomillError, ToolpathError
+from robomill.errors import GCodeError, RobomillError
 from robomill.provenance import UNSTATED, Provenance
 from robomill.simulation.setup import SimulationSetup
-from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
-from robomill.toolpath.sketch import Element, Sketch
+from robomill.toolpath.rewritten import lines_of_path, sketch_of_path
+from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.sketch_presets import preset
-from robomill.toolpath.source import GCodeSource, LinesSource, PathSource, SketchSource
+from robomill.toolpath.source import GCodeSource, PathSource, SketchSource
 from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
 from robomill.ui.toolpath import program_view, question
@@ -26,7 +24,6 @@ from robomill.units import format_count
 KINDS = {"program": "Program", "lines": "Table of lines", "sketch": "Sketch"}
 WHAT = {"program": "program", "points": "points", "sketch": "drawing", "lines": "table"}  # that somebody brought
 POINTS = {"points": "Points"}  # what a file brings and nobody can choose: it can be made one of the others
-MAX_ROWS = 200
 LEFT = "toolpath.left"  # set-ups whose path was turned into another kind, each with what it became, last ones last
 STATED = ("force", "cutter", "tolerance")  # blocks of a set-up that are of one cut
 
@@ -60,7 +57,7 @@ def put_dropped(source: PathSource) -> None:
     more: dict[str, Any] = {"engagement": True} if "force" in carried else {}
     stated = setup.provenance.get("stock")
     given = stated is None or stated.kind == "user"
-    if setup.stock is not None and not given and not _holds(setup.stock, read_with(source, setup.tools)):
+    if setup.stock is not None and not given and not setup.stock.holds(*read_with(source, setup.tools).extents):
         more["stock"] = None
         carried["stock"] = Provenance("computed", f"a block around the feed moves of {source.name}")
     question.forget()
@@ -77,13 +74,6 @@ def read_with(source: PathSource, tools: ToolTable) -> Toolpath:
         with suppress(GCodeError):
             return source.read()
         raise exc
-
-
-def _holds(stock: Stock, path: Toolpath) -> bool:
-    """Whether every cut lies over the stock, and the lowest of them in it."""
-    low, high = path.extents
-    over = (low[:2] >= stock.lower[:2]).all() and (high[:2] <= stock.upper[:2]).all()
-    return bool(over and stock.lower[2] <= low[2] < stock.upper[2])
 
 
 def _convert(kind: str) -> None:
@@ -143,34 +133,6 @@ def _turn(kind: str, setup: SimulationSetup) -> None:
             traced = None
         # A stated block rarely fits what will be drawn: the stock becomes the bounds of the path.
         put(SketchSource(traced or preset("slot", Sketch(), setup.cutter.diameter)), "sketched by hand", stock=None)
-
-
-def lines_of_path(path: Toolpath) -> LinesSource:
-    """Every feed move as a row. Raises ToolpathError where a table would be too long."""
-    i = np.flatnonzero(path.cutting & (path.step_length > 0))
-    if len(i) > MAX_ROWS:
-        raise ToolpathError(
-            f"The path has {format_count(len(i))} cuts; a table holds at most {MAX_ROWS}. It stays as it is."
-        )
-    n_s = float(path.n_s[i].max()) if len(i) else 0.0
-    return LinesSource(path.p[i - 1], path.p[i], path.v_f[i], n_s)
-
-
-def sketch_of_path(path: Toolpath) -> Sketch | None:
-    """The level cuts below z = 0 as lines and polylines; None where there are none, or too many to draw."""
-    level = path.cutting & (path.step_length > 0) & (np.abs(np.diff(path.p[:, 2], prepend=path.p[0, 2])) < 1e-9)
-    level &= path.p[:, 2] < -1e-6
-    i = np.flatnonzero(level)
-    if len(i) == 0 or len(i) > MAX_ROWS:
-        return None
-    same = np.append(False, (np.diff(i) == 1) & (path.v_f[i[1:]] == path.v_f[i[:-1]]))
-    elements = []
-    for run in np.split(i, np.flatnonzero(~same)[1:]):
-        points = path.p[np.append(run[0] - 1, run), :2]
-        shape: Any = "line" if len(points) == 2 else "polyline"
-        elements.append(Element(shape, points, float(-path.p[run[0], 2]), float(path.v_f[run[0]])))
-    first = elements[0]
-    return Sketch(tuple(elements), n_s=float(path.n_s[i].max()), v_f=first.v_f, depth=first.depth)
 
 
 def sketch_source() -> SketchSource:

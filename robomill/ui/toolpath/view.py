@@ -17,7 +17,6 @@ from robomill.ui.toolpath.reach import path_reach
 from robomill.ui.toolpath.summary import (
     duration,
     finding_words,
-    missed_blocks,
     move_words,
     path_summary,
     size_words,
@@ -48,7 +47,7 @@ def headline(
     lead = f"{format_count(summary.blocks, NOUNS[source.kind])}, {size_words(summary.high - summary.low, unit)}."
     if source.kind == "program":
         lead = f"{written_in(source, path)} · {lead}"
-    if reach is not None and result is not None and not missed_blocks(reach)[0]:
+    if reach is not None and result is not None and not reach.missed.any():
         lead = f"{lead} {said(result, result.verdict, unit)[1]}".rstrip()
     pieces.headline(f"Toolpath · {source.name}", verdict(reach, result, unit), lead)
 
@@ -57,9 +56,8 @@ def verdict(reach: PathReach | None, result: SimulationResult | None, unit: str)
     """The page's one sentence."""
     if reach is None:
         return "The path was read; the arm was not asked."
-    missed, length, _ = missed_blocks(reach)
-    if missed:
-        return f"{format_si(length, unit, 1)} of the cut cannot be reached."
+    if reach.missed.any():
+        return f"{format_si(reach.missed_length, unit, 1)} of the cut cannot be reached."
     if result is None:
         return "The arm reaches all of the path."
     words = said(result, result.verdict, unit)[0] or "the cut is not judged."
@@ -78,15 +76,11 @@ def tiles(
     if reach is None:
         found.append(pieces.Tile("Reach", "not computed"))
     else:
-        missed, _, lost = missed_blocks(reach)
-        blocks = lost.tolist()
-        share = 1.0 - missed / max(path_summary(reach.path).cuts, 1)
+        blocks = reach.missed_blocks.tolist()
         named = ", ".join(str(b) for b in blocks[:3]) + (" …" if len(blocks) > 3 else "")
         words = f"out of reach at {source.block_name} {named}" if blocks else "of the cut, within the joint limits"
-        # Rounded down: what is not all of it must not read 100 %.
-        found.append(
-            pieces.Tile("Reach", format_value(np.floor(share * 100), "%", 0), words, tone="out" if blocks else "ok")
-        )
+        reached = format_value(np.floor(reach.share * 100), "%", 0)  # what is not all of it must not read 100 %
+        found.append(pieces.Tile("Reach", reached, words, tone="out" if blocks else "ok"))
     found.append(
         pieces.Tile(
             "Length of the cut",

@@ -8,11 +8,9 @@ import pytest
 from robomill.provenance import Finding
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.toolpath.summary import (
-    distinct,
     duration,
     finding_words,
     move_words,
-    path_summary,
     size_words,
     worst_first,
     written_in,
@@ -81,32 +79,6 @@ def test_a_finding_fits_its_tile_and_the_worst_is_first() -> None:
     said = finding_words(long)
     assert said == "the part is 4.0 x 2.0 mm across; if the program means inches …"
     assert len(said) <= 66
-
-
-def test_the_summary_is_what_plain_counting_says() -> None:
-    path = GCodeSource(
-        "G21 G90\nS1000 M3\nG0 Z5\nG1 Z-1 F600\nG1 X3 Y1\nX9 Y4\nX2 Y7\nG0 Z5\nX0\nG1 Z-1 F600\nY-3\nG0 Z5\nM2\n"
-    ).read()
-    summary = path_summary(path)
-    assert summary.moves == len(path) - 1
-    assert summary.cuts == sum(bool(c) for c in path.cutting)
-    assert summary.blocks == len({int(b) for b, c in zip(path.block, path.cutting, strict=True) if c})
-    assert summary.rapids == pytest.approx(
-        sum(float(s) for s, c in zip(path.step_length, path.cutting, strict=True) if not c)
-    )
-    assert summary.feeds == pytest.approx((0.01, 0.01))
-    assert summary.spindles == pytest.approx((1000 / 60, 1000 / 60))
-
-
-def test_distinct_values_by_counting_are_those_by_sorting() -> None:
-    rng = np.random.default_rng(0)
-    for values in (
-        rng.integers(0, 50, 1000),
-        rng.integers(-5, 5, 99),
-        np.array([7, 10**12]),
-        np.empty(0, dtype=np.int64),
-    ):
-        np.testing.assert_array_equal(distinct(values), np.unique(values))
 
 
 @pytest.mark.parametrize("seconds", [1e9, 1e303, float("inf")])

@@ -1,0 +1,45 @@
+"""A path in a few numbers, against plain counting and a fine walk along it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.toolpath.sampling import resample
+from robomill.toolpath.source import GCodeSource
+from robomill.toolpath.summary import distinct, middle_of_cut, summary_of
+
+
+def test_the_summary_is_what_plain_counting_says() -> None:
+    path = GCodeSource(
+        "G21 G90\nS1000 M3\nG0 Z5\nG1 Z-1 F600\nG1 X3 Y1\nX9 Y4\nX2 Y7\nG0 Z5\nX0\nG1 Z-1 F600\nY-3\nG0 Z5\nM2\n"
+    ).read()
+    summary = summary_of(path)
+    assert summary.moves == len(path) - 1
+    assert summary.cuts == sum(bool(c) for c in path.cutting)
+    assert summary.blocks == len({int(b) for b, c in zip(path.block, path.cutting, strict=True) if c})
+    assert summary.rapids == pytest.approx(
+        sum(float(s) for s, c in zip(path.step_length, path.cutting, strict=True) if not c)
+    )
+    assert summary.feeds == pytest.approx((0.01, 0.01))
+    assert summary.spindles == pytest.approx((1000 / 60, 1000 / 60))
+
+
+def test_distinct_values_by_counting_are_those_by_sorting() -> None:
+    rng = np.random.default_rng(0)
+    for values in (
+        rng.integers(0, 50, 1000),
+        rng.integers(-5, 5, 99),
+        np.array([7, 10**12]),
+        np.empty(0, dtype=np.int64),
+    ):
+        np.testing.assert_array_equal(distinct(values), np.unique(values))
+
+
+def test_the_middle_of_a_cut_is_the_mean_of_many_points_along_it() -> None:
+    """Rapids do not count, however far they go; a long line counts more than a short one."""
+    path = GCodeSource("G21 G90\nG0 X0 Y0 Z5\nG1 Z-1 F600\nX30 Y10\nX31\nG0 Z50\nX400\nZ5\nG1 Z-2\nY80\nM2\n").read()
+    fine = resample(path, 1e-5)
+    ends = np.flatnonzero(fine.cutting)
+    np.testing.assert_allclose(middle_of_cut(path), (0.5 * (fine.p[ends] + fine.p[ends - 1])).mean(axis=0), atol=1e-4)
+    assert middle_of_cut(GCodeSource("G21 G90\nG0 X0 Y0 Z5\nX4\nM2\n").read()) is None
