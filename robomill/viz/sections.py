@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.surface.sections.measures import MEASURED
 from robomill.surface.sections.section_law import Kind
 from robomill.units import format_value
 from robomill.viz.chart import Chart
@@ -62,9 +63,13 @@ class SectionDrawing:
         top = self.floor + self.depth
         return top if np.isfinite(top) else float(np.max(self.machined))
 
-    def number(self, name: str, sign: bool = False) -> str:
+    def number(self, name: str) -> str:
         """One of its lengths."""
-        return format_value(getattr(self, name), self.unit, 3, sign=sign, with_unit=False)
+        return format_value(getattr(self, name), self.unit, 3, sign=MEASURED[name].signed, with_unit=False)
+
+    def told(self, name: str) -> str:
+        """The same behind its name: "floor −0.102"."""
+        return f"{MEASURED[name].short} {self.number(name)}"
 
     def has(self, *names: str) -> bool:
         """Whether all of these are measured."""
@@ -130,7 +135,7 @@ def _dimensions(fig: Chart, d: SectionDrawing, dark: bool) -> None:
         _depth(fig, d, dark)
         _floor(fig, d, dark)
     if d.kind == "free" and d.has("error_mean", "error_max", "slope"):
-        words = f"surface {d.number('error_mean', sign=True)}, at most {d.number('error_max', sign=True)}"
+        words = f"{d.told('error_mean')}, at most {d.number('error_max')}"
         _head(fig, [words, f"sloping by {format_value(d.slope, 'deg', 1)}"], dark)
     if d.kind == "nothing":
         _axis_line(fig, d, 0.0, palette(dark).accent)
@@ -147,7 +152,7 @@ def _width(fig: Chart, d: SectionDrawing, dark: bool) -> None:
         fig.annotate(x=wall, y=d.top, ax=18 * way, yshift=up, arrowcolor=p.text, **HEAD)
     line = {"color": p.text, "width": 1.1}
     fig.shape(type="line", x0=d.wall_left, x1=d.wall_right, y0=up, y1=up, ysizemode="pixel", yanchor=d.top, line=line)
-    _text(fig, 0.5 * (d.wall_left + d.wall_right), d.top, f"width {d.number('width')}", dark, yshift=up)
+    _text(fig, 0.5 * (d.wall_left + d.wall_right), d.top, d.told("width"), dark, yshift=up)
 
 
 def _depth(fig: Chart, d: SectionDrawing, dark: bool) -> None:
@@ -164,7 +169,7 @@ def _depth(fig: Chart, d: SectionDrawing, dark: bool) -> None:
     for y in (d.floor, d.top):
         fig.shape(x0=3 * way, x1=26 * way, y0=y, y1=y, **{**at, "line": {**line, "color": p.muted}})
     anchor = "left" if way > 0 else "right"
-    _text(fig, wall, d.top, f"depth {d.number('depth')}", dark, yshift=ROW - 8, xshift=4 * way, xanchor=anchor)
+    _text(fig, wall, d.top, d.told("depth"), dark, yshift=ROW - 8, xshift=4 * way, xanchor=anchor)
 
 
 def _floor(fig: Chart, d: SectionDrawing, dark: bool) -> None:
@@ -172,7 +177,7 @@ def _floor(fig: Chart, d: SectionDrawing, dark: bool) -> None:
     if not d.has("floor"):
         _text(fig, 0.0, float(np.min(d.machined)), "cut through: no floor", dark, yshift=-ROW + 4)
         return
-    words = [f"floor {d.number('floor_error', sign=True)}"] if d.has("floor_error") else []
+    words = [d.told("floor_error")] if d.has("floor_error") else []
     if d.kind != "groove" and d.has("flatness"):
         words.append(f"flat within {d.number('flatness')}")
     for row, each in enumerate(words):
@@ -187,11 +192,14 @@ def _centre(fig: Chart, d: SectionDrawing, dark: bool) -> None:
     p, middle = palette(dark), _middle(d)
     for at, colour in ((middle - d.centre_offset, p.accent), (middle, p.text)):
         _axis_line(fig, d, at, colour)
-    _text(fig, middle, d.floor if d.has("floor") else float(np.min(d.machined)), _off(d), dark, yshift=-2 * ROW + 2)
-
-
-def _off(d: SectionDrawing) -> str:
-    return f"centre {d.number('centre_offset', sign=True)}"
+    _text(
+        fig,
+        middle,
+        d.floor if d.has("floor") else float(np.min(d.machined)),
+        d.told("centre_offset"),
+        dark,
+        yshift=-2 * ROW + 2,
+    )
 
 
 def _near_wall(fig: Chart, d: SectionDrawing, dark: bool) -> None:
@@ -202,8 +210,7 @@ def _near_wall(fig: Chart, d: SectionDrawing, dark: bool) -> None:
     wall, ideal = getattr(d, f"wall_{d.near}"), getattr(d, f"wall_{d.near}_ideal")
     for at, colour in ((ideal, p.accent), (wall, p.text)):
         _upright(fig, at, (d.top, d.top), (4, up - 4), colour)
-    words = f"{d.near} wall {d.number(f'wall_{d.near}_error', sign=True)}"
-    _text(fig, wall, d.top, words, dark, yshift=up, xanchor=_anchor(d, wall))
+    _text(fig, wall, d.top, d.told(f"wall_{d.near}_error"), dark, yshift=up, xanchor=_anchor(d, wall))
 
 
 def _middle(d: SectionDrawing) -> float:

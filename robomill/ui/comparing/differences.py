@@ -11,6 +11,7 @@ from robomill.errors import RobomillError
 from robomill.io.setups.projects import setup_to_toml
 from robomill.io.tables import parse_toml
 from robomill.quantities import Quantity, quantities
+from robomill.simulation.judging.verdict_words import FLOOR, WALL
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui.verdict import WORDS
 from robomill.ui.work import cached
@@ -25,7 +26,7 @@ def outcomes(setups: Sequence[SimulationSetup], unit: str) -> list[list[str]]:
     return [list(row) for row in zip(OUTCOMES, *(_outcome(setup, unit) for setup in setups), strict=True)]
 
 
-OUTCOMES = ("Robot", "Force", "Wall error", "Floor error", "Verdict")
+OUTCOMES = ("Robot", "Force", WALL.label, FLOOR.label, "Verdict")
 
 
 def _outcome(setup: SimulationSetup, unit: str) -> tuple[str, ...]:
