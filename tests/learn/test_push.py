@@ -56,3 +56,12 @@ def test_the_answer_follows_the_largest_part_aside(along: int, aside: int, sign:
 def test_an_arm_that_bends_in_no_direction_is_asked_all_the_same() -> None:
     push = AsidePush.of(np.zeros((3, 3)))
     assert push.went(np.zeros(3)) in push.answers
+
+
+def test_where_the_tip_goes_is_told_along_the_push_first() -> None:
+    push = AsidePush.of(PAPER)
+    delta = np.array([4e-6, 0.2295e-3, -0.1024e-3])
+    assert push.told(delta, "mm") == "0.229 mm along Y and 0.102 mm down", "2 % aside are nowhere"
+    assert push.told(delta, "in", "<b>{}</b>") == "<b>0.0090 in</b> along Y and <b>0.0040 in</b> down"
+    assert push.told(np.array([-1e-3, 0.0, 0.0]), "mm") == "1.000 mm towards −X"
+    assert push.told(np.zeros(3), "mm") == "nowhere"

@@ -10,7 +10,7 @@ import pytest
 import robomill as rm
 from robomill.compliance.at_pose import at_pose
 from robomill.ui.project import View, preset_setup
-from robomill.ui.push import Moved, Push, decided, in_force
+from robomill.ui.push import Moved, Push, by_axis, decided, in_force
 
 ROBOT = rm.load_robot("slavkovic_5r")
 
@@ -67,6 +67,14 @@ def test_what_pushes_is_chosen(flute: rm.SimulationResult) -> None:
     np.testing.assert_array_equal(in_force(View(), cut).F, cut.moved.push.F)
     np.testing.assert_array_equal(in_force(dataclasses.replace(View(), push="z"), cut).F, [0.0, 0.0, 100.0])
     assert in_force(View(), None).words == "100 N along Y"
+
+
+def test_a_displacement_is_told_by_its_axes() -> None:
+    """What is less than a fiftieth of it along an axis is left out, unless every axis is asked for."""
+    delta = np.array([-4e-6, 0.2295e-3, -0.1024e-3])
+    assert by_axis(delta, "in") == [("Y", "+0.0090"), ("Z", "−0.0040")]
+    assert [axis for axis, _ in by_axis(delta, "mm", every=True)] == ["X", "Y", "Z"]
+    assert by_axis(np.zeros(3), "mm") == []
 
 
 def test_a_rigid_arm_is_not_moved() -> None:
