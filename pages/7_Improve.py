@@ -32,12 +32,12 @@ with st.container(border=True):
     inputs.choice("Judged by", remedies.BY, remedies.JUDGED, by, partial(session.keep, remedies.BY))
     if waits is not None:
         waits.show()
-there = {each.remedy.name: each.remedy.title for each in found if each.left is not None}
+there = {each.remedy.code: each.remedy.title for each in found if each.shown is not None}
 if there:
     chosen = inputs.pick("Remedy", "improve.remedy", there)
-    opened.opened(next(each for each in found if each.remedy.name == chosen), result, unit)
+    opened.opened(next(each for each in found if each.remedy.code == chosen), result, unit)
 if waits is None:
     with st.container(border=True):
-        sure.panel(result, remedies.error_words(result, unit), unit)
+        sure.panel(result, remedies.as_it_is(result, unit).error, unit)
     with st.container(border=True):
         studied.panel(setup, unit)

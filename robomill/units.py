@@ -17,6 +17,7 @@ Number = TypeVar("Number", float, NDArray[np.float64])
 
 NOT_REACHED = "not reached"
 MINUS = "−"
+LONGEST_S = 1e8  # what takes longer is no time that a machine has
 GAP = "\u202f"  # between thousands: a comma there is a decimal mark to many
 
 
@@ -235,6 +236,20 @@ def format_bytes(count: int) -> str:
         if count >= size:
             return f"{count / size:.1f} {label}"
     return format_count(count, "byte")
+
+
+def format_duration(seconds: SupportsFloat, digits: int = 1, sign: bool = False) -> str:
+    """A time as people say it: ``12.0 s``, ``4.2 min``, ``3 h 20 min``; the first two with so many digits."""
+    size = abs(float(seconds))
+    if size < 120.0 or math.isnan(size):
+        return format_si(seconds, "s", digits, sign)
+    if not size < LONGEST_S:
+        return "more than three years"
+    minutes = from_si(float(seconds), "min")
+    if size < 7200.0:
+        return format_value(minutes, "min", digits if size < 600.0 else 0, sign)
+    hours, rest = divmod(round(abs(minutes)), 60)
+    return f"{format_number(math.copysign(hours, minutes), 0, sign)} h {rest:02d} min"
 
 
 def format_times(times: SupportsFloat, digits: int = 2) -> str:

@@ -31,24 +31,29 @@ def run_report(arguments: Any) -> int:
 
 def _remedies(result: Any) -> list[Any]:
     """All that may mend a cut, and of what does not apply why."""
+    from functools import cache
+
     from robomill.improve.advice import advise
-    from robomill.improve.design import design
     from robomill.improve.placement import place
+    from robomill.improve.remedies import REMEDIES, moved_and_corrected, stiffened
     from robomill.improve.turning import turn
     from robomill.io.compensated import compensate
     from robomill.report.remedies_told import refused, told
+    from robomill.simulation.run import simulate
 
-    tried: dict[str, Callable[[Any], Any]] = {
-        "Other ways to cut": advise,
-        "Corrected program": compensate,
-        "Another place of the part": place,
-        "Spindle turned about its axis": turn,
-        "Stiffer joints": design,
+    placed = cache(place)
+    finds: dict[str, Callable[[Any], Any]] = {
+        "program": compensate,
+        "stiffen": lambda setup: stiffened(setup, simulate),
+        "place": placed,
+        "both": lambda setup: moved_and_corrected(placed(setup), compensate),
+        "turn": turn,
+        "cut": advise,
     }
     rows = []
-    for title, find in tried.items():
+    for remedy in REMEDIES:
         try:
-            rows += told(find(result.setup))
+            rows += told(finds[remedy.code](result.setup))
         except RobomillError as exc:
-            rows.append(refused(title, exc))
+            rows.append(refused(remedy, exc))
     return rows

@@ -86,10 +86,15 @@ class Advice(Tabled):
     @property
     def best(self) -> Way:
         """The quickest of those that keep the tolerance; the truest where none does."""
-        known = [way for way in self.ways if way.run is not None]
-        kept = [way for way in known if way.keeps]
+        kept = [way for way in self.ways if way.keeps]
         if kept:
             return min(kept, key=lambda way: way.seconds)
+        return self.truest
+
+    @property
+    def truest(self) -> Way:
+        """The way that uses least of the tolerance."""
+        known = [way for way in self.ways if way.run is not None]
         return min(known, key=lambda way: way.share if np.isfinite(way.share) else np.inf)
 
     def columns(self) -> Columns:

@@ -39,11 +39,16 @@ def checked_weight(weight: ArrayLike, n: int) -> FloatArray:
     return np.broadcast_to(weights, (n,))
 
 
-def words_of_joints(numbers: tuple[int, ...], ratios: FloatArray) -> tuple[str, int] | None:
-    """Which joints are how many times as stiff, and how many they are; None where none is."""
-    named = [
+def joints_named(numbers: tuple[int, ...], ratios: FloatArray) -> list[str]:
+    """The joints that do not stay as they are, each with how many times as stiff it is: ``joint 3 1.25 times``."""
+    return [
         f"joint {number} {format_short(ratio, '1', 3)} times"
         for number, ratio in zip(numbers, ratios, strict=True)
         if abs(ratio - 1.0) > SETTLED
     ]
+
+
+def words_of_joints(numbers: tuple[int, ...], ratios: FloatArray) -> tuple[str, int] | None:
+    """Which joints are how many times as stiff, and how many they are; None where none is."""
+    named = joints_named(numbers, ratios)
     return (" and ".join(", ".join(named).rsplit(", ", 1)), len(named)) if named else None

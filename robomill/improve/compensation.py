@@ -14,10 +14,11 @@ from robomill.frames import Columns
 from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.correction import COMPONENTS, Correction, correct
-from robomill.improve.errors import Errors, errors_of, measured
+from robomill.improve.errors import Errors, errors_of, graver, level_of, measured
 from robomill.improve.finer import closer
 from robomill.improve.judged import refuse_corrected
 from robomill.improve.springs import Springs, springs
+from robomill.improve.trusted import check_found, check_reached, check_trusted
 from robomill.improve.written import WriteGCode, Written, writing
 from robomill.lazy import cached_property
 from robomill.progress import step
@@ -25,21 +26,19 @@ from robomill.provenance import Finding, named
 from robomill.simulation.band import deviation_band
 from robomill.simulation.judging.gauge import Gauge
 from robomill.simulation.judging.verdict import judge
+from robomill.simulation.judging.verdict_words import LEVELS, Level, level_of_share
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, ran
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource, PathSource
-from robomill.units import format_count, format_percent, format_si, from_si, to_si
+from robomill.units import format_count, format_percent, format_si, from_si
 from robomill.values import Tabled
 
 BOUND = 2e-6  # m
 FITTED = 0.9  # of the bound: the rest is for the digits that are written
 FINEST, COARSEST = 0.2e-6, 1e-3  # m: bounds that can be asked for
 WRONG = 1.2  # how much softer or stronger than is known
-FARTHEST = 2e-3  # m: an arm that is pushed further off is not predicted by its springs at rest
-MOST_HELD = 0.05  # of the length cut: so much may have no force that agrees with its place
-TURNED = to_si(5.0, "deg")  # a joint that stands further off than this stands otherwise
 STILL = 1e-7  # rad: a joint that turns no further rests
 
 
@@ -104,6 +103,22 @@ class Compensation(Tabled):
     def name(self) -> str:
         """A name for the program's file."""
         return self.source.name
+
+    @property
+    def doubted(self) -> Errors:
+        """What it is graded by: what it leaves if stiffness or force is 20 % off, whichever uses more of the tolerance.
+        What is left inside the model is next to nothing, and nobody should believe in that."""
+        return graver(self.softer, self.stronger, self.setup)
+
+    @property
+    def share(self) -> float:
+        """Of the tolerance that is used then."""
+        return self.doubted.share(self.setup)
+
+    @cached_property
+    def level(self) -> Level:
+        """The verdict's level then; no better than that of what is predicted."""
+        return max(level_of(self.led), level_of_share(self.share), key=LEVELS.index)
 
     @cached_property
     def source(self) -> GCodeSource:
@@ -254,76 +269,6 @@ def checked_components(components: Iterable[str]) -> tuple[str, ...]:
     return tuple(each for each in COMPONENTS if each in given)
 
 
-def check_trusted(run: SimulationResult, gauge: Gauge) -> None:
-    """Raises CompensationError where the prediction itself is not to be trusted, by what was measured on it."""
-    errors = [finding for finding in run.setup.toolpath.findings if finding.level == "error"]
-    if errors:
-        raise CompensationError(f"The path is not corrected: {errors[0].sentence}")
-    verdict = judge(run, gauge)
-    if verdict.level in ("unjudged", "unreached", "missed"):
-        raise CompensationError(
-            f"The path is not corrected, since its prediction is not to be trusted. {verdict.sentence}"
-        )
-    if run.coupling is not None and not run.coupling.converged:
-        at = f"{run.path.block_name} {named(run.coupling.lines)}"
-        raise CompensationError(
-            f"The path is not corrected: at {at} {run.coupling.why}; cut less at once, or with a stiffer arm."
-        )
-
-
-def check_found(found: Correction, wanted: SimulationResult) -> None:
-    """Raises CompensationError where path and force do not agree anywhere near the wanted path."""
-    path = wanted.path
-    size = np.linalg.norm(found.c, axis=1)
-    cut = path.cutting & wanted.conditions.engaged
-    length = float(path.step_length[cut].sum())
-    held = float(path.step_length[found.held & cut].sum())
-    if found.settled and size.max() > FARTHEST:
-        i = int(np.argmax(size))
-        raise CompensationError(
-            f"The path is not corrected: at {path.block_name} {path.block[i]} the tool would be sent "
-            f"{format_si(size[i], 'mm')} beside its path, and at most {format_si(FARTHEST, 'mm', 0)} can be trusted; "
-            "cut less at once, or with a stiffer arm."
-        )
-    if found.settled and held <= MOST_HELD * length:
-        return
-    at = path.block[found.held & cut] if found.settled else path.block[[int(np.argmax(size))]]
-    left = (
-        ""
-        if found.settled
-        else f": after {found.iterations} runs it still changes by {format_si(found.change[-1], 'mm')}"
-    )
-    raise CompensationError(
-        f"The path is not corrected: the correction does not settle ({path.block_name} {named(at.tolist())}){left}. "
-        "The force changes faster with the tool's place than the arm gives way; cut less at once, or couple the force."
-    )
-
-
-def check_reached(run: SimulationResult, wanted: SimulationResult) -> None:
-    """Raises CompensationError where the arm does not follow the corrected path as it follows the wanted one."""
-    path, place = wanted.path, wanted.path.block_name
-    lost = wanted.reached & ~run.reached
-    if lost.any():
-        i = int(np.flatnonzero(lost)[0])
-        raise CompensationError(
-            f"The path is not corrected: at {place} {named(path.block[lost].tolist())} the corrected path is out of "
-            f"reach ({run.ik.reason(i)}); move the part."
-        )
-    if not (np.isfinite(run.delta).all(axis=1) | ~path.cutting).all():
-        lost = path.cutting & ~np.isfinite(run.delta).all(axis=1)
-        raise CompensationError(
-            f"The path is not corrected: at {place} {named(path.block[lost].tolist())} no force is known on the "
-            "corrected path."
-        )
-    turned = np.abs(run.theta - wanted.theta)[:, ~np.array(wanted.setup.robot.chain.prismatic)[-run.theta.shape[1] :]]
-    over = wanted.reached & (turned.max(axis=1, initial=0.0) > TURNED)
-    if over.any():
-        raise CompensationError(
-            f"The path is not corrected: at {place} {named(path.block[over].tolist())} the arm would stand otherwise "
-            "than on the path as it is, close to a singular configuration or a joint's limit; move the part."
-        )
-
-
 def reversals(run: SimulationResult) -> int:
     """How often a joint turns back while the tool cuts."""
     turn = np.diff(run.theta, axis=0)[run.path.cutting[1:]]
@@ -365,7 +310,7 @@ def _met(after: Errors, softer: Errors, stronger: Errors, led: SimulationResult)
     if after.share(setup) > 1.0:
         text = f"the tolerance is not kept by the corrected program either. {judge(led, measured(led)).sentence}"
         return (Finding("warning", text, code="not-met"),)
-    wrong = max(softer, stronger, key=lambda errors: errors.share(setup))
+    wrong = graver(softer, stronger, setup)
     if wrong.share(setup) <= 1.0:
         return ()
     text = (

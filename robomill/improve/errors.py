@@ -42,6 +42,11 @@ class Errors(Value):
         return self._larger(0)
 
     @property
+    def largest(self) -> tuple[str, float]:
+        """The name of what is largest, and m."""
+        return largest(self.wall[0], self.floor[0], self.vector[0])
+
+    @property
     def rms(self) -> float:
         """m: the same of the root mean squares over the length."""
         return self._larger(1)
@@ -58,6 +63,18 @@ class Errors(Value):
 
     def _said(self) -> str:
         return f"{format_si(self.max, 'mm', 4)} at most, {format_si(self.rms, 'mm', 4)} root mean square"
+
+
+def largest(wall: float, floor: float, tip: float) -> tuple[str, float]:
+    """The larger of a wall's and a floor's error, by name and size, m; that of the tip where there is neither."""
+    sizes = [(abs(value), name) for name, value in (("wall", wall), ("floor", floor)) if np.isfinite(value)]
+    size, name = max(sizes, default=(tip, "tip"))
+    return name, size
+
+
+def graver(one: Errors, other: Errors, setup: SimulationSetup) -> Errors:
+    """The errors that use more of the tolerance."""
+    return max(one, other, key=lambda errors: errors.share(setup))
 
 
 def measured(run: SimulationResult) -> Gauge:

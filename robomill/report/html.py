@@ -16,7 +16,7 @@ from robomill.errors import ProjectError
 from robomill.files import check_folder_there, check_no_folder, shown_place, write_whole
 from robomill.report import sections_told
 from robomill.report.pictures import joints_picture, path_picture, section_picture
-from robomill.report.remedies_told import Remedy, Told, told
+from robomill.report.remedies_told import Made, Told, told
 from robomill.report.simulation_record import simulation_record
 from robomill.report.tags import Html, escaped, joined, tag
 from robomill.simulation.result import SimulationResult
@@ -41,7 +41,7 @@ KEY_OF_PATH = (
 
 
 @asked
-def report_html(run: SimulationSetup | SimulationResult, remedies: Sequence[Remedy] = ()) -> str:
+def report_html(run: SimulationSetup | SimulationResult, remedies: Sequence[Made] = ()) -> str:
     """A report of a run as the text of one HTML page, to hand over, print or keep.
 
     Parameters
@@ -73,7 +73,7 @@ def report_html(run: SimulationSetup | SimulationResult, remedies: Sequence[Reme
 
 
 @asked
-def write_report(path: str | Path, run: SimulationSetup | SimulationResult, remedies: Sequence[Remedy] = ()) -> Path:
+def write_report(path: str | Path, run: SimulationSetup | SimulationResult, remedies: Sequence[Made] = ()) -> Path:
     """A report of a run as an HTML file; see ``report_html``.
 
     Parameters

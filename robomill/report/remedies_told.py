@@ -1,25 +1,22 @@
 """What remedies were tried for a cut and what each leaves, as rows that a report shows."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from robomill.errors import RobomillError
 from robomill.improve.advice import Advice
 from robomill.improve.compensation import Compensation
 from robomill.improve.design import Design
-from robomill.improve.placed import Placement
+from robomill.improve.placed import Place, Placement
+from robomill.improve.remedies import Both, Remedy, Stiffened, remedy_of
 from robomill.improve.turning import Turning
 from robomill.provenance import Finding
-from robomill.report.advice_record import advice_record
-from robomill.report.compensation_record import compensation_record
-from robomill.report.design_record import design_record
-from robomill.report.placement_record import placement_record
-from robomill.report.turning_record import turning_record
 from robomill.simulation.judging.verdict_words import TITLES
-from robomill.units import format_value
+from robomill.units import format_count, format_duration, format_many, format_number, format_si
 
-Remedy = Advice | Compensation | Design | Placement | Turning
+Made = Advice | Both | Compensation | Design | Placement | Stiffened | Turning
+NOTED = 1.005  # times as stiff: what is less is not told with two decimals
 
 
 @dataclass(frozen=True)
@@ -32,79 +29,82 @@ class Told:
     verdict: str = ""
 
 
-def refused(title: str, why: RobomillError) -> Told:
+def refused(remedy: Remedy, why: RobomillError) -> Told:
     """A remedy that does not apply."""
-    return Told(title, "does not apply", str(why))
+    return Told(remedy.title, "does not apply", str(why))
 
 
-def _advice(found: Advice) -> list[Told]:
+def _cut(found: Advice, title: str) -> list[Told]:
     rows = []
-    for way in advice_record(found)["ways"][1:]:  # the first is the cut as it is
-        if way["refused"]:
-            rows.append(Told(way["title"], "does not apply", way["refused"]))
+    for way in found.ways[1:]:  # the first is the cut as it is
+        if way.run is None:
+            rows.append(Told(way.title, "does not apply", way.refused))
         else:
-            time = f"{format_value(way['minutes'], 'min')} at feed"
-            rows.append(Told(way["title"], time, way["verdict_sentence"], TITLES[way["verdict"]]))
+            verdict = way.run.verdict
+            rows.append(
+                Told(way.title, f"{format_duration(way.seconds)} at feed", verdict.sentence, TITLES[verdict.level])
+            )
     return rows
 
 
-def _design(found: Design) -> list[Told]:
-    record = design_record(found)
-    stiffer = [
-        f"joint {number} × {ratio:.2f}"
-        for number, ratio in zip(record["joints"], record["stiffness_ratio"], strict=True)
-        if ratio > 1.005
-    ]
+def _stiffened(found: Stiffened, title: str) -> list[Told]:
+    made, verdict = found.design, found.run.verdict
+    ratios = zip(made.setup.robot.joint_numbers, made.stiffness_ratio, strict=True)
+    stiffer = [f"joint {number} × {format_number(ratio, 2)}" for number, ratio in ratios if ratio > NOTED]
     what = ", ".join(stiffer) or "no joint need be stiffer"
-    leaves = record["verdict_sentence"] if record["feasible"] else record["sentence"]
-    return [Told("Stiffer joints", what, leaves, TITLES[record["verdict"]])]
+    what += ", which halves what is used of the tolerance" if found.half and made.feasible else ""
+    return [Told(title, what, verdict.sentence if made.feasible else made.sentence, TITLES[verdict.level])]
 
 
-def _placement(found: Placement) -> list[Told]:
-    best = placement_record(found)["best"]
-    zero = ", ".join(format_value(each, "mm", 1, with_unit=False) for each in best["zero_mm"])
-    what = f"part zero at ({zero}) mm, yaw {format_value(best['yaw_deg'], 'deg', 1)}"
-    return [Told("Another place of the part", what, best["reason"] or best["verdict_sentence"], _title(best))]
+def _zero(place: Place) -> str:
+    return (
+        f"part zero at ({format_many(place.zero, 'mm', 1, with_unit=False)}) mm, yaw {format_si(place.yaw, 'deg', 1)}"
+    )
 
 
-def _turning(found: Turning) -> list[Told]:
-    record = turning_record(found)
-    spin = f"at {format_value(record['spin_deg'], 'deg', 0)} on the whole path"
-    rows = (("constant", spin), ("course", "turning along the path"))
-    return [
-        Told("Spindle turned about its axis", what, each["reason"] or each["verdict_sentence"], _title(each))
-        for each, what in ((record[name], what) for name, what in rows)
-    ]
+def _placed(found: Placement, title: str) -> list[Told]:
+    return [_at(found.best, title, _zero(found.best))]
 
 
-def _compensation(found: Compensation) -> list[Told]:
-    record = compensation_record(found)
-    left = format_value(record["after_mm"]["max"], "mm", 4)
-    wrong = max(record[f"after_if_{name}_20_percent_wrong_mm"] for name in ("compliance", "force"))
-    leaves = f"{left} at most; {format_value(wrong, 'mm')} if stiffness or force is 20 % off."
-    leaves = " ".join([leaves, *(Finding("info", each["message"]).sentence for each in record["findings"])])
-    what = f"a new program, {record['lines_in']} lines become {record['lines_out']}"
-    return [Told("Corrected program", what, leaves, TITLES[record["verdict"]["after"]])]
+def _turned(found: Turning, title: str) -> list[Told]:
+    spin = f"at {format_si(found.spin, 'deg', 0)} on the whole path"
+    return [_at(found.constant, title, spin), _at(found.course, title, "turning along the path")]
 
 
-def _title(place: dict[str, Any]) -> str:
-    return TITLES.get(place["verdict"], "")
+def _at(place: Place, title: str, what: str) -> Told:
+    return Told(title, what, place.reason or place.sentence, TITLES[place.level])
 
 
-TOLD: dict[type, Callable[[Any], list[Told]]] = {
-    Advice: _advice,
-    Compensation: _compensation,
-    Design: _design,
-    Placement: _placement,
-    Turning: _turning,
+def _program(found: Compensation, title: str) -> list[Told]:
+    left, wrong = format_si(found.after.max, "mm", 4), format_si(found.doubted.max, "mm")
+    leaves = [f"{left} at most; {wrong} if stiffness or force is 20 % off."]
+    leaves += [Finding("info", each.message).sentence for each in found.findings]
+    what = f"a new program, {format_count(found.lines_in, 'line')} become {format_count(found.lines_out)}"
+    return [Told(title, what, " ".join(leaves), TITLES[found.level])]
+
+
+def _both(found: Both, title: str) -> list[Told]:
+    return [replace(row, what=f"{_zero(found.place.best)}; {row.what}") for row in _program(found.program, title)]
+
+
+ROWS: dict[str, Callable[[Any, str], list[Told]]] = {
+    "program": _program,
+    "stiffen": _stiffened,
+    "place": _placed,
+    "both": _both,
+    "turn": _turned,
+    "cut": _cut,
 }
+"""What is said of a remedy that was computed, by its code."""
 
 
-def told(found: Remedy) -> list[Told]:
+def told(found: Made) -> list[Told]:
     """The rows of a remedy that was computed. Raises RobomillError for what is none."""
-    if type(found) not in TOLD:
+    made = Stiffened(found, found.after) if isinstance(found, Design) else found
+    remedy = remedy_of(made)
+    if remedy is None:
         raise RobomillError(
             f"remedies: found {type(found).__name__}; expected what rm.advise, rm.compensate, rm.design, rm.place or "
             "rm.turn return."
         )
-    return TOLD[type(found)](found)
+    return ROWS[remedy.code](made, remedy.title)

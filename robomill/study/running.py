@@ -23,11 +23,10 @@ from robomill.study.described import Study, load_study
 from robomill.study.kept import Kept
 from robomill.study.local import processors, run_locally
 from robomill.study.point import Row, Task
-from robomill.units import format_count, format_si
+from robomill.units import format_count, format_duration, format_number
 from robomill.values import Tabled
 
 EACH_S, MANY = 1.0, 2000  # rows are written at least so often, and as many at once
-LONG_S = 100.0  # a time that is told in minutes
 
 
 @made_by('rm.run_study(study, "out")')
@@ -201,5 +200,4 @@ class _Writing:
         if not done:
             return ""
         left = (self.count - len(self.rows)) * seconds / done
-        words = format_si(left, "s", 0) if left < LONG_S else format_si(left, "min", 0)
-        return f"{done / seconds:.1f} a second, {words} left"
+        return f"{format_number(done / seconds, 1)} a second, {format_duration(left, 0)} left"

@@ -65,7 +65,7 @@ def ranges_of(result: SimulationResult) -> tuple[Range, ...]:
 
 
 @cached.shared(
-    lambda result, known: (cached.by_result(result), None if known is None else (known.covariance, known.source)),
+    lambda result, known: (cached.by_result(result), cached.by_knowledge(known)),
     "Between which ends the verdict lies",
 )
 def _ranges(result: SimulationResult, known: Knowledge | None) -> tuple[Range, ...]:

@@ -43,12 +43,12 @@ def test_remedies_stand_in_record_page_and_lines_with_the_numbers_of_the_library
     assert found["code"] == 1
     setup = rm.load_setup(cut).replace(tolerance_mm=0.2, floor_tolerance=None)
     titles = [each["title"] for each in found["remedies"]]
-    corrected = found["remedies"][titles.index("Corrected program")]
+    corrected = found["remedies"][titles.index("Correct the program")]
     left = rm.compensate(setup).after.max
     assert f"{left * 1e3:.4f} mm at most" in corrected["leaves"]
-    stiffer = found["remedies"][titles.index("Stiffer joints")]
+    stiffer = found["remedies"][titles.index("Stiffen joints")]
     assert f"{max(rm.design(setup).stiffness_ratio):.2f}" in stiffer["what"]
-    turned = found["remedies"][titles.index("Spindle turned about its axis")]
+    turned = found["remedies"][titles.index("Turn the spindle")]
     assert "an arm of 5 joints holds the tool in one way" in turned["leaves"]
     page = " ".join(html.unescape(re.sub(r"<[^>]+>", " ", out.read_text(encoding="utf-8"))).split())
     for each in found["remedies"]:

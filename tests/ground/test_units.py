@@ -20,7 +20,9 @@ from robomill.units import (
     MINUS,
     UNITS,
     format_beside,
+    format_bytes,
     format_count,
+    format_duration,
     format_limit,
     format_many,
     format_number,
@@ -310,3 +312,42 @@ def test_a_value_is_not_rounded_over_a_limit_of_more_digits() -> None:
 )
 def test_a_limit_is_shown_as_it_was_given(limit, words) -> None:
     assert format_limit(to_si(limit, "mm"), "mm") == words
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.04, "0.0 s"),
+        (12.04, "12.0 s"),
+        (119.9, "119.9 s"),
+        (120.0, "2.0 min"),
+        (252.0, "4.2 min"),
+        (630.0, "10 min"),
+        (7199.0, "120 min"),
+        (3.0 * 3600.0, "3 h 00 min"),
+        (3.0 * 3600.0 - 20.0, "3 h 00 min"),
+        (12_060.0, "3 h 21 min"),
+        (-252.0, "−4.2 min"),
+        (-12_060.0, "−3 h 21 min"),
+        (float("nan"), "not reached"),
+    ],
+)
+def test_a_time_is_said_in_seconds_minutes_and_hours(seconds, words) -> None:
+    assert format_duration(seconds) == words
+
+
+def test_a_time_is_said_with_its_sign_and_digits_where_they_are_asked_for() -> None:
+    assert (format_duration(12.04, sign=True), format_duration(12_060.0, sign=True)) == ("+12.0 s", "+3 h 21 min")
+    assert (format_duration(12.6, 0), format_duration(250.0, 0)) == ("13 s", "4 min")
+
+
+@pytest.mark.parametrize("seconds", [1e9, 1e303, float("inf")])
+def test_a_time_that_no_machine_has_is_said_so(seconds: float) -> None:
+    assert format_duration(seconds) == "more than three years"
+
+
+@pytest.mark.parametrize(
+    ("count", "words"), [(1, "1 byte"), (999, "999 bytes"), (1200, "1.2 kB"), (7_905_084, "7.9 MB"), (2e9, "2.0 GB")]
+)
+def test_the_size_of_a_file_is_said_by_its_leading_digits(count, words) -> None:
+    assert format_bytes(count) == words

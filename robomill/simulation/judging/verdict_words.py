@@ -1,8 +1,9 @@
 """What the verdict of a milled part says: its readings, and the one sentence that every screen and report shows."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from robomill.values import Value
 TIGHT_FROM = 0.8
 ENDS_AT, MOST = 1.25, 6.0  # of the tolerance: where a gauge of the share used ends, and where at most
 Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
+LEVELS: tuple[Level, ...] = get_args(Level)  # each graver than the one before
 RED: tuple[Level, ...] = ("out", "unjudged", "unreached", "missed")
 WORDS: dict[Level, str] = {
     "ok": "within tolerance",
@@ -32,6 +34,13 @@ NOTHING: dict[Level, str] = {
     "unreached": "No point of the cut can be reached: move the part zero.",
 }
 RAPID = "a rapid runs through material that no cut removes"
+
+
+def level_of_share(share: float) -> Level:
+    """ok | tight | out: what a share of the tolerance is; unjudged where nobody knows it."""
+    if math.isnan(share):
+        return "unjudged"
+    return "out" if share > 1.0 else "tight" if share >= TIGHT_FROM else "ok"
 
 
 def gauge_end(share: float) -> float:
@@ -142,9 +151,10 @@ class Verdict(Value):
     @property
     def grade(self) -> Level:
         """ok | tight | out: by what is measured alone."""
-        if self.share > 1.0 or self.gone:
+        if self.gone:
             return "out"
-        return "tight" if self.share >= TIGHT_FROM or self.far > 1.0 else "ok"
+        found = level_of_share(self.share)
+        return "tight" if found == "ok" and self.far > 1.0 else found
 
     @property
     def red(self) -> bool:

@@ -7,11 +7,13 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.improve.advice import Advice, Way
+from robomill.improve.remedies import decides
 from robomill.report.drawn import Axes, svg
 from robomill.report.tags import Html, joined, tag
 from robomill.simulation.result import SimulationResult
+from robomill.ui.improve.remedies import error_words
 from robomill.ui.verdict import WORDS
-from robomill.units import format_percent, format_si, from_si, unit_label
+from robomill.units import format_duration, format_percent, from_si, unit_label
 
 WIDE, HIGH = 260, 150  # of a picture
 ABOVE = 1.1  # of what is shown: so much room
@@ -47,10 +49,8 @@ def _card(
     said = f"{way.title}: how far the tip is off over the time at feed."
     limit = axes.level(float(from_si(run.setup.tolerance, unit)), "tolerance", "limit")
     picture = [axes.frame("s at feed", f"tip off, {unit_label(unit)}"), limit, axes.line(*drawn, "wall")]
-    rests = run.verdict.deciding
-    error = format_si(run.max_deviation if rests is None else abs(rests[1].value), unit)
     used = f" · {format_percent(way.share)}" if np.isfinite(way.share) else ""
-    words = f"{way.seconds:.1f} s · {'tip' if rests is None else rests[0]} {error}{used}"
+    words = f"{format_duration(way.seconds)} · {error_words(decides(run), unit)}{used}"
     return tag(
         "figure",
         tag("figcaption", tag("b", way.title), joined([tag("span", words), tag("span", WORDS[run.verdict.level])])),

@@ -12,17 +12,19 @@ from robomill.arrays import FloatArray
 from robomill.improve.advice import Advice
 from robomill.improve.compensation import Compensation
 from robomill.improve.placed import Place, Placement
+from robomill.improve.remedies import Both, Stiffened, decides, error_at
 from robomill.improve.turning import Turning
 from robomill.provenance import Finding
 from robomill.simulation.result import SimulationResult
 from robomill.ui import pieces
 from robomill.ui.entry import inputs
 from robomill.ui.improve import lab, stiffen
-from robomill.ui.improve.remedies import Both, Found, Left, Stiffened, error_at, error_words, take, use
+from robomill.ui.improve.remedies import Found, Shown, error_words, take, use
 from robomill.ui.shell import dark
 from robomill.ui.verdict import WORDS
 from robomill.units import (
     format_count,
+    format_duration,
     format_many,
     format_percent,
     format_short,
@@ -39,11 +41,11 @@ COLUMNS = (1, 1.7)  # a remedy in words, and its picture
 
 def opened(found: Found, result: SimulationResult, unit: str) -> None:
     """The remedy's own part of the page."""
-    if found.left is not None:
-        OPENED[found.remedy.name](found.made, found.left, result, unit)
+    if found.shown is not None:
+        OPENED[found.remedy.code](found.made, found.shown, result, unit)
 
 
-def _corrected(found: Compensation, left: Left, result: SimulationResult, unit: str, first: str = "As it is") -> None:
+def _corrected(found: Compensation, row: Shown, result: SimulationResult, unit: str, first: str = "As it is") -> None:
     here, beside = pieces.split(COLUMNS, "remedy")
     with here, st.container(border=True):
         pieces.strong("What the corrected program leaves")
@@ -97,7 +99,7 @@ def _shown(column: Any, unit: str) -> FloatArray:
     return np.asarray(from_si(to_si(np.asarray(column, dtype=float), "mm"), unit))
 
 
-def _stiffened(found: Stiffened, left: Left, result: SimulationResult, unit: str) -> None:
+def _stiffened(found: Stiffened, row: Shown, result: SimulationResult, unit: str) -> None:
     made, joints = found.design, result.setup.robot.joint_numbers
     here, beside = pieces.split(COLUMNS, "remedy")
     with here, st.container(border=True):
@@ -115,13 +117,13 @@ def _stiffened(found: Stiffened, left: Left, result: SimulationResult, unit: str
             f"Cost {format_short(made.cost, '1', 3)}, where 1 is one joint made twice as stiff. Errors are linear in "
             "the compliance of each joint, so the least is found for certain, by a convex program."
         )
-        use(left, "Use these joints")
+        use(row, "Use these joints")
     with beside, st.container(border=True):
         front = made.front()
         share = from_si(front.share * made.setup.tolerance / result.setup.tolerance, "%")
         pieces.strong("What each error costs")
         pieces.figure(
-            cost_front(share, front.cost, (float(from_si(left.share, "%")), made.cost), dark=dark()),
+            cost_front(share, front.cost, (float(from_si(row.left.share, "%")), made.cost), dark=dark()),
             "improve-front",
             table=lambda: {
                 "used_%": share.tolist(),
@@ -147,13 +149,13 @@ def _stiffened(found: Stiffened, left: Left, result: SimulationResult, unit: str
 def _places(places: Mapping[str, Place], unit: str) -> None:
     """What full simulations say of places, by name."""
     rows = [
-        (name, error_at(place, unit), format_percent(place.share), format_si(place.max_deviation, unit))
+        (name, error_words(error_at(place), unit), format_percent(place.share), format_si(place.max_deviation, unit))
         for name, place in places.items()
     ]
     pieces.table(rows, " nnn", ("Place" if "worst" in places else "Spin", "Error", "Of tolerance", "Tip"))
 
 
-def _placed(found: Placement, left: Left, result: SimulationResult, unit: str) -> None:
+def _placed(found: Placement, row: Shown, result: SimulationResult, unit: str) -> None:
     here, beside = pieces.split(COLUMNS, "remedy")
     with here, st.container(border=True):
         pieces.strong("Where the part lies")
@@ -165,7 +167,7 @@ def _placed(found: Placement, left: Left, result: SimulationResult, unit: str) -
             "from singular configurations."
         )
         _told(found.findings)
-        use(left, "Move the part there")
+        use(row, "Move the part there")
     with beside, st.container(border=True):
         x, y = (from_si(axis, unit) for axis in found.axes[:2])
         stays = bool(np.allclose(found.now.zero[:2], found.best.zero[:2], atol=1e-6))
@@ -186,7 +188,7 @@ def _placed(found: Placement, left: Left, result: SimulationResult, unit: str) -
         )
 
 
-def _turned(found: Turning, left: Left, result: SimulationResult, unit: str) -> None:
+def _turned(found: Turning, row: Shown, result: SimulationResult, unit: str) -> None:
     here, beside = pieces.split(COLUMNS, "remedy")
     with here, st.container(border=True):
         pieces.strong("How the tool is turned about its axis")
@@ -194,7 +196,7 @@ def _turned(found: Turning, left: Left, result: SimulationResult, unit: str) -> 
         best = format_si(found.spin, "deg", 0)
         _places({f"now{was}": found.now, f"best, {best} all the way": found.constant, "turning": found.course}, unit)
         _told(found.findings)
-        use(left, "Turn it so, all the way")
+        use(row, "Turn it so, all the way")
     with beside, st.container(border=True):
         pieces.strong("Tolerance used, by way and spin")
         drawn = over_spin(found, result, unit)
@@ -236,7 +238,7 @@ def over_spin(
     return np.asarray(from_si(found.station, unit))[cuts], angle[order], share, courses
 
 
-def _cut(found: Advice, left: Left, result: SimulationResult, unit: str) -> None:
+def _cut(found: Advice, row: Shown, result: SimulationResult, unit: str) -> None:
     with st.container(border=True):
         pieces.strong("The same part, cut in other ways")
         rows = []
@@ -247,16 +249,15 @@ def _cut(found: Advice, left: Left, result: SimulationResult, unit: str) -> None
             verdict = way.run.verdict
             used = format_percent(way.share) if np.isfinite(way.share) else "–"
             rate = format_si(way.removal_rate, in_lengths("cm3/min", unit), 1) if np.isfinite(way.removal_rate) else "–"
-            rows.append(
-                [way.title, f"{way.seconds:.1f} s", rate, error_words(way.run, unit), used, WORDS[verdict.level]]
-            )
+            error = error_words(decides(way.run), unit)
+            rows.append([way.title, format_duration(way.seconds), rate, error, used, WORDS[verdict.level]])
         best = list(found.ways).index(found.best)
         head = ("Way", "Time at feed", "Removed", "Error", "Of tolerance", "Verdict")
         pieces.table(rows, "wnnnnv", head, strong=best)
         pieces.note("Bold: the quickest way within tolerance; the truest where none is. Each is a run of its own.")
         lab.multiples(found, unit)
         better = {way.name: way.title for way in found.ways[1:] if way.run is not None}
-        truest = min(found.ways[1:], key=lambda way: way.share if np.isfinite(way.share) else np.inf).name
+        truest = found.truest.name
         name = inputs.pick("Way", "improve.way", better, truest if truest in better else None, inputs.LISTED)
         way = next(each for each in found.ways if each.name == name)
         if way.run is not None:
@@ -265,13 +266,13 @@ def _cut(found: Advice, left: Left, result: SimulationResult, unit: str) -> None
             )
 
 
-def _both(found: Both, left: Left, result: SimulationResult, unit: str) -> None:
-    _corrected(found.program, left, result, unit, "At the best place, as it is")
+def _both(found: Both, row: Shown, result: SimulationResult, unit: str) -> None:
+    _corrected(found.program, row, result, unit, "At the best place, as it is")
     pieces.note("First move the part there; this program is corrected for that place alone.")
-    use(left, "Move the part there")
+    use(row, "Move the part there")
 
 
-OPENED: dict[str, Callable[[Any, Left, SimulationResult, str], None]] = {
+OPENED: dict[str, Callable[[Any, Shown, SimulationResult, str], None]] = {
     "program": _corrected,
     "stiffen": _stiffened,
     "place": _placed,

@@ -8,19 +8,30 @@ from typing import Any
 
 import numpy as np
 
-from robomill.errors import RobomillError, SetupError
+from robomill.errors import RobomillError
 from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.advice import Advice, advise
+from robomill.improve.asked_joints import joints_named
 from robomill.improve.compensation import Compensation
-from robomill.improve.design import STIFFEST, Design, design
-from robomill.improve.judged import judged
-from robomill.improve.placed import Place, Placement
+from robomill.improve.design import STIFFEST
+from robomill.improve.placed import Placement
 from robomill.improve.placement import place
+from robomill.improve.remedies import (
+    REMEDIES,
+    Both,
+    Left,
+    Remedy,
+    Stiffened,
+    decides,
+    moved_and_corrected,
+    saves,
+    stiffened,
+)
 from robomill.improve.turning import Turning, turn
 from robomill.io.compensated import compensate
 from robomill.simulation.estimate import run_seconds
-from robomill.simulation.judging.verdict_words import TIGHT_FROM, Level
+from robomill.simulation.judging.verdict_words import level_of_share
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces, session
@@ -32,6 +43,7 @@ from robomill.ui.work import cached
 from robomill.ui.work.job import Underway
 from robomill.units import (
     format_count,
+    format_duration,
     format_many,
     format_percent,
     format_share,
@@ -41,37 +53,23 @@ from robomill.units import (
 )
 
 RUNS_OF_DESIGN, RUNS_OF_ADVICE, RUNS_OF_PLACES, RUNS_OF_PROGRAM, RUNS_OF_SPIN = 4, 20, 25, 12, 60
-LEAST = 0.005  # of the tolerance: what saves less is no remedy
 BY = "improve.by"
 NOMINAL, SURE = "nominal", "sure"
 JUDGED = {NOMINAL: "what is predicted", SURE: "what 95 % of the draws keep"}
 TURNED = to_si(0.5, "deg")  # what turns the part by less is not said to turn it
+IN_FULL = "simulated in full"
 
 
 @dataclass(frozen=True, eq=False)
-class Left:
-    """What a remedy leaves: share of the tolerance, its error in words, the verdict; what it costs and how sure it is;
-    ``setup`` is the cut with it, None where it is no better than what there is; ``then`` is that cut in any case."""
+class Shown:
+    """What a remedy leaves; its error, what it costs and how sure it is, in words. ``setup`` is what its button puts
+    into the project, None where that is no better than what there is."""
 
-    share: float
+    left: Left
     error: str
-    level: Level
-    cost: str
-    sure: str
-    setup: SimulationSetup | None
-    then: SimulationSetup
-
-
-@dataclass(frozen=True, eq=False)
-class Remedy:
-    """A kind of remedy: ``find`` computes it for a set-up (and raises its refusal, or ``Underway``), ``left`` says what
-    it leaves against the run as it is, in a unit of length. One that ``joins`` others stands beneath them."""
-
-    name: str
-    title: str
-    find: Callable[[SimulationSetup], Any]
-    left: Callable[[Any, SimulationResult, str], Left]
-    joins: bool = False
+    cost: str = ""
+    sure: str = ""
+    setup: SimulationSetup | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,58 +78,24 @@ class Found:
 
     remedy: Remedy
     made: Any = None
-    left: Left | None = None
+    shown: Shown | None = None
     why: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class Both:
-    """The best place of the part, and the program corrected for that place."""
-
-    place: Placement
-    program: Compensation
-
-
-@dataclass(frozen=True, eq=False)
-class Stiffened:
-    """A design, and the project's cut with its joints; ``half``: it was to halve an error that keeps its tolerance."""
-
-    design: Design
-    run: SimulationResult
-    half: bool
 
 
 @cached.shared(cached.by_setup, "Stiffer joints", lambda setup: run_seconds(setup) * RUNS_OF_DESIGN)
 def designed(setup: SimulationSetup) -> Stiffened:
-    """The cheapest stiffer joints that keep the tolerance; where it is kept, that halve what is used of it."""
-    share = judged(cached.result(setup)).share
-    if not share <= 1.0:
-        found = design(setup)
-        return Stiffened(found, found.after, half=False)
-    halved = design(setup, 0.5 * share * setup.tolerance)
-    return Stiffened(halved, cached.result(setup.replace(robot=halved.setup.robot)), half=True)
+    """The cheapest stiffer joints."""
+    return stiffened(setup, cached.result)
 
 
 @cached.shared(
-    lambda setup, known: (cached.by_setup(setup), None if known is None else (known.covariance, known.source)),
+    lambda setup, known: (cached.by_setup(setup), cached.by_knowledge(known)),
     "The corrected program",
     lambda setup, known: run_seconds(setup) * RUNS_OF_PROGRAM,
 )
 def corrected(setup: SimulationSetup, known: Knowledge | None) -> Compensation:
     """The program that is pushed onto the path that was meant."""
     return compensate(setup, known=known)
-
-
-def _of_program(found: Compensation, now: SimulationResult, unit: str) -> Left:
-    wrong = max(found.softer.max, found.stronger.max)
-    share = wrong / now.setup.tolerance
-    level: Level = "ok" if share < TIGHT_FROM else "tight" if share <= 1.0 else "out"
-    error = f"{format_si(found.after.max, unit, with_unit=False)} to {format_si(wrong, unit)}"
-    lines = f"a new program, {format_count(found.lines_in, 'line')} become {format_count(found.lines_out)}"
-    how_sure = f"{format_si(wrong, unit)} if stiffness or force is 20 % off"
-    if np.isfinite(found.half):
-        how_sure += f"; ± {format_si(found.half, unit)} by the tests"
-    return Left(share, error, level, lines, how_sure, None, now.setup.replace(source=found.source))
 
 
 @cached.shared(cached.by_setup, "Other ways to cut", lambda setup: run_seconds(setup) * RUNS_OF_ADVICE)
@@ -152,116 +116,92 @@ def turned(setup: SimulationSetup) -> Turning:
     return turn(setup)
 
 
-def _decides(result: SimulationResult) -> tuple[str, float]:
-    """The name of what decides a verdict, and its size, m."""
-    rests = result.verdict.deciding
-    return ("tip", result.max_deviation) if rests is None else (rests[0], abs(rests[1].value))
+def _corrected(setup: SimulationSetup) -> Compensation:
+    return corrected(setup, session.known(setup))
 
 
-def error_words(result: SimulationResult, unit: str) -> str:
-    """What decides a verdict: ``wall 0.230 mm``."""
-    name, size = _decides(result)
-    return f"{name} {format_si(size, unit)}"
+FINDS: dict[str, Callable[[SimulationSetup], Any]] = {
+    "program": _corrected,
+    "stiffen": designed,
+    "place": placed,
+    "both": lambda setup: moved_and_corrected(placed(setup), _corrected),
+    "turn": turned,
+    "cut": advised,
+}
+"""What computes a remedy for a set-up, by its code; raises its refusal, or ``Underway``."""
 
 
-def _of_design(found: Stiffened, now: SimulationResult, unit: str) -> Left:
-    made, then = found.design, found.run.verdict
-    named = [
-        f"joint {number} {format_short(ratio, '1', 3)} times"
-        for number, ratio in zip(made.setup.robot.joint_numbers, made.stiffness_ratio, strict=True)
-        if ratio > 1.001
-    ]
+def error_words(error: tuple[str, float], unit: str) -> str:
+    """What decides, by name and m: ``wall 0.230 mm``."""
+    return f"{error[0]} {format_si(error[1], unit)}"
+
+
+def shown(remedy: Remedy, made: Any, now: SimulationResult, unit: str) -> Shown:
+    """What a remedy that was made leaves of the run as it is, in words."""
+    return SHOWN[remedy.code](made, remedy.left(made, now), now, unit)
+
+
+def _program(found: Compensation, left: Left, now: SimulationResult, unit: str) -> Shown:
+    wrong = found.doubted.max
+    lines = f"a new program, {format_count(found.lines_in, 'line')} become {format_count(found.lines_out)}"
+    how_sure = f"{format_si(wrong, unit)} if stiffness or force is 20 % off"
+    if np.isfinite(found.half):
+        how_sure += f"; ± {format_si(found.half, unit)} by the tests"
+    return Shown(left, format_many((found.after.max, wrong), unit, between=" to "), lines, how_sure)
+
+
+def _stiffened(found: Stiffened, left: Left, now: SimulationResult, unit: str) -> Shown:
+    made = found.design
+    named = joints_named(made.setup.robot.joint_numbers, made.stiffness_ratio)
     how_sure = "the least stiffening, proved" if np.isfinite(made.residual) else "kept; the least is not proved"
     if not made.feasible:
         how_sure = f"{format_short(STIFFEST, '1')} times as stiff is the most that is tried"
     cost = f"{', '.join(named) or 'nothing'} as stiff"
-    return Left(then.share, error_words(found.run, unit), then.level, cost, how_sure, found.run.setup, found.run.setup)
+    return Shown(left, error_words(left.error, unit), cost, how_sure, left.then)
 
 
-def _of_advice(found: Advice, now: SimulationResult, unit: str) -> Left:
-    known = [way for way in found.ways if way.run is not None]
-    truest = min(known, key=lambda way: way.share if np.isfinite(way.share) else np.inf)
-    run = truest.run or now
-    extra = truest.seconds - found.ways[0].seconds
-    cost = f"{truest.title[0].lower()}{truest.title[1:]}: {'+' if extra >= 0 else '−'}{_time(abs(extra))}"
-    better = truest.share < found.ways[0].share - LEAST
-    how_sure = "by a run on what the deflected tool leaves"
-    return Left(
-        truest.share,
-        error_words(run, unit),
-        run.verdict.level,
-        cost,
-        how_sure,
-        run.setup if better else None,
-        run.setup,
-    )
+def _cut(found: Advice, left: Left, now: SimulationResult, unit: str) -> Shown:
+    truest = found.truest
+    extra = format_duration(truest.seconds - found.ways[0].seconds, sign=True)
+    cost = f"{truest.title[0].lower()}{truest.title[1:]}: {extra}"
+    return _if_better(left, unit, cost, "by a run on what the deflected tool leaves")
 
 
-def _time(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.1f} min"
+def _if_better(left: Left, unit: str, cost: str, how_sure: str) -> Shown:
+    return Shown(left, error_words(left.error, unit), cost, how_sure, left.then if left.better else None)
 
 
-def _of_place(found: Placement, now: SimulationResult, unit: str) -> Left:
-    best = found.best
-    far = best.zero - now.setup.T_MW[:3, 3]
-    error = error_at(best, unit)
-    better = _better(found)
-    cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0)}"
-    turn = best.yaw - found.now.yaw
-    cost += f", turned by {format_si(turn, 'deg', 0)}" if abs(turn) > TURNED else ""
-    cost = cost if better else "no place is better than where it lies"
-    how_sure = f"best of {format_count(found.allowed, 'place')}, simulated in full"
-    return Left(best.share, error, best.level, cost, how_sure, found.moved if better else None, found.moved)
+def _moved(found: Placement, unit: str) -> str:
+    """By how much a place moves part zero, in words."""
+    return f"part zero moved by X, Y, Z {format_many(found.best.zero - found.now.zero, unit, 0)}"
 
 
-def moved_and_corrected(setup: SimulationSetup) -> Both:
-    """The best place, and the program that is corrected for it. Raises SetupError where no place is better."""
-    found = placed(setup)
-    if not _better(found):
-        raise SetupError("No place is better than where the part lies: correct the program there.")
-    return Both(found, corrected(found.moved, session.known(setup)))
+def _placed(found: Placement, left: Left, now: SimulationResult, unit: str) -> Shown:
+    turn = found.best.yaw - found.now.yaw
+    cost = _moved(found, unit) + (f", turned by {format_si(turn, 'deg', 0)}" if abs(turn) > TURNED else "")
+    cost = cost if left.better else "no place is better than where it lies"
+    return _if_better(left, unit, cost, f"best of {format_count(found.allowed, 'place')}, {IN_FULL}")
 
 
-def _of_both(found: Both, now: SimulationResult, unit: str) -> Left:
-    left = _of_program(found.program, now, unit)
-    far = found.place.best.zero - now.setup.T_MW[:3, 3]
-    cost = f"part zero moved by X, Y, Z {format_many(far, unit, 0)}; {left.cost}"
-    then = found.place.moved.replace(source=found.program.source)
-    return replace(left, cost=cost, setup=found.place.moved, then=then)
+def _both(found: Both, left: Left, now: SimulationResult, unit: str) -> Shown:
+    made = _program(found.program, left, now, unit)
+    return replace(made, cost=f"{_moved(found.place, unit)}; {made.cost}", setup=found.place.moved)
 
 
-def _better(found: Placement) -> bool:
-    """Whether the best place is noticeably better than where the part lies."""
-    return found.best.share < found.now.share - LEAST
-
-
-def _of_spin(found: Turning, now: SimulationResult, unit: str) -> Left:
-    then = found.constant
-    better = then.share < now.verdict.share - LEAST
+def _turned(found: Turning, left: Left, now: SimulationResult, unit: str) -> Shown:
     was = "" if now.ik.spin is None else f", now {format_si(float(now.ik.spin[0]), 'deg', 0)}"
     cost = f"the tool turned to {format_si(found.spin, 'deg', 0)} about its axis{was}"
-    cost = cost if better else "no turn is better than what it has"
-    how_sure = "simulated in full"
-    return Left(
-        then.share, error_at(then, unit), then.level, cost, how_sure, found.turned if better else None, found.turned
-    )
+    return _if_better(left, unit, cost if left.better else "no turn is better than what it has", IN_FULL)
 
 
-def error_at(place: Place, unit: str) -> str:
-    """What is largest of a place's wall and floor; the tip where there is neither."""
-    sizes = [(abs(value), name) for name, value in (("wall", place.wall), ("floor", place.floor)) if np.isfinite(value)]
-    size, name = max(sizes, default=(place.max_deviation, "tip"))
-    return f"{name} {format_si(size, unit)}"
-
-
-REMEDIES: tuple[Remedy, ...] = (
-    Remedy("program", "Correct the program", lambda setup: corrected(setup, session.known(setup)), _of_program),
-    Remedy("stiffen", "Stiffen joints", designed, _of_design),
-    Remedy("place", "Move the part", placed, _of_place),
-    Remedy("both", "Move the part, then correct", moved_and_corrected, _of_both, joins=True),
-    Remedy("turn", "Turn the spindle", turned, _of_spin),
-    Remedy("cut", "Cut otherwise", advised, _of_advice),
-)
+SHOWN: dict[str, Callable[[Any, Left, SimulationResult, str], Shown]] = {
+    "program": _program,
+    "stiffen": _stiffened,
+    "place": _placed,
+    "both": _both,
+    "turn": _turned,
+    "cut": _cut,
+}
 
 
 def known(result: SimulationResult, unit: str, by: str = NOMINAL) -> tuple[list[Found], Underway | None]:
@@ -274,34 +214,33 @@ def known(result: SimulationResult, unit: str, by: str = NOMINAL) -> tuple[list[
             every.append(Found(remedy, why="is computed next"))
             continue
         try:
-            made = remedy.find(result.setup)
-            left = remedy.left(made, result, unit)
+            made = FINDS[remedy.code](result.setup)
+            left = shown(remedy, made, result, unit)
             every.append(Found(remedy, made, at_95(left, unit) if by == SURE else left))
         except Underway as now:
             waits = now
             every.append(Found(remedy, why="is being computed"))
         except RobomillError as refusal:
             every.append(Found(remedy, why=str(refusal)))
-    single = [each.made for each in every if each.left is not None and not each.remedy.joins]
-    made = tuple(each.design if isinstance(each, Stiffened) else each for each in single)
+    made = tuple(each.made for each in every if each.shown is not None)
     session.hold(report.REMEDIES, (result.setup.digest(), made))  # for the report
     return sorted(every, key=_rank), waits
 
 
 def _rank(found: Found) -> tuple[bool, bool, float]:
     """The truest first; then what joins some of them; then what is not there."""
-    left = found.left
-    return left is None, left is not None and found.remedy.joins, 0.0 if left is None else left.share
+    there = found.shown
+    return there is None, there is not None and found.remedy.joins, 0.0 if there is None else there.left.share
 
 
-def as_it_is(result: SimulationResult, unit: str, by: str = NOMINAL) -> Left:
+def as_it_is(result: SimulationResult, unit: str, by: str = NOMINAL) -> Shown:
     """The cut without a remedy, judged as they are. Raises ``Underway``, and the refusal of draws."""
-    now, setup = result.verdict, result.setup
-    left = Left(now.share, error_words(result, unit), now.level, "", "", None, setup)
+    now, error = result.verdict, decides(result)
+    left = Shown(Left(now.share, now.level, error, result.setup, better=False), error_words(error, unit))
     return at_95(left, unit) if by == SURE else left
 
 
-def judged_by(result: SimulationResult, unit: str) -> tuple[str, Left]:
+def judged_by(result: SimulationResult, unit: str) -> tuple[str, Shown]:
     """What the page judges by, and the cut as it is; by what is predicted where draws of it are refused, or not there
     yet."""
     by = session.kept(BY, NOMINAL)
@@ -311,64 +250,57 @@ def judged_by(result: SimulationResult, unit: str) -> tuple[str, Left]:
         return by, as_it_is(result, unit)
 
 
-def at_95(left: Left, unit: str) -> Left:
+def at_95(row: Shown, unit: str) -> Shown:
     """What a remedy leaves in 95 % of the draws."""
-    found = sure.of(left.then)
-    share, error = found.quantile(LEVEL, "share"), found.quantile(LEVEL)
-    level: Level = "ok" if share < TIGHT_FROM else "tight" if share <= 1.0 else "out"
-    words = format_si(error, unit, missing="not reached")
-    return replace(left, share=share, error=words, level=level, sure=sure.kept_words(found))
+    found = sure.of(row.left.then)
+    share = found.quantile(LEVEL, "share")
+    left = replace(row.left, share=share, level=level_of_share(share))
+    return replace(row, left=left, error=format_si(found.quantile(LEVEL), unit), sure=sure.kept_words(found))
 
 
-def sentence(found: Sequence[Found], result: SimulationResult, now: Left, unit: str) -> str:
+def sentence(found: Sequence[Found], result: SimulationResult, now: Shown, unit: str) -> str:
     """What would fix it, in one line; ``now`` is the cut as it is."""
-    left = found[0].left
-    if left is None:
+    then = found[0].shown
+    if then is None:
         return "What would fix it?"
+    title, left = found[0].remedy.title, then.left
     if result.verdict.level == "unjudged":  # a share of the tolerance would be a judgement
-        name, size = _decides(result)
+        name, size = decides(result)
         rests = f", {result.verdict.premise}" if result.verdict.premise else ", where it is judged"
         return (
-            f"{found[0].remedy.title}: {name} error of {format_si(size, unit)} becomes "
-            f"{left.error.removeprefix(f'{name} ')}{rests}. Nothing is within tolerance or out of it yet."
+            f"{title}: {name} error of {format_si(size, unit)} becomes "
+            f"{then.error.removeprefix(f'{name} ')}{rests}. Nothing is within tolerance or out of it yet."
         )
-    if not left.share < now.share - LEAST:
+    if not saves(left.share, now.left.share):
         return "Nothing that was tried makes this cut noticeably truer."
+    used, was = format_percent(left.share), format_percent(now.left.share)
+    judged = f"{WORDS[left.level].lower()} ({used} of the tolerance, now {was})."
     if now.sure:
-        return (
-            f"{found[0].remedy.title}: in 95 % of the draws the error is at most {left.error} instead of {now.error}, "
-            f"{WORDS[left.level].lower()} ({format_percent(left.share)} of the tolerance, now "
-            f"{format_percent(now.share)})."
-        )
-    name, size = _decides(result)
-    return (
-        f"{found[0].remedy.title}: {name} error of {format_si(size, unit)} becomes "
-        f"{left.error.removeprefix(f'{name} ')}, {WORDS[left.level].lower()} "
-        f"({format_percent(left.share)} of the tolerance, now {format_percent(now.share)})."
-    )
+        return f"{title}: in 95 % of the draws the error is at most {then.error} instead of {now.error}, {judged}"
+    name, size = decides(result)
+    return f"{title}: {name} error of {format_si(size, unit)} becomes {then.error.removeprefix(f'{name} ')}, {judged}"
 
 
-def table(found: Sequence[Found], now: Left) -> None:
+def table(found: Sequence[Found], now: Shown) -> None:
     """Remedies with what they leave, what they cost and how sure that is, beneath the cut as it is ``now``."""
-    rows = [["As it is", now.error, format_share(now.share), WORDS[now.level], "", now.sure]]
+    rows = [["As it is", now.error, format_share(now.left.share), WORDS[now.left.level], "", now.sure]]
     for each in found:
-        left = each.left
-        if left is None:
+        row = each.shown
+        if row is None:
             rows.append([each.remedy.title, "–", "–", "–", each.why, ""])
         else:
-            rows.append(
-                [each.remedy.title, left.error, format_percent(left.share), WORDS[left.level], left.cost, left.sure]
-            )
+            used, verdict = format_percent(row.left.share), WORDS[row.left.level]
+            rows.append([each.remedy.title, row.error, used, verdict, row.cost, row.sure])
     head = ("Remedy", "Error then", "Of tolerance", "Verdict then", "What it takes", "How sure")
-    pieces.table(rows, "snnvww", head, strong=1 if found and found[0].left else -1)
+    pieces.table(rows, "snnvww", head, strong=1 if found and found[0].shown else -1)
 
 
-def use(left: Left, title: str) -> None:
+def use(row: Shown, title: str) -> None:
     """The button that does it; undo takes it back."""
-    if left.setup is None:
+    if row.setup is None:
         pieces.note("It leaves no less than there is now: nothing to use.")
         return
-    inputs.button(title, f"improve.do.{title}", "check", take, left.setup, type="primary", help="Undo takes it back.")
+    inputs.button(title, f"improve.do.{title}", "check", take, row.setup, type="primary", help="Undo takes it back.")
 
 
 def take(setup: SimulationSetup) -> None:

@@ -33,7 +33,7 @@ IN_PARTS = {"compliance": "%", "force": "%"}  # shares are typed in per cent
     lambda setup, spread, known: (
         cached.by_setup(setup),
         spread.digest(),
-        None if known is None else (known.covariance, known.source),
+        cached.by_knowledge(known),
     ),
     "How sure it is",
     lambda setup, spread, known: run_seconds(setup) * (FULL if setup.coupling else RUNS),

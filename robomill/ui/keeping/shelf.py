@@ -19,6 +19,7 @@ from pathlib import Path
 
 from robomill.errors import ProjectError
 from robomill.ui.keeping.settings import Settings
+from robomill.units import format_bytes
 
 FIRST = "# robomill work "
 SEPARATOR = "\n\f"
@@ -74,7 +75,7 @@ class Shelf:
         body = SEPARATOR.join(texts).encode()
         most = min(self.settings.entry_MB, self.settings.all_MB)
         if len(body) > most * 1e6:
-            raise ProjectError(f"This project has {len(body) / 1e6:.0f} MB; at most {most:g} MB are kept.")
+            raise ProjectError(f"This project has {format_bytes(len(body))}; at most {most:g} MB are kept.")
         with self._lock, _said("kept"):
             there = {head.place: head for head in self.heads(key)}
             old = there.get(place)

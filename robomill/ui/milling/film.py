@@ -13,7 +13,7 @@ from robomill.ui.entry import inputs
 from robomill.ui.work import cached
 from robomill.ui.work import job as jobs
 from robomill.ui.work.job import Job
-from robomill.units import format_times
+from robomill.units import format_bytes, format_times
 from robomill.viz.rendered.animation import FRAMES, Kind, absent, encode, film_frame, film_samples
 from robomill.viz.views import headroom, surface_picture
 
@@ -100,5 +100,5 @@ def _finished(job: Job) -> None:
     else:
         st.video(job.made, autoplay=True, loop=True, muted=True)
     pieces.download(f"Film {KINDS[film.kind]}", job.made, pieces.named(f"cut.{film.kind}"), "milling.get.film")
-    size = len(job.made) / 1e6
-    pieces.note(f"{film.frames} pictures, {size:.1f} MB, displacement shown {format_times(film.times, 6)}.")
+    size = format_bytes(len(job.made))
+    pieces.note(f"{film.frames} pictures, {size}, displacement shown {format_times(film.times, 6)}.")

@@ -12,8 +12,8 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces
 from robomill.ui.toolpath.program_view import LEVELS, select_line, selected_line
-from robomill.ui.toolpath.summary import duration, move_words, path_summary, worst_first, written_in
-from robomill.units import format_count, format_many, format_si, in_lengths
+from robomill.ui.toolpath.summary import move_words, path_summary, worst_first, written_in
+from robomill.units import format_count, format_duration, format_many, format_si, in_lengths
 
 DIALECTS = {
     "auto": "Guess",
@@ -83,7 +83,7 @@ def path_facts(setup: SimulationSetup, unit: str) -> None:
     rows.append(
         ("Length", f"{format_si(float(path.s[-1]), unit, 1)} at feed", f"{format_si(summary.rapids, unit, 1)} rapid")
     )
-    rows.append(("Time at feed", duration(float(path.t[-1])), "without rapids, pauses and tool changes"))
+    rows.append(("Time at feed", format_duration(float(path.t[-1])), "without rapids, pauses and tool changes"))
     if summary.feeds:
         minute, second = (_range(summary.feeds, in_lengths(each, unit)) for each in ("mm/min", "mm/s"))
         rows.append(("Feed", minute, second))

@@ -12,7 +12,7 @@ from robomill.ui import session
 from robomill.ui.toolpath.sources import read_with
 from robomill.ui.work import beside, job
 from robomill.ui.work.job import Job
-from robomill.units import format_percent
+from robomill.units import format_bytes, format_percent
 
 KEY = "toolpath.reading"
 BACKGROUND_CHARACTERS = 1_500_000
@@ -46,5 +46,5 @@ def reading_inputs(take: Callable[[GCodeSource], None], refuse: Callable[[GCodeS
 
 
 def _words(made: Job) -> str:
-    size = len(made.about.text) / 1e6
-    return f"Reading {made.about.name}: {format_percent(made.progress.share)} of {size:.1f} MB{beside.left(made)}"
+    size = format_bytes(len(made.about.text))
+    return f"Reading {made.about.name}: {format_percent(made.progress.share)} of {size}{beside.left(made)}"

@@ -10,24 +10,13 @@ from robomill.toolpath.gcode.findings import NO_UNITS
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.toolpath.summary import summary_of
-from robomill.units import format_count, format_many, format_si, from_si
+from robomill.units import format_count, format_many, format_si
 
 #: The summary of a path, kept for the last few.
 path_summary = lru_cache(maxsize=6)(summary_of)
 
 
 FLAT = 1e-9  # m
-LONGEST_S = 1e8  # what takes longer is no time that a machine has
-
-
-def duration(seconds: float) -> str:
-    """A time as people say it."""
-    if seconds < 120:
-        return format_si(seconds, "s", 1)
-    if not seconds < LONGEST_S:
-        return "more than three years"
-    minutes = round(from_si(seconds, "min"))
-    return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60:02d} min"
 
 
 def worst_first(findings: Sequence[Finding]) -> list[Finding]:

@@ -15,7 +15,6 @@ from robomill.ui import other, pieces
 from robomill.ui.project import Project
 from robomill.ui.toolpath.reach import path_reach
 from robomill.ui.toolpath.summary import (
-    duration,
     finding_words,
     move_words,
     path_summary,
@@ -26,6 +25,7 @@ from robomill.ui.toolpath.summary import (
 from robomill.ui.verdict import reading_tile, tip_tile, tone
 from robomill.units import (
     format_count,
+    format_duration,
     format_si,
     format_value,
 )
@@ -85,7 +85,7 @@ def tiles(
         pieces.Tile(
             "Length of the cut",
             format_si(float(path.s[-1]), unit, 1),
-            f"{duration(float(path.t[-1]))} · {move_words(path)}, {format_count(rapids)} rapid",
+            f"{format_duration(float(path.t[-1]))} · {move_words(path)}, {format_count(rapids)} rapid",
         )
     )
     if source.kind != "program":

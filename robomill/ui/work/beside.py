@@ -13,7 +13,7 @@ from robomill.ui.entry import inputs
 from robomill.ui.markup import quiet
 from robomill.ui.work import job
 from robomill.ui.work.job import Job, Underway
-from robomill.units import format_percent
+from robomill.units import format_duration, format_percent
 
 FIRST_S = 0.3  # any work is waited for so long, lest the page changes twice
 ASK_S = 60.0  # what takes longer than this is asked for
@@ -69,7 +69,7 @@ def words(doing: str, now: Job) -> str:
 
 def left(now: Job) -> str:
     """How long a job goes on, where one can tell."""
-    return f", about {_long(now.progress.left_s)} left" if now.progress.left_s >= 1.0 else ""
+    return f", about {format_duration(now.progress.left_s, 0)} left" if now.progress.left_s >= 1.0 else ""
 
 
 def _stop(place: str) -> None:
@@ -83,7 +83,7 @@ def _stop(place: str) -> None:
 def _ask(place: str, name: Any, doing: str, seconds: float) -> None:
     with st.container(horizontal=True, vertical_alignment="center", gap="small", key=job.box(place)):
         inputs.button("Run", f"{place}.ask", "play_arrow", begin, place, name, type="primary")
-        takes = f" This takes about {_long(seconds)}." if seconds else ""
+        takes = f" This takes about {format_duration(max(seconds, 1.0), 0)}." if seconds else ""
         st.html(quiet(f"{doing}: not computed yet.{takes}"))
 
 
@@ -91,9 +91,3 @@ def begin(place: str, name: Any) -> None:
     """Have work of this ``name`` begun, which a button asks for."""
     session.drop(f"{place}.stopped")
     session.keep(f"{place}.asked", name)
-
-
-def _long(seconds: float) -> str:
-    if seconds < 100.0:
-        return f"{max(seconds, 1.0):.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 6000.0 else f"{seconds / 3600.0:.0f} h"

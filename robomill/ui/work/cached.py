@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from robomill.arrays import digest
 from robomill.errors import RobomillError
+from robomill.identification.knowledge import Knowledge
 from robomill.kinematics.spin import OverSpin
 from robomill.simulation.enlarged import Enlarged, enlarged
 from robomill.simulation.result import SimulationResult
@@ -71,6 +72,11 @@ def by_setup(setup: SimulationSetup) -> tuple[Any, ...]:
 def by_result(result: SimulationResult) -> tuple[Any, ...]:
     """The set-up that was run."""
     return by_setup(result.setup)
+
+
+def by_knowledge(known: Knowledge | None) -> tuple[Any, ...] | None:
+    """What is known of the compliances."""
+    return None if known is None else (known.covariance, known.source)
 
 
 @shared(by_setup)

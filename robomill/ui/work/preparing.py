@@ -9,7 +9,7 @@ import streamlit as st
 
 from robomill import compiled, seals
 from robomill.ui.markup import quiet
-from robomill.units import format_count
+from robomill.units import format_count, format_duration
 
 EVERY_S = 0.4
 USUAL_S = 90.0  # that it takes on a computer that does something else, too
@@ -54,7 +54,7 @@ def words(spent_s: float) -> str:
     """How long it takes: what is usual, and once that is over, that it goes on."""
     if spent_s <= USUAL_S:
         return "It takes about a minute."
-    return f"It takes longer than usual ({spent_s / 60.0:.0f} min so far) and goes on: the computer is busy."
+    return f"It takes longer than usual ({format_duration(spent_s, 0)} so far) and goes on: the computer is busy."
 
 
 def _making() -> threading.Thread:

@@ -15,7 +15,7 @@ from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
 from robomill.cutting.unjudged import Unjudged
 from robomill.io.materials import load_material
 from robomill.provenance import Provenance
-from robomill.simulation.judging.verdict_words import gauge_end
+from robomill.simulation.judging.verdict_words import LEVELS, gauge_end, level_of_share
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
@@ -169,3 +169,28 @@ def test_verdicts_of_equal_runs_are_equal() -> None:
     assert pickle.loads(pickle.dumps(verdict)) == verdict
     assert verdict != rm.simulate(setup.replace(tolerance_mm=0.2)).verdict
     assert repr(verdict).startswith("<Verdict ok: The groove is")
+
+
+@pytest.mark.parametrize(
+    ("share", "level"),
+    [
+        (0.0, "ok"),
+        (0.7999, "ok"),
+        (0.8, "tight"),
+        (1.0, "tight"),
+        (1.0001, "out"),
+        (np.inf, "out"),
+        (np.nan, "unjudged"),
+    ],
+)
+def test_a_share_of_the_tolerance_has_its_level_and_one_that_nobody_knows_is_not_judged(share, level) -> None:
+    assert level_of_share(share) == level
+
+
+def test_a_grade_is_that_of_its_share_unless_a_wall_is_gone_or_the_force_may_be_larger() -> None:
+    verdict = replace(rm.simulate(rm.load_setup("paper_flute")).verdict, far=np.nan, gone=())
+    for share in (0.5, 0.9, 1.1):
+        graded = replace(verdict, share=share)
+        assert graded.grade == level_of_share(share)
+        assert replace(graded, gone=(3,)).grade == "out"
+        assert replace(graded, far=1.2).grade == max(level_of_share(share), "tight", key=LEVELS.index)

@@ -5,8 +5,9 @@ import dataclasses
 import numpy as np
 
 import robomill as rm
-from robomill.ui.improve.opened import level_words, over_spin
-from robomill.ui.improve.remedies import REMEDIES
+from robomill.improve.remedies import REMEDIES
+from robomill.ui.improve.opened import OPENED, level_words, over_spin
+from robomill.ui.improve.remedies import FINDS, SHOWN, shown
 
 
 def test_a_wall_to_the_right_is_as_large_as_one_to_the_left() -> None:
@@ -14,19 +15,26 @@ def test_a_wall_to_the_right_is_as_large_as_one_to_the_left() -> None:
     setup = rm.load_setup("paper_flute").replace(step_mm=5, cell_mm=0.5, force=rm.ConstantForce((0.0, -100.0, 0.0)))
     found = rm.place(setup, x_mm=(-100, 100), y_mm=(-1400, -1300), candidates=20)
     assert found.best.wall < -abs(found.best.floor)
-    remedy = next(each for each in REMEDIES if each.name == "place")
-    assert remedy.left(found, rm.simulate(setup), "mm").error == f"wall {-found.best.wall * 1e3:.3f} mm"
+    remedy = next(each for each in REMEDIES if each.code == "place")
+    assert shown(remedy, found, rm.simulate(setup), "mm").error == f"wall {-found.best.wall * 1e3:.3f} mm"
 
 
 def test_a_part_that_lies_best_is_not_said_to_be_moved_by_nothing() -> None:
     setup = rm.load_setup("paper_flute").replace(step_mm=5, cell_mm=0.5)
     found = rm.place(setup, x_mm=(-100, 100), y_mm=(-1400, -1300), candidates=20)
     stays = dataclasses.replace(found, best=found.now)
-    remedy = next(each for each in REMEDIES if each.name == "place")
-    left = remedy.left(stays, rm.simulate(setup), "mm")
+    remedy = next(each for each in REMEDIES if each.code == "place")
+    left = shown(remedy, stays, rm.simulate(setup), "mm")
     assert (left.cost, left.setup) == ("no place is better than where it lies", None)
     turned = dataclasses.replace(found.best, yaw=found.now.yaw + np.deg2rad(30.0))
-    assert remedy.left(dataclasses.replace(found, best=turned), rm.simulate(setup), "mm").cost.endswith("turned by 30°")
+    assert shown(remedy, dataclasses.replace(found, best=turned), rm.simulate(setup), "mm").cost.endswith(
+        "turned by 30°"
+    )
+
+
+def test_the_page_finds_tells_and_opens_every_remedy() -> None:
+    codes = [each.code for each in REMEDIES]
+    assert list(FINDS) == list(SHOWN) == list(OPENED) == codes
 
 
 def test_a_map_of_spins_shows_only_what_is_judged_and_its_best_spin_inside() -> None:

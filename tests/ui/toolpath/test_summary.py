@@ -8,7 +8,6 @@ import pytest
 from robomill.provenance import Finding
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.toolpath.summary import (
-    duration,
     finding_words,
     move_words,
     size_words,
@@ -81,7 +80,3 @@ def test_a_finding_fits_its_tile_and_the_worst_is_first() -> None:
     assert len(said) <= 66
 
 
-@pytest.mark.parametrize("seconds", [1e9, 1e303, float("inf")])
-def test_a_time_that_no_machine_has_is_said_so(seconds: float) -> None:
-    assert duration(seconds) == "more than three years"
-    assert duration(3.0 * 3600.0) == "3 h 00 min"

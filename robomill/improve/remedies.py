@@ -1,0 +1,140 @@
+"""What would fix a cut: every remedy by its name, and what it leaves of what the verdict judges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from robomill.errors import SetupError
+from robomill.improve.advice import Advice
+from robomill.improve.compensation import Compensation
+from robomill.improve.design import Design, design
+from robomill.improve.errors import largest
+from robomill.improve.judged import judged
+from robomill.improve.placed import Place, Placement
+from robomill.improve.turning import Turning
+from robomill.simulation.judging.verdict_words import Level
+from robomill.simulation.result import SimulationResult
+from robomill.simulation.run import Simulate
+from robomill.simulation.setup import SimulationSetup
+
+LEAST = 0.005  # of the tolerance: what saves less is no remedy
+
+
+@dataclass(frozen=True, eq=False)
+class Left:
+    """What a remedy leaves: ``share`` of the tolerance, the verdict's ``level`` and the ``error`` that decides, by name
+    and m; ``then`` is the cut with it, and ``better`` whether noticeably less is left than there is."""
+
+    share: float
+    level: Level
+    error: tuple[str, float]
+    then: SimulationSetup
+    better: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Remedy:
+    """A kind of remedy: ``makes`` is what finding it returns, and ``left`` says what that leaves against the run as it
+    is. One that ``joins`` others stands beneath them."""
+
+    code: str
+    title: str
+    makes: type
+    left: Callable[[Any, SimulationResult], Left]
+    joins: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffened:
+    """A design, and the ``run`` of the cut with its joints, judged by the tolerances of the cut; ``half``: it was to
+    halve an error that keeps them."""
+
+    design: Design
+    run: SimulationResult
+    half: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Both:
+    """The best place of the part, and the program corrected for that place."""
+
+    place: Placement
+    program: Compensation
+
+
+def stiffened(setup: SimulationSetup, run: Simulate) -> Stiffened:
+    """The cheapest stiffer joints that keep the tolerance; where it is kept, that halve what is used of it. ``run`` is
+    what simulates a set-up. Raises the refusal of ``design``."""
+    share = judged(run(setup)).share
+    if not share <= 1.0:
+        found = design(setup)
+        return Stiffened(found, found.after)
+    halved = design(setup, 0.5 * share * setup.tolerance)
+    return Stiffened(halved, run(setup.replace(robot=halved.setup.robot)), half=True)
+
+
+def moved_and_corrected(place: Placement, correct: Callable[[SimulationSetup], Compensation]) -> Both:
+    """A place and the program corrected for it. Raises SetupError where it is no better than where the part lies."""
+    if not saves(place.best.share, place.now.share):
+        raise SetupError("No place is better than where the part lies: correct the program there.")
+    return Both(place, correct(place.moved))
+
+
+def saves(share: float, now: float) -> bool:
+    """Whether a share of the tolerance is noticeably less than what is used now."""
+    return share < now - LEAST
+
+
+def decides(result: SimulationResult) -> tuple[str, float]:
+    """The name of what decides a verdict, and its size, m."""
+    rests = result.verdict.deciding
+    return ("tip", result.max_deviation) if rests is None else (rests[0], abs(rests[1].value))
+
+
+def error_at(place: Place) -> tuple[str, float]:
+    """What is largest at a place, by name and m."""
+    return largest(place.wall, place.floor, place.max_deviation)
+
+
+def _of_run(run: SimulationResult, now: float) -> Left:
+    return Left(run.verdict.share, run.verdict.level, decides(run), run.setup, saves(run.verdict.share, now))
+
+
+def _of_place(place: Place, then: SimulationSetup, now: float) -> Left:
+    return Left(place.share, place.level, error_at(place), then, saves(place.share, now))
+
+
+def _of_program(found: Compensation, setup: SimulationSetup, now: float) -> Left:
+    then = setup.replace(source=found.source)
+    return Left(found.share, found.level, found.doubted.largest, then, saves(found.share, now))
+
+
+def _of_both(found: Both, now: SimulationResult) -> Left:
+    return _of_program(found.program, found.place.moved, now.verdict.share)
+
+
+REMEDIES: tuple[Remedy, ...] = (
+    Remedy(
+        "program",
+        "Correct the program",
+        Compensation,
+        lambda found, now: _of_program(found, now.setup, now.verdict.share),
+    ),
+    Remedy("stiffen", "Stiffen joints", Stiffened, lambda found, now: _of_run(found.run, now.verdict.share)),
+    Remedy("place", "Move the part", Placement, lambda found, now: _of_place(found.best, found.moved, found.now.share)),
+    Remedy("both", "Move the part, then correct", Both, _of_both, joins=True),
+    Remedy(
+        "turn",
+        "Turn the spindle",
+        Turning,
+        lambda found, now: _of_place(found.constant, found.turned, now.verdict.share),
+    ),
+    Remedy("cut", "Cut otherwise", Advice, lambda found, now: _of_run(found.truest.run or now, found.ways[0].share)),
+)
+
+
+def remedy_of(found: Any) -> Remedy | None:
+    """The kind of what was found; None for what is no remedy."""
+    return next((each for each in REMEDIES if isinstance(found, each.makes)), None)
