@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robomill.errors import RobomillError
+from robomill.wording import with_article
 
 T = TypeVar("T")
 FloatArray = NDArray[np.float64]
@@ -34,7 +35,7 @@ def of_kind(value: Any, kinds: type | tuple[type, ...], name: str, give: str, er
     """Refuse a ``value`` of another kind, with what to ``give`` instead: what is called later would only crash."""
     if not isinstance(value, kinds):
         first = kinds[0] if isinstance(kinds, tuple) else kinds
-        what = "a text" if first is str else _a(first.__name__)
+        what = "a text" if first is str else with_article(first.__name__)
         rest = "." if give == what else f"; give {give}."
         raise error(f"{name}: expected {what}, found {brief(value)}{rest}")
 
@@ -105,17 +106,13 @@ def brief(value: Any, most: int = 60) -> str:
     """What was found, on one line and no longer than that; by its kind, what would only show an address or a table."""
     kind = type(value)
     if isinstance(value, Iterator):
-        return f"{_a(kind.__name__)}, which is read once only: give a list or an array"
+        return f"{with_article(kind.__name__)}, which is read once only: give a list or an array"
     if kind.__repr__ is object.__repr__ or kind.__module__.partition(".")[0] in ("pandas", "xarray"):
-        return _a(kind.__name__)
+        return with_article(kind.__name__)
     try:
         return " ".join(f"{value!r:.{4 * most}}".split())[:most]
     except ValueError:  # Python writes no whole number of more than 4300 digits
         return "a whole number of thousands of digits"
-
-
-def _a(name: str) -> str:
-    return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
 
 
 def check_place(p: ArrayLike, name: str, error: type[RobomillError]) -> None:

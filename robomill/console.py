@@ -12,52 +12,24 @@ from contextlib import suppress
 from typing import Any, TextIO
 
 from robomill.errors import RobomillError
+from robomill.wording import spelled
 
 SPELLING = "robomill"
 # Handlers that somebody chose (PYTHONIOENCODING=ascii:replace) stay; those that Python chooses itself do not.
 OF_PYTHON = ("strict", "surrogateescape", "backslashreplace")
 
-WORDS = {
-    **{"µ": "u", "μ": "u", "−": "-", "‐": "-", "‑": "-", "–": "-", "—": "-", "×": "x", "±": "+-", "·": "-", "⋅": "*"},
-    **{"…": "...", "→": "->", "≤": "<=", "≥": ">=", "≈": "~", "≠": "!=", "∞": "inf", "√": "sqrt", "Ø": "dia. "},
-    **{"α": "alpha", "β": "beta", "δ": "delta", "Δ": "Delta", "θ": "theta", "λ": "lambda", "σ": "sigma", "Σ": "Sigma"},
-    **{"φ": "phi", "ω": "omega", "τ": "tau", "π": "pi", "′": "'", "″": '"', "‘": "'", "’": "'", "“": '"', "”": '"'},
-    **{"‹": "<", "›": ">", "•": "*", "½": "1/2", "¼": "1/4", "¾": "3/4", "⁄": "/"},
-    **{"\xa0": " ", "\u202f": " ", "\ufffd": "?"},
-}
-RAISED = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ᵀ", "0123456789+-T", strict=True))
-LOWERED = dict(zip("₀₁₂₃₄₅₆₇₈₉ₘ", "0123456789m", strict=True))
 # Of what is shown, control characters (but tabs and line ends) would steer a terminal.
 STEERING = {code: f"\\x{code:02x}" for code in (*range(9), *range(11, 32), *range(127, 160))}
 
 
-def spelled(text: str, at: int, end: int) -> tuple[str, int]:
-    """``text[at:end]`` in ASCII and where to go on: a raised or lowered number is spelled to its own end."""
-    said = []
-    while at < end:
-        for marks, sign in ((RAISED, "^"), (LOWERED, "_")):
-            if text[at] in marks:
-                said.append(sign)
-                while at < len(text) and text[at] in marks:
-                    said.append(marks[text[at]])
-                    at += 1
-                break
-        else:
-            said.append(_word(text, at))
-            at += 1
-    return "".join(said), at
-
-
-def _word(text: str, at: int) -> str:
-    if text[at] == "°":
-        return " deg" if text[at - 1 : at].isdigit() else "deg"
-    return WORDS.get(text[at]) or text[at].encode("ascii", "backslashreplace").decode()
+def _escaped(character: str) -> str:
+    return character.encode("ascii", "backslashreplace").decode()
 
 
 def _spell(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    return spelled(error.object, error.start, error.end)
+    return spelled(error.object, error.start, error.end, _escaped)
 
 
 codecs.register_error(SPELLING, _spell)

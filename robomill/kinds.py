@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import NO_NUMBERS, Arrays, Numbers, Rows, brief, no_number
 from robomill.errors import ArgumentError, RobomillError
+from robomill.wording import with_article
 
 LOOKED_AT = 1000  # entries of a sequence
 WORDS = {
@@ -162,5 +163,4 @@ def _word(kind: Any) -> str:
         return f"a sequence of {_words(inner[0])}" if inner else "a sequence"
     if isclass(cls) and issubclass(cls, Mapping) and len(inner) == 2:
         return f"a mapping from {_words(inner[0])} to {_words(inner[1])}"
-    name = getattr(cls, "__name__", str(cls))
-    return f"{'an' if name[:1] in 'AEIOU' else 'a'} {name}"
+    return with_article(getattr(cls, "__name__", str(cls)))

@@ -26,6 +26,7 @@ import numpy as np
 from robomill.arrays import NO_NUMBERS, as_floats, brief, frozen, is_unreal
 from robomill.errors import RobomillError
 from robomill.units import UNITS, format_short, unit_label
+from robomill.wording import listed
 
 QuantityKind = Literal["number", "array", "whole", "switch", "choice"]
 _KEY = "quantity"
@@ -92,7 +93,7 @@ class Quantity:
     def expected(self) -> str:
         """What it should be, in words: ``"more than 0 mm"``, ``"0 to less than 85°"``, ``"right or left"``."""
         if self.kind == "choice":
-            return " or ".join(", ".join(self.options).rsplit(", ", 1))
+            return listed(self.options, "or")
         if self.kind == "switch":
             return "true or false"
         low, high = (None if bound is None else self.short(bound) for bound in (self._lowest, self._highest))

@@ -13,11 +13,12 @@ from dataclasses import dataclass
 from robomill.errors import NumberError
 from robomill.unit_words import alike, meaning, measure, raised
 from robomill.units import rounded, unit_label
+from robomill.wording import DASHES, listed
 
 SI_BELOW, NOTHING = 1e-3, 1e-12
 SHOWN, GIVEN = 6, 10  # significant digits of what was computed, and of what somebody gave
 _SAME = str.maketrans(
-    dict.fromkeys("−–‐‑", "-")
+    dict.fromkeys(DASHES, "-")
     | dict.fromkeys("’ʼ′", "'")
     | dict.fromkeys("\u200b\u200e\u200f\u2060\ufeff")  # of no width
     | {"⁄": "/", "\t": " "}
@@ -134,6 +135,6 @@ def _from(number: float, behind: str, given: str, unit: str) -> float:
     own, other = measure(unit), meaning(behind)
     if other is None or other.dimensions != own.dimensions:
         known = [*([unit_label(unit)] if unit_label(unit) else []), *alike(unit)]
-        wanted = " or ".join(filter(None, [", ".join(known[:-1]), *known[-1:]])) or "no unit"
+        wanted = listed(known, "or") or "no unit"
         raise NumberError(f"found {given!r:.40}, expected a number in {wanted}; {behind!r:.20} is no such unit.")
     return number if other.same(own) else rounded(number * other.factor / own.factor, 15)

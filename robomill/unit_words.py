@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from robomill.units import UNITS, unit_label
+from robomill.wording import DASHES, MICRO, RAISED
 
 # What each simple unit measures, as (dimension, power).
 SIMPLE: dict[str, tuple[str, int]] = {
@@ -50,9 +51,9 @@ SPELLED = {
 _PART = re.compile(
     r"(?P<mark>[/()])|(?P<number>1(?:e[+-]?\d+)?)(?![\d.,])|(?P<name>[^\W\d_]+|[%°\"])(?:\^?(?P<power>[+-]?\d))?"
 )
-_SUPERSCRIPT = re.compile("[⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+")
-_PLAIN = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
-_SAME = str.maketrans({"µ": "u", "μ": "u", "″": '"', "”": '"', "−": "-"} | dict.fromkeys("·⋅*×.", " "))
+_SUPERSCRIPT = re.compile(f"[{''.join(RAISED)}]+")
+_ON_THE_LINE = str.maketrans(RAISED)
+_SAME = str.maketrans(MICRO | {"″": '"', "”": '"'} | dict.fromkeys(DASHES, "-") | dict.fromkeys("·⋅*×.", " "))
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class Meaning:
 
 def raised(text: str) -> str:
     """A text with its superscripts on the line: ``mm²`` is ``mm^2``, ``10⁻⁷`` is ``10^-7``."""
-    return _SUPERSCRIPT.sub(lambda found: "^" + found[0].translate(_PLAIN), text)
+    return _SUPERSCRIPT.sub(lambda found: "^" + found[0].translate(_ON_THE_LINE), text)
 
 
 @cache

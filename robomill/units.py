@@ -13,10 +13,11 @@ from typing import SupportsFloat, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from robomill.wording import MINUS as MINUS
+
 Number = TypeVar("Number", float, NDArray[np.float64])
 
 NOT_REACHED = "not reached"
-MINUS = "−"
 LONGEST_S = 1e8  # what takes longer is no time that a machine has
 GAP = "\u202f"  # between thousands: a comma there is a decimal mark to many
 
@@ -167,7 +168,7 @@ def format_number(value: SupportsFloat, digits: int, sign: bool = False, missing
     """A bare number with so many decimals: a true minus, no negative zero, ``missing`` for NaN."""
     number = float(value)
     if not math.isfinite(number):
-        return missing if math.isnan(number) else ("∞" if number > 0 else "−∞")
+        return missing if math.isnan(number) else ("∞" if number > 0 else f"{MINUS}∞")
     text = f"{number:+.{digits}f}" if sign else f"{number:.{digits}f}"
     return _typeset(text.lstrip("+-") if float(text) == 0.0 else text)
 

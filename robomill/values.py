@@ -15,13 +15,12 @@ from robomill.frames import Columns, data_frame
 from robomill.lazy import cached_property
 from robomill.quantities import described
 from robomill.units import format_count, format_significant
+from robomill.wording import spelled
 
 if TYPE_CHECKING:
     from robomill.frames import DataFrame
 
 MOST_ROWS = 10  # of a table in a notebook
-# In a console that knows no more than ASCII.
-PLAIN = str.maketrans({"−": "-", "×": "x", "µ": "u", "°": " deg", "²": "2", "³": "3", "⁻": "^-", "¹": "1", "⁷": "7"})
 
 
 # Attributes of values that completion does not offer: what other parts of the product go by.
@@ -146,7 +145,8 @@ class Tabled(Table, Value):
 
 def short(value: Any) -> str:
     """One line for a console, ASCII where the value's own names are."""
-    return f"<{type(value).__name__} {value._said().translate(PLAIN)}>"
+    said = value._said()
+    return f"<{type(value).__name__} {spelled(said, 0, len(said), str)[0]}>"
 
 
 def captioned(value: Any, rows: str) -> str:

@@ -11,6 +11,7 @@ from robomill.identification.fit.system import System
 from robomill.identification.result import Outlier, UnseenJoint
 from robomill.provenance import Finding
 from robomill.units import format_number, format_percent, format_si
+from robomill.wording import listed
 
 ALIKE = 0.7  # correlation from which two parameters are said to be confused
 CONDITION_WARNING = 100.0
@@ -101,7 +102,7 @@ def sentence(fit: Fit, parameters: tuple[Parameter, ...], share: FloatArray, k: 
         if not others:
             return f"{name} cannot be seen: no test makes it yield; {cure}."
         return (
-            f"{name} cannot be seen: at these poses its effect is exactly made up of {_listed(others)}, "
+            f"{name} cannot be seen: at these poses its effect is exactly made up of {listed(others)}, "
             "so only their sum is known; measure at poses where they move the tool differently."
         )
     table = np.nan_to_num(correlation(fit.covariance)[k])
@@ -143,7 +144,7 @@ def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict
         found.append(Finding("info", text, code="lumped"))
     if len(fit.null):
         labels = tuple(p.label for k, p in enumerate(system.parameters) if not fit.seen[k])
-        what = f"tell {_listed(labels)} apart" if len(labels) > 1 else f"make {labels[0]} yield, so it stays unknown"
+        what = f"tell {listed(labels)} apart" if len(labels) > 1 else f"make {labels[0]} yield, so it stays unknown"
         text = f"These poses do not {what}; predictions near the measured poses still hold."
         found.append(Finding("warning", text, code="not-seen"))
     elif fit.condition[1] > CONDITION_WARNING:
@@ -173,7 +174,3 @@ def model_findings(error: float) -> tuple[Finding, ...]:
         "and then a compliance can be off by more than its interval says, which knows scatter only."
     )
     return (Finding("warning", text, code="model-misses"),)
-
-
-def _listed(labels: tuple[str, ...]) -> str:
-    return labels[0] if len(labels) == 1 else f"{', '.join(labels[:-1])} and {labels[-1]}"

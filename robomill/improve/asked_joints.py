@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats, brief
 from robomill.errors import SetupError
 from robomill.units import format_short
+from robomill.wording import listed
 
 SETTLED = 1e-3  # change of a stiffness ratio, of itself, that is none
 
@@ -51,4 +52,4 @@ def joints_named(numbers: tuple[int, ...], ratios: FloatArray) -> list[str]:
 def words_of_joints(numbers: tuple[int, ...], ratios: FloatArray) -> tuple[str, int] | None:
     """Which joints are how many times as stiff, and how many they are; None where none is."""
     named = joints_named(numbers, ratios)
-    return (" and ".join(", ".join(named).rsplit(", ", 1)), len(named)) if named else None
+    return (listed(named), len(named)) if named else None

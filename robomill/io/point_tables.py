@@ -26,6 +26,7 @@ from robomill.spelled import one_of, to_give
 from robomill.toolpath.path import FEED, MOST_FEED, Toolpath
 from robomill.toolpath.source import PointsSource
 from robomill.units import format_count, format_many, format_short, from_si, to_si, unit_label
+from robomill.wording import listed
 
 SUFFIXES = (".csv", ".parquet")
 ASKED = {"mm": "mm/min", "in": "in/min", "cm": "mm/min", "m": "mm/min"}
@@ -202,7 +203,7 @@ def _ask_unit(columns: Columns, place: str, unit: str) -> None:
     if silent.keys() & set(PLACE):
         size = np.ptp(from_si(np.column_stack([columns.values[axis] for axis in PLACE]), "mm"), axis=0)
         sizes = [f"{format_many(to_si(size, one), 'mm', 1, between=' × ')} in {unit_label(one)}" for one in ASKED]
-        names += f" name{s} no unit; the path would be {', '.join(sizes[:-1])} or {sizes[-1]}"
+        names += f" name{s} no unit; the path would be {listed(sizes, 'or')}"
     else:
         names += f" name{s} no unit"
     give = to_give("unit", "say which")

@@ -9,6 +9,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.paper import SLOT
 from robomill.units import format_si
+from robomill.wording import signed
 
 FORCE = SLOT.force  # N
 ASIDE = 0.02  # share of the displacement that counts as going somewhere
@@ -83,4 +84,4 @@ def side(axis: int, plus: bool) -> str:
     """To which side: up, down, or towards an axis."""
     if axis == 2:
         return "up" if plus else "down"
-    return f"towards {'+' if plus else '−'}{'XY'[axis]}"
+    return f"towards {signed(1.0 if plus else -1.0, 'XY'[axis])}"

@@ -23,7 +23,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import section_at
-from robomill.units import format_si
+from robomill.units import MINUS, format_si
 from robomill.version import __version__
 
 MARK = '<!doctype html>\n<html lang="en" data-made-by="robomill report">'  # how a report begins
@@ -151,7 +151,7 @@ def moment(when: datetime) -> str:
     east = when.utcoffset()
     minutes = 0 if east is None else round(east.total_seconds() / 60.0)
     hours, rest = divmod(abs(minutes), 60)
-    zone = f"{'+' if minutes > 0 else '−'}{hours}{f':{rest:02d}' if rest else ''}" if minutes else ""
+    zone = f"{'+' if minutes > 0 else MINUS}{hours}{f':{rest:02d}' if rest else ''}" if minutes else ""
     return f"{when.day} {when:%B %Y, %H:%M} UTC{zone}"
 
 

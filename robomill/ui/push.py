@@ -22,6 +22,7 @@ from robomill.ui.entry import declared, inputs
 from robomill.ui.point import InHand, default_point, holds, in_hand
 from robomill.ui.project import MapView, View
 from robomill.units import format_si, unit_label
+from robomill.wording import listed
 from robomill.workspace.fields import ComplianceMap
 from robomill.workspace.reach import ReachBox
 
@@ -101,8 +102,7 @@ class Moved:
         named = [f"from joint {self.joints[j]}" for j in main]
         (most, *others), (first, *rest) = per_cent, named
         told = [f"{most} % come {first}", *(f"{each} % {where}" for each, where in zip(others, rest, strict=True))]
-        last = told.pop()
-        return f"Of these {format_si(self.size, unit)}, {' and '.join([', '.join(told), last] if told else [last])}."
+        return f"Of these {format_si(self.size, unit)}, {listed(told)}."
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.units import format_limit, from_si
 from robomill.viz.along import Along, add_band, at_feed
 from robomill.viz.chart import Chart
-from robomill.viz.theme import axis_colours, joint_colours, palette, rgba, say
+from robomill.viz.theme import axis_colours, hover, joint_colours, palette, rgba, say
 
 DASHES = {"x": "dot", "y": "solid", "z": "dash"}
 
@@ -21,11 +21,11 @@ def components_figure(result: SimulationResult, unit: str, *, dark: bool, i: int
     tolerance = float(from_si(result.setup.tolerance, unit))
     plot = Along.begin(s, unit, "components", dark=dark, height=330, keep=[max(result.worst, 0)])
     below = {"fill": "tozeroy", "fillcolor": rgba(p.text, 0.05)}
-    plot.curve(np.linalg.norm(delta, axis=1), "size", {"color": p.text, "width": 2.4}, "%{y:.4f} " + unit, **below)
+    plot.curve(np.linalg.norm(delta, axis=1), "size", {"color": p.text, "width": 2.4}, hover(unit, sign=False), **below)
     for column, (name, colour) in enumerate(axis_colours(dark).items()):
         line = {"color": colour, "width": 2, "dash": DASHES[name]}
         lines = result.path.block[plot.chosen]
-        plot.curve(delta[:, column], f"δ<sub>{name.upper()}</sub>", line, "%{y:+.4f} " + unit, customdata=lines)
+        plot.curve(delta[:, column], f"δ<sub>{name.upper()}</sub>", line, hover(unit), customdata=lines)
     for side in (1, -1) if np.nanmin(delta, initial=0.0) < -0.6 * tolerance else (1,):
         plot.level(side * tolerance, p.muted, "solid")
     words = f"tolerance of the surface {format_limit(result.setup.tolerance, unit)}"
@@ -42,7 +42,7 @@ def shares_figure(result: SimulationResult, component: str, unit: str, *, dark: 
     What pushes the tip up stands above zero, what pulls it back below.
     """
     p, column = palette(dark), "xyz".index(component)
-    s, hover = from_si(result.path.s, unit), "%{y:+.4f} " + unit
+    s, seen = from_si(result.path.s, unit), hover(unit)
     every = np.concatenate([result.delta_joint[:, :, column], result.delta_spring[:, :, column]], axis=1)
     named = [f"joint {n}" for n in result.setup.robot.joint_numbers] + [s.name for s in result.setup.springs]
     if result.ahead is not None:
@@ -56,10 +56,10 @@ def shares_figure(result: SimulationResult, component: str, unit: str, *, dark: 
             part = np.where(np.sign(np.nan_to_num(shares[:, j])) == sign, shares[:, j], 0.0)
             if np.any(part[plot.chosen]):  # a joint that pushes both ways has two areas and needs one name
                 area = {"stackgroup": stack, "fillcolor": rgba(colour, 0.78), "legendgroup": name}
-                plot.curve(part, name, {"width": 0.6, "color": colour}, hover, showlegend=not said, **area)
+                plot.curve(part, name, {"width": 0.6, "color": colour}, seen, showlegend=not said, **area)
                 said = True
     total = from_si(at_feed(result, result.delta), unit)[:, column]
-    plot.curve(total, "total", {"color": p.text, "width": 2.2}, hover)
+    plot.curve(total, "total", {"color": p.text, "width": 2.2}, seen)
     plot.zero()
     if i >= 0:
         plot.station(float(s[i]), "station")
@@ -79,10 +79,10 @@ def band_figure(
     add_band(plot.fig, s, value, half, component, dark=dark)
     if plot.fig.traces:
         plot.fig.traces[0]["showlegend"] = True
-    plot.curve(now, "project now", {"color": p.muted, "width": 1.6, "dash": "dash"}, "%{y:+.4f} " + unit)
+    plot.curve(now, "project now", {"color": p.muted, "width": 1.6, "dash": "dash"}, hover(unit))
     line = {"color": axis_colours(dark).get(component, p.text), "width": 2.4}
-    hover = "%{y:+.4f} ± %{customdata:.4f} " + unit
-    plot.curve(value, f"{symbol}, load tests", line, hover, customdata=half[plot.chosen])
+    seen = f"{hover('±')} {hover(unit, sign=False, axis='customdata')}"
+    plot.curve(value, f"{symbol}, load tests", line, seen, customdata=half[plot.chosen])
     return plot.done(f"Deviation {symbol} in {{M}}, {unit}")
 
 
@@ -90,8 +90,8 @@ def both_figure(s: FloatArray, by_map: FloatArray, by_joints: FloatArray, unit: 
     """Size of the deviation along the path (m,) by the measured map and by the joint model, in ``unit``."""
     p = palette(dark)
     plot = Along.begin(s, unit, "both", dark=dark, height=280)
-    plot.curve(by_map, "measured map", {"color": p.warm, "width": 2.4}, "%{y:.4f} " + unit)
-    plot.curve(by_joints, "joint model", {"color": p.accent, "width": 2.2, "dash": "dash"}, "%{y:.4f} " + unit)
+    plot.curve(by_map, "measured map", {"color": p.warm, "width": 2.4}, hover(unit, sign=False))
+    plot.curve(by_joints, "joint model", {"color": p.accent, "width": 2.2, "dash": "dash"}, hover(unit, sign=False))
     return plot.done(f"Deviation, {unit}", rangemode="tozero")
 
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.units import decimals, unit_label
+from robomill.units import MINUS, decimals, unit_label
 from robomill.viz.along import Along
 from robomill.viz.chart import Chart
-from robomill.viz.theme import axis, figure, palette, rgba, say
+from robomill.viz.theme import axis, figure, hover, palette, rgba, say
 
 CLIPPED = 2.0  # tolerances: what is further out would press the rest of the curve flat
 
@@ -45,19 +45,19 @@ def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, da
     plot.fig.shape(type="rect", xref="x domain", x0=0, x1=1, y0=-most, y1=most, **inside)
     if curves.band is not None:
         plot.shade((curves.band[0], curves.band[1]), "published coefficients", rgba(p.accent, 0.16))
-    hover = "%{y:+.4f} " + unit + ", line %{customdata}"
+    seen = f"{hover(unit)}, line %{{customdata}}"
     for value, name, colour in ((curves.offset, "centre offset", p.accent), (curves.floor, "floor", p.text)):
         if np.isfinite(value).any() and not curves.joined:
             plot.fig.dots(
-                curves.station, value, {"size": 7, "color": colour}, name=name, hovertemplate=hover, customdata=block
+                curves.station, value, {"size": 7, "color": colour}, name=name, hovertemplate=seen, customdata=block
             )
         elif np.isfinite(value).any():
-            plot.curve(value, name, {"color": colour, "width": 2.2}, hover, customdata=block)
+            plot.curve(value, name, {"color": colour, "width": 2.2}, seen, customdata=block)
     if curves.fit is not None:
         plot.curve(curves.fit, "best line", {"color": p.muted, "width": 1.2, "dash": "dot"})
     if curves.measured is not None:
         marks = {"size": 8, "symbol": "diamond-open", "color": p.text, "line": {"width": 1.6}}
-        plot.fig.dots(*curves.measured, marks, name="measured", hovertemplate="measured %{y:+.4f} " + unit)
+        plot.fig.dots(*curves.measured, marks, name="measured", hovertemplate=f"measured {hover(unit)}")
     for place, words in limits:
         plot.level(place, p.muted, "solid")
         say(plot.fig, words, 1, place, p.muted, xref="paper", xanchor="right", yshift=9 if place > 0 else -9)
@@ -81,7 +81,7 @@ def beyond_chart(curves: ProfileCurves) -> int:
 def _limits(walls: float, floors: float) -> list[tuple[float, str]]:
     """Where the tolerances of walls and floors lie, with their words: one pair where they are one."""
     told = [(walls, "tolerance")] if walls == floors else [(walls, "walls"), (floors, "floors")]
-    return [(side * value, f"{sign} {words}") for value, words in told for side, sign in ((1, "+"), (-1, "−"))]
+    return [(side * value, f"{sign} {words}") for value, words in told for side, sign in ((1, "+"), (-1, MINUS))]
 
 
 def histogram_figure(

@@ -8,7 +8,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.viz.along import Along
 from robomill.viz.chart import Chart
-from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, figure, palette, say
+from robomill.viz.theme import SEQUENTIAL, axis, colour_bar, figure, hover, palette, say
 
 MAP_HEIGHT, FRONT_HEIGHT = 420, 300  # px
 NEAR_TOLERANCE = 0.5  # of it: deviations beyond are drawn with it
@@ -119,7 +119,7 @@ def corrected_lines(
     for when, values, look in (("before", before, "dot"), ("after", after, "solid")):
         for name, value, colour in zip(CORRECTED, values, (p.accent, p.warm), strict=True):
             line = {"color": colour, "width": 2.2, "dash": look}
-            plot.curve(value, f"{name}, {when}", line, "%{y:+.4f} " + unit)
+            plot.curve(value, f"{name}, {when}", line, hover(unit))
     ends = float(np.nanmin(before, initial=0.0)), float(np.nanmax(before, initial=0.0))
     for side in (-1, 1):
         if side * ends[side > 0] > NEAR_TOLERANCE * tolerance:

@@ -8,7 +8,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.units import format_number
 from robomill.viz.chart import Chart, Trace
-from robomill.viz.theme import ABOVE, axis, figure, joint_colours, palette, say
+from robomill.viz.theme import ABOVE, axis, figure, hover, joint_colours, palette, say
 
 SHARES_HEIGHT, LINES_HEIGHT = 266, 480  # px
 
@@ -38,7 +38,7 @@ def share_bars(
             "orientation": "h",
             "name": f"joint {number}",
             "marker": {"color": colours[j % 7], "line": {"width": 0}},
-            "hovertemplate": f"joint {number}<br>%{{y}}: %{{x:+.4f}} {unit}<extra></extra>",
+            "hovertemplate": f"joint {number}<br>%{{y}}: {hover(unit, axis='x')}<extra></extra>",
         }
         for j, number in enumerate(joints)
     ]
@@ -71,7 +71,7 @@ def _marks(name: str, names: Sequence[str], values: FloatArray, colour: str, uni
         "y": list(names),
         "mode": "markers",
         "name": name,
-        "hovertemplate": name + " %{x:+.4f} " + unit + "<extra></extra>",
+        "hovertemplate": f"{name} {hover(unit, axis='x')}<extra></extra>",
         "marker": {"symbol": "line-ns-open", "size": 20, "color": colour, "line": {"width": 3, "color": colour}},
     }
 
@@ -176,7 +176,7 @@ def _line_traces(panel: LinePanel, joints: Sequence[int], unit: str, suffix: str
         "xaxis": f"x{suffix}",
         "yaxis": f"y{suffix}",
         "showlegend": suffix == "",
-        "hovertemplate": "%{y:+.4f} " + unit,
+        "hovertemplate": hover(unit),
     }
     drawn: list[tuple[str, FloatArray, Trace]] = [
         (f"joint {number}", panel.by_joint[:, j], {"color": colours[j % 7], "width": 1.6})

@@ -13,6 +13,7 @@ from typing import Any
 
 from robomill.viz.chart import Chart
 
+HOVERED = 4  # decimals, in mm as in inches, where one points at a curve of errors
 FONT = '"Source Sans", "Source Sans 3", "Source Sans Pro", sans-serif'
 
 JOINT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#8C7A00")
@@ -139,6 +140,11 @@ def figure(*, dark: bool, height: int, revision: str = "keep", **layout: Any) ->
 def plain(text: str) -> str:
     """Words that came from a file, which plotly shall show and not read as its markup."""
     return html.escape(text, quote=False)
+
+
+def hover(unit: str, sign: bool = True, axis: str = "y") -> str:
+    """What the pointer reads off a curve of errors: its number, to a decimal more than tables show, in ``unit``."""
+    return f"%{{{axis}:{'+' if sign else ''}.{HOVERED}f}} {unit}"
 
 
 def say(fig: Chart, text: str, x: float, y: float | str, colour: str, **more: Any) -> None:

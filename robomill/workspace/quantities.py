@@ -18,6 +18,7 @@ from robomill.errors import WorkspaceError
 from robomill.kinematics import dexterity
 from robomill.robot.model import Robot
 from robomill.units import unit_label
+from robomill.wording import listed
 from robomill.workspace.cells import SolvedGrid
 
 Colours = Literal["sequential", "diverging", "joints", "reach"]
@@ -90,7 +91,7 @@ def map_quantity(robot: Robot, name: str) -> MapQuantity:
         names = [f[0].name if len(f) == 1 else f"{f[0].name} ... {f[-1].name}" for f in _families(robot)]
         close = get_close_matches(name, map_quantities(robot), 1, 0.7)
         meant = f"; did you mean {close[0]!r}?" if close else "."
-        raise WorkspaceError(f"Quantity {name!r}: expected {', '.join(names[:-1])} or {names[-1]}{meant}")
+        raise WorkspaceError(f"Quantity {name!r}: expected {listed(names, 'or')}{meant}")
     return known
 
 

@@ -15,6 +15,7 @@ PACKAGE = ROOT / "robomill"
 # Rooms from the ground up; those on one line may not import each other.
 STOREYS = [
     {
+        "wording",
         "units",
         "unit_words",
         "typed_numbers",

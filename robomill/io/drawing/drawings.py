@@ -14,6 +14,7 @@ from robomill.spelled import to_give
 from robomill.toolpath.chaining import GAP, joined
 from robomill.toolpath.drawing import Drawing
 from robomill.units import format_count, format_many, format_short
+from robomill.wording import listed
 
 SUFFIXES = (".dxf", ".svg")
 ASKED = ("mm", "in", "cm", "m", "px", "pt")
@@ -84,10 +85,10 @@ def drawing_from_bytes(data: bytes, name: str, unit: str = "") -> Drawing:
 
 
 def _but(read: Read) -> str:
-    return f" (only {_listed(read)})" if read.left_out else ""
+    return f" (only {_left_out(read)})" if read.left_out else ""
 
 
-def _listed(read: Read) -> str:
+def _left_out(read: Read) -> str:
     return ", ".join(f"{format_count(count)} × {what}" for what, count in sorted(read.left_out.items()))
 
 
@@ -98,7 +99,7 @@ def _sizes(drawing: Drawing) -> str:
     for unit in ASKED:
         size = (high - low) * (metres(unit) / metres("mm"))
         said.append(f"{format_many(size, 'mm', 1, between=' × ')} in {unit}")
-    return f"it would be {', '.join(said[:-1])} or {said[-1]}"
+    return f"it would be {listed(said, 'or')}"
 
 
 def _findings(read: Read, twice: int, dots: int, own: str, said: str) -> tuple[Finding, ...]:
@@ -107,7 +108,7 @@ def _findings(read: Read, twice: int, dots: int, own: str, said: str) -> tuple[F
         text = f"the file says that it is drawn in {own}; it was read in {said}, as was said"
         found.append(Finding("warning", text, code="drawing-unit"))
     if read.left_out:
-        found.append(Finding("ignored", f"{_listed(read)}: no lines to cut along, left out", code="drawing-left-out"))
+        found.append(Finding("ignored", f"{_left_out(read)}: no lines to cut along, left out", code="drawing-left-out"))
     if twice or dots:
         text = f"{format_count(twice, 'line')} drawn twice and {format_count(dots, 'line')} without length left out"
         found.append(Finding("info", text, code="drawing-twice"))

@@ -25,6 +25,7 @@ from robomill.viz.chart import Chart
 from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.shares import share_bars
 from robomill.viz.theme import joint_colours
+from robomill.wording import lowered
 
 AXES = "XYZ"
 
@@ -145,7 +146,7 @@ def _joints(pose: PoseReport) -> None:
     robot = pose.robot
     st.markdown("**Joints**")
     rows = [
-        (f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", format_si(float(pose.theta[i]), robot.joint_units[i], 2), "")
+        (lowered("θ", number), format_si(float(pose.theta[i]), robot.joint_units[i], 2), "")
         for i, number in enumerate(robot.joint_numbers)
     ]
     rows += [
@@ -186,7 +187,7 @@ def _six(pose: PoseReport) -> None:
     pieces.matrix(
         _numbers(np.concatenate([from_si(pose.J[:3], m), pose.J[3:]])),
         ["vx", "vy", "vz", "ωx", "ωy", "ωz"],
-        [f"J{'₀₁₂₃₄₅₆₇₈₉'[i]}" for i in pose.robot.joint_numbers],
+        [lowered("J", i) for i in pose.robot.joint_numbers],
     )
     pieces.note(f"J in {unit_label(m)}/rad and rad/rad, columns by joint, rows in {{M}}.")
 

@@ -18,9 +18,9 @@ from robomill.ui import pieces, session
 from robomill.ui.entry import declared, inputs
 from robomill.ui.project import Project
 from robomill.ui.work import cached
-from robomill.units import format_many, format_si
+from robomill.units import MINUS, format_many, format_si
 
-MINUS, GIVEN = "−", "given"
+GIVEN = "given"
 CHOSEN = Provenance("user", "direction of the tool chosen in the app")
 TURNS = Quantity("Turn", "deg", "array", shape=(3,), axes=tuple("ABC"), digits=3)
 BASE = replace(TOOL_TIP, label="Base")

@@ -20,6 +20,7 @@ from robomill.ui.work import cached
 from robomill.units import format_many, format_percent, format_si, from_si, to_si
 from robomill.viz.arm import ArmScene
 from robomill.viz.theme import joint_colours
+from robomill.wording import lowered
 
 ASPECT = 1.3  # of the arm's frame; a narrower column shows it smaller
 
@@ -168,7 +169,7 @@ def _joints(project: Project, theta: FloatArray) -> None:
     for i, number in enumerate(robot.joint_numbers):
         with said_below():
             unit = project.view.of(robot.joint_units[i])
-            _joint(i, f"θ{'₀₁₂₃₄₅₆₇₈₉'[number]}", theta, unit, robot)
+            _joint(i, lowered("θ", number), theta, unit, robot)
 
 
 def _joint(i: int, label: str, theta: FloatArray, unit: str, robot: Robot) -> None:

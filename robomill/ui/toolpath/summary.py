@@ -11,6 +11,7 @@ from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.toolpath.summary import summary_of
 from robomill.units import format_count, format_many, format_si
+from robomill.wording import listed
 
 #: The summary of a path, kept for the last few.
 path_summary = lru_cache(maxsize=6)(summary_of)
@@ -38,7 +39,7 @@ def size_words(size: FloatArray, unit: str) -> str:
         return "in one place"
     if len(along) == 1:
         return f"{format_si(float(size[along[0]]), unit, 1)} along {axes[0]}"
-    return f"{format_many(size[along], unit, 1, ' × ')} along {', '.join(axes[:-1])} and {axes[-1]}"
+    return f"{format_many(size[along], unit, 1, ' × ')} along {listed(axes)}"
 
 
 def written_in(source: GCodeSource, path: Toolpath, long: bool = False) -> str:
