@@ -5,7 +5,15 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from robomill.errors import GCodeError, LoadTestError, ProjectError, RobomillError, RobotError, ToolpathError
+from robomill.errors import (
+    GCodeError,
+    LoadTestError,
+    ProjectError,
+    RobomillError,
+    RobotError,
+    SetupError,
+    ToolpathError,
+)
 from robomill.files import (
     DRAWING,
     PROGRAM,
@@ -23,20 +31,11 @@ from robomill.files import (
 )
 from robomill.io.samples import find_sample, sample_or_file
 from robomill.toolpath.text import check_program_name
+from robomill.wording import listed
 
 STDIN, CALLED = "-", "standard input"
 BEGINNING = b"\xef\xbb\xbf \t\r\n"  # what may stand before the first word of a text
 DRAWN = (".dxf", ".svg")
-# What a verb writes by an option, and how its name ends; refused before anything is computed.
-WRITTEN = {
-    ("identify", "out"): ("a robot", (".toml",)),
-    ("identify", "sheet"): ("a table", (".csv",)),
-    ("place", "out"): ("a set-up", (".toml",)),
-    ("report", "out"): ("a page", (".html", ".htm")),
-    ("grade", "out"): ("a table", (".csv",)),
-}
-MAKING = ("simulate", "study", "compensate", "grade")  # which make the folder that they write to
-PROGRAMS = ("compensate", "drawing")  # whose names end as a control likes it, but as no other file
 
 
 def check_once(arguments: Any) -> None:
@@ -66,24 +65,21 @@ def check_kept(arguments: Any) -> None:
             )
         if any(place.resolve() == each.resolve() for each in written):
             raise RobomillError(f"--{name} {place}: another option writes there already; give another.")
-        _check_name(said["verb"], name, place)
-        if said["verb"] not in MAKING:
+        if name in arguments.writes:
+            _check_name(f"--{name} {place}", place, arguments.writes[name])
+        if not arguments.makes:
             check_folder_there(place, f"--{name} {place}", RobomillError)
         written.append(place)
 
 
-def _check_name(verb: str, option: str, place: Path) -> None:
+def _check_name(given: str, place: Path, written: Any) -> None:
     """Refuse a name by which nobody would find again what is written. Raises RobomillError."""
-    what, ends = WRITTEN.get((verb, option), ("", ()))
-    program = verb in PROGRAMS and option == "out"
-    if ends or program:
-        check_no_folder(place, f"--{option} {place}", RobomillError)
-    if ends and place.suffix.lower() not in ends:
-        listed = ", ".join(ends).rpartition(", ")
-        told = " or ".join(filter(None, (listed[0], listed[2])))
-        raise RobomillError(f"--{option} {place}: {what} is written there; give a name that ends in {told}.")
-    if program:
+    check_no_folder(place, given, RobomillError)
+    if not written.ends:
         check_program_name(place)
+    elif place.suffix.lower() not in written.ends:
+        told = listed(written.ends, "or")
+        raise RobomillError(f"{given}: {written.what} is written there; give a name that ends in {told}.")
 
 
 def _same(place: Path, read: Path) -> bool:
@@ -246,3 +242,10 @@ def is_apt(source: Path | bytes) -> bool:
             return text.is_apt(stream.read(200_000))
     except OSError:
         return False  # the interpreter says what is wrong with the file
+
+
+def another_robot(arguments: Any, setup: Any) -> Any:
+    """The robot that ``--robot`` names in the place of the set-up's. Raises SetupError where that one was measured."""
+    if setup.measured_map is not None:
+        raise SetupError("--robot: the set-up's compliances were measured on its own robot ([measured_map]).")
+    return robot(arguments.robot, arguments.tip)

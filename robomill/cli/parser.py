@@ -1,81 +1,213 @@
-"""The verbs and their options, with what ``--help`` and the completion of shells tell of them: quick to load."""
+"""The verbs of the command line, with what ``--help`` and the completion of shells tell of them: quick to load."""
 
 import argparse
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from importlib import import_module
 from shutil import get_terminal_size
 from typing import Any
 
 from robomill import __version__
-from robomill.cli import completers
-from robomill.cli.completers import offered
-from robomill.cli.options import Parser, number, whole
+from robomill.cli import verb_options as options
+from robomill.cli.options import Parser
 from robomill.cli.serve import serve_options
 
 EXIT_CODES = (
     "exit codes: 0 done; 1 a red verdict, not judged or not reached; 2 refused, with a sentence on standard error; "
     "70 a mistake of robomill's own; 130 interrupted"
 )
-# Of each verb one line that runs as it stands, in any folder.
-EXAMPLES = {
-    "robots": "robomill robots",
-    "pose": "robomill pose slavkovic_5r --theta-deg 0,0,0,0,0",
-    "ik": 'robomill ik slavkovic_5r --pose "0,-1300,0,0,0"',
-    "gcode": "robomill gcode heart",
-    "drawing": "robomill drawing bracket --cut slots:inside:3 --feed 600 --diameter 8 --out bracket.nc",
-    "map": "robomill map slavkovic_5r --quantity C_yy --z 0 --x -600:600:100 --y -1600:-1000:100 --out map.csv",
-    "identify": "robomill identify slavkovic_5r nine_points --out identified.toml",
-    "simulate": "robomill simulate paper_flute --out result",
-    "advise": "robomill advise paper_flute/setup_process",
-    "design": "robomill design paper_flute --tolerance-mm 0.1",
-    "place": "robomill place paper_flute --x -300:300 --y -1500:-1100 --yaw -90:90",
-    "compensate": "robomill compensate paper_flute --out corrected.nc",
-    "turn": "robomill turn paper_flute --robot fanuc_r2000ic",
-    "study": "robomill study paper_flute/study --out study",
-    "grade": "robomill grade answers --out marks.csv",
-    "report": "robomill report paper_flute --out report.html",
-    "samples": "robomill samples --copy samples",
-    "reproduce": "robomill reproduce",
-    "completion": "robomill completion bash",
-    "serve": "robomill serve --port 8502",
-}
-NOTES = {
-    "ik": "Exits 1 where the pose is not reached.",
-    "drawing": "The tool goes straight down at the plunge feed where a line begins, and round a closed one pass by "
-    "pass.",
-    "simulate": "Exits 1 where the verdict is red, and where nothing or not all can be judged: never 0 on a number "
-    "that is not known.",
-    "advise": "Exits 1 where no way keeps the tolerance.",
-    "design": "Exits 1 where the tolerance cannot be met.",
-    "turn": "Exits 1 where the verdict is red along the best course, too, and 2 where nothing is left to turn.",
-    "place": "Left out, x and y are today's and 15 % of the arm's length to each side; height and yaw stay. Exits 1 "
-    "where the verdict is red at the best place, too.",
-    "compensate": "Refused, with the reason, where the prediction itself is not to be trusted.",
-    "report": "Exits as simulate does. An older report there is replaced, any other file is kept.",
-    "study": "Stopped or failed, the same command goes on from what is finished. Exits 1 where no point came out.",
-    "grade": "A file that cannot be marked keeps its row and its reason, and the exit code is 1.",
-    "reproduce": "Exits 1 where a claim of the paper that should hold does not.",
-    "completion": "For bash, write it to ~/.local/share/bash-completion/completions/robomill; for zsh, to a file "
-    "_robomill in a folder of $fpath; for fish, to ~/.config/fish/completions/robomill.fish.",
-}
-# Verbs with a module of their own.
-MODULES = {
-    "simulate",
-    "identify",
-    "serve",
-    "drawing",
-    "advise",
-    "design",
-    "place",
-    "turn",
-    "compensate",
-    "study",
-    "grade",
-    "report",
-}
-SHELLS = ("bash", "zsh", "fish", "powershell")
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What a verb writes, and how its name ends."""
+
+    what: str
+    ends: tuple[str, ...] = ()
+
+
+PROGRAM = Kind("a program")  # whose name ends as a control likes it, but as no other file
+
+
+@dataclass(frozen=True)
+class Verb:
+    """A verb: what it does, one line that runs as it stands in any folder, what adds its options, and a ``note``.
+
+    alone   its ``run_NAME`` stands in a module of its name, else in ``verbs``
+    writes  what it writes by which option; refused before anything is computed
+    makes   it makes the folder that it writes to
+    json    it has a record to give on standard output
+    """
+
+    name: str
+    text: str
+    example: str
+    options: Callable[[argparse.ArgumentParser], None] | None = None
+    note: str = ""
+    alone: bool = False
+    writes: Mapping[str, Kind] = field(default_factory=dict)
+    makes: bool = False
+    json: bool = True
+
+
+VERBS = (
+    Verb("robots", "List the robots that come with robomill.", "robomill robots"),
+    Verb(
+        "pose",
+        "Pose, Jacobian and compliance at a configuration.",
+        "robomill pose slavkovic_5r --theta-deg 0,0,0,0,0",
+        options.pose_options,
+    ),
+    Verb(
+        "ik",
+        "Joint coordinates for a pose.",
+        'robomill ik slavkovic_5r --pose "0,-1300,0,0,0"',
+        options.ik_options,
+        note="Exits 1 where the pose is not reached.",
+    ),
+    Verb(
+        "gcode",
+        "Read a program, or a table of points: moves, lengths, extents, findings.",
+        "robomill gcode heart",
+        options.gcode_options,
+    ),
+    Verb(
+        "drawing",
+        "Layers and lines of a DXF or SVG drawing, and a program that cuts along them.",
+        "robomill drawing bracket --cut slots:inside:3 --feed 600 --diameter 8 --out bracket.nc",
+        options.drawing_options,
+        note="The tool goes straight down at the plunge feed where a line begins, and round a closed one pass by pass.",
+        alone=True,
+        writes={"out": PROGRAM},
+    ),
+    Verb(
+        "map",
+        "A quantity over a plane or a box, NaN where the robot cannot reach.",
+        "robomill map slavkovic_5r --quantity C_yy --z 0 --x -600:600:100 --y -1600:-1000:100 --out map.csv",
+        options.map_options,
+    ),
+    Verb(
+        "identify",
+        "Joint compliances from load tests, with their intervals.",
+        "robomill identify slavkovic_5r nine_points --out identified.toml",
+        options.identify_options,
+        alone=True,
+        writes={"out": Kind("a robot", (".toml",)), "sheet": Kind("a table", (".csv",))},
+    ),
+    Verb(
+        "simulate",
+        "Run a set-up: deviation, groove, verdict.",
+        "robomill simulate paper_flute --out result",
+        options.simulate_options,
+        note="Exits 1 where the verdict is red, and where nothing or not all can be judged: never 0 on a "
+        "number that is not known.",
+        alone=True,
+        makes=True,
+    ),
+    Verb(
+        "report",
+        "Run a set-up and write what comes out as one HTML page, to print or hand over.",
+        "robomill report paper_flute --out report.html",
+        options.report_options,
+        note="Exits as simulate does. An older report there is replaced, any other file is kept.",
+        alone=True,
+        writes={"out": Kind("a page", (".html", ".htm"))},
+    ),
+    Verb(
+        "advise",
+        "The same part cut otherwise: with another feed, turned round, in passes, once more.",
+        "robomill advise paper_flute/setup_process",
+        options.setup_option,
+        note="Exits 1 where no way keeps the tolerance.",
+        alone=True,
+    ),
+    Verb(
+        "place",
+        "Where in a box the part should lie so that its cut comes out best.",
+        "robomill place paper_flute --x -300:300 --y -1500:-1100 --yaw -90:90",
+        options.place_options,
+        note="Left out, x and y are today's and 15 % of the arm's length to each side; height and yaw stay. "
+        "Exits 1 where the verdict is red at the best place, too.",
+        alone=True,
+        writes={"out": Kind("a set-up", (".toml",))},
+    ),
+    Verb(
+        "turn",
+        "How the spindle should be turned about its axis along a path: six and seven axes.",
+        "robomill turn paper_flute --robot fanuc_r2000ic",
+        options.turn_options,
+        note="Exits 1 where the verdict is red along the best course, too, and 2 where nothing is left to turn.",
+        alone=True,
+    ),
+    Verb(
+        "design",
+        "The joints to stiffen so that a cut keeps a tolerance, at the least cost.",
+        "robomill design paper_flute --tolerance-mm 0.1",
+        options.design_options,
+        note="Exits 1 where the tolerance cannot be met.",
+        alone=True,
+    ),
+    Verb(
+        "compensate",
+        "Correct a program for the push on its tool, and say what is left.",
+        "robomill compensate paper_flute --out corrected.nc",
+        options.compensate_options,
+        note="Refused, with the reason, where the prediction itself is not to be trusted.",
+        alone=True,
+        writes={"out": PROGRAM},
+        makes=True,
+    ),
+    Verb(
+        "study",
+        "Many runs of a set-up: a grid, a Latin hypercube or Sobol's sequence of its numbers.",
+        "robomill study paper_flute/study --out study",
+        options.study_options,
+        note="Stopped or failed, the same command goes on from what is finished. Exits 1 where no point came out.",
+        alone=True,
+        makes=True,
+    ),
+    Verb(
+        "grade",
+        "Mark the exercises of a class: its files of answers, with the reason of every mark.",
+        "robomill grade answers --out marks.csv",
+        options.grade_options,
+        note="A file that cannot be marked keeps its row and its reason, and the exit code is 1.",
+        alone=True,
+        writes={"out": Kind("a table", (".csv",))},
+        makes=True,
+    ),
+    Verb(
+        "samples",
+        "List the samples, or copy them to work on.",
+        "robomill samples --copy samples",
+        options.samples_options,
+    ),
+    Verb(
+        "reproduce",
+        "Every table, figure and claim of the paper: what it gives, and what comes out here.",
+        "robomill reproduce",
+        note="Exits 1 where a claim of the paper that should hold does not.",
+    ),
+    Verb(
+        "completion",
+        "Print what a shell needs to complete verbs, options, samples and robots.",
+        "robomill completion bash",
+        options.completion_options,
+        note="For bash, write it to ~/.local/share/bash-completion/completions/robomill; for zsh, to a file "
+        "_robomill in a folder of $fpath; for fish, to ~/.config/fish/completions/robomill.fish.",
+        json=False,
+    ),
+    Verb(
+        "serve",
+        "Serve the app to others: no error details for visitors, work kept within bounds.",
+        "robomill serve --port 8502",
+        serve_options,
+        alone=True,
+        json=False,
+    ),
+)
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -86,314 +218,27 @@ def make_parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action="version", version=f"robomill {__version__}")
     top.add_argument("--debug", action="store_true", help="show the traceback of a crash (or set ROBOMILL_DEBUG=1)")
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
-
-    def verb(name: str, text: str, **more: Any) -> argparse.ArgumentParser:
-        said = textwrap.fill(f"{text} {NOTES.get(name, '')}", max(11, min(79, get_terminal_size().columns - 2)))
+    wide = max(11, min(79, get_terminal_size().columns - 2))
+    for verb in VERBS:
         sub = verbs.add_parser(
-            name,
-            help=text,
-            description=said,
-            epilog=f"example:\n  {EXAMPLES[name]}",
+            verb.name,
+            help=verb.text,
+            description=textwrap.fill(f"{verb.text} {verb.note}", wide),
+            epilog=f"example:\n  {verb.example}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        sub.set_defaults(run=partial(_run, name), **more)
-        return sub
-
-    def told(name: str, text: str) -> argparse.ArgumentParser:
-        sub = verb(name, text)
-        sub.add_argument("--json", action="store_true", help="one JSON object on stdout")
-        return sub
-
-    told("robots", "List the robots that come with robomill.")
-    _pose_options(told("pose", "Pose, Jacobian and compliance at a configuration."))
-    ik = told("ik", "Joint coordinates for a pose.")
-    _robot(ik)
-    ik.add_argument("--pose", required=True, help='"X,Y,Z,A,B" in mm and degrees')
-    _gcode_options(told("gcode", "Read a program, or a table of points: moves, lengths, extents, findings."))
-    _drawing_options(told("drawing", "Layers and lines of a DXF or SVG drawing, and a program that cuts along them."))
-    _map_options(told("map", "A quantity over a plane or a box, NaN where the robot cannot reach."))
-    _identify_options(told("identify", "Joint compliances from load tests, with their intervals."))
-    _simulate_options(told("simulate", "Run a set-up: deviation, groove, verdict."))
-    _report_options(told("report", "Run a set-up and write what comes out as one HTML page, to print or hand over."))
-    _setup(told("advise", "The same part cut otherwise: with another feed, turned round, in passes, once more."))
-    _place_options(told("place", "Where in a box the part should lie so that its cut comes out best."))
-    _turn_options(told("turn", "How the spindle should be turned about its axis along a path: six and seven axes."))
-    _design_options(told("design", "The joints to stiffen so that a cut keeps a tolerance, at the least cost."))
-    _compensate_options(told("compensate", "Correct a program for the push on its tool, and say what is left."))
-    _study_options(
-        told("study", "Many runs of a set-up: a grid, a Latin hypercube or Sobol's sequence of its numbers.")
-    )
-    _grade_options(told("grade", "Mark the exercises of a class: its files of answers, with the reason of every mark."))
-    given = told("samples", "List the samples, or copy them to work on.")
-    _named(given, "names", "samples to list or copy (all)", "any", nargs="*")
-    given.add_argument("--copy", metavar="DIR", help="copy them there; what is there and differs is never replaced")
-    told("reproduce", "Every table, figure and claim of the paper: what it gives, and what comes out here.")
-    shell = verb("completion", "Print what a shell needs to complete verbs, options, samples and robots.", json=False)
-    shell.add_argument("shell", choices=SHELLS)
-    serve_options(
-        verb("serve", "Serve the app to others: no error details for visitors, work kept within bounds.", json=False)
-    )
+        sub.set_defaults(run=partial(_run, verb), writes=verb.writes, makes=verb.makes)
+        if verb.json:
+            sub.add_argument("--json", action="store_true", help="one JSON object on stdout")
+        else:
+            sub.set_defaults(json=False)
+        if verb.options is not None:
+            verb.options(sub)
     return top
 
 
-def _run(name: str, arguments: Any) -> int:
-    """Load the verb's own module and run it."""
-    module = name if name in MODULES else "verbs"
-    run: Callable[[Any], int] = getattr(import_module(f"robomill.cli.{module}"), f"run_{name}")
+def _run(verb: Verb, arguments: Any) -> int:
+    """Load the module that runs the verb, and run it."""
+    module = import_module(f"robomill.cli.{verb.name if verb.alone else 'verbs'}")
+    run: Callable[[Any], int] = getattr(module, f"run_{verb.name}")
     return run(arguments)
-
-
-def _named(sub: argparse.ArgumentParser, name: str, text: str, kind: str, **more: Any) -> None:
-    """An argument that takes a file, a sample's name, or - for standard input."""
-    offered(sub.add_argument(name, help=text, **more), completers.samples, kind)
-
-
-def _worded(sub: argparse.ArgumentParser, name: str, where: str, *more: str, **given: Any) -> None:
-    """An option that takes one of the words ``where`` ("module.NAME") and ``more``; what reads it refuses others."""
-    module, _, words = where.rpartition(".")
-    offered(sub.add_argument(name, **given), completers.words, module, words, more)
-
-
-def _compliance_set(sub: argparse.ArgumentParser, text: str = "one of the robot's compliance sets") -> None:
-    offered(sub.add_argument("--compliance-set", help=text), completers.compliance_sets)
-
-
-def _robot(sub: argparse.ArgumentParser) -> None:
-    _named(sub, "robot", "name of a robot, a .toml or .urdf file, or - for standard input", "robot")
-    _tip(sub)
-
-
-def _another_robot(sub: argparse.ArgumentParser) -> None:
-    _named(sub, "--robot", "another robot than the set-up's: a name or a file", "robot")
-    _tip(sub)
-
-
-def _tip(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("--tip", metavar="LINK", help="of a URDF: the link at which the arm ends (its only end)")
-
-
-def _pose_options(pose: argparse.ArgumentParser) -> None:
-    _robot(pose)
-    pose.add_argument("--theta-deg", required=True, help="joint coordinates, comma separated (mm for sliding joints)")
-    _compliance_set(pose)
-
-
-def _gcode_options(gcode: argparse.ArgumentParser) -> None:
-    _named(gcode, "file", "a program, points (.csv, .parquet), a sample's name, or - for standard input", "program")
-    _points_options(gcode)
-    gcode.add_argument("--tools", help="tool table: LinuxCNC's .tbl, CSV tool,diameter_mm,length_mm,..., TOML")
-    gcode.add_argument("--tools-unit", default="mm", choices=("mm", "in"), help="unit of a .tbl, which does not say it")
-    gcode.add_argument("--moves", metavar="OUT.jsonl", help="write the canonical moves, one a line")
-    told = "auto, linuxcnc, fanuc, grbl, sinumerik or heidenhain"
-    _worded(gcode, "--dialect", "toolpath.gcode.dialects.NAMES", "auto", default="auto", help=told)
-
-
-def _points_options(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument(
-        "--unit", default="", choices=("mm", "in", "cm", "m"), help="unit of points whose header is silent"
-    )
-    sub.add_argument("--feed", type=number, metavar="MM_MIN", help="feed of points that have none, mm/min")
-
-
-def _drawing_options(sub: argparse.ArgumentParser) -> None:
-    _named(sub, "file", "a drawing (.dxf or .svg), a sample's name, or - for standard input", "drawing")
-    units = ("mm", "in", "cm", "m", "px", "pt")
-    sub.add_argument("--unit", default="", choices=units, help="unit of the drawing where it does not say it")
-    sub.add_argument(
-        "--origin", default="drawing", choices=("drawing", "corner", "centre"), help="where the part zero is"
-    )
-    sub.add_argument(
-        "--cut",
-        action="append",
-        metavar="LAYER:SIDE:DEPTH",
-        help="cut the lines of a layer: on, left, right, inside or outside, depth in mm; one --cut a layer",
-    )
-    for name, metavar, text in (
-        ("depth", "MM", "depth of layers that say none, mm"),
-        ("step-down", "MM", "deepest pass, mm (one pass)"),
-        ("feed", "MM_MIN", "feed along the lines, mm/min"),
-        ("diameter", "MM", "of the cutter, mm: for cuts beside their line"),
-        ("plunge", "MM_MIN", "feed of the plunges, mm/min (300)"),
-        ("clearance", "MM", "height of rapids, mm (5)"),
-        ("spindle", "1_MIN", "spindle speed, 1/min"),
-    ):
-        sub.add_argument(f"--{name}", type=number, metavar=metavar, help=text)
-    sub.add_argument("--out", metavar="PROGRAM.nc", help="write the path there as G-code; an older file is replaced")
-
-
-def _map_options(grid: argparse.ArgumentParser) -> None:
-    _robot(grid)
-    wanted = grid.add_argument(
-        "--quantity", action="append", required=True, help="C_yy, det_J, ...; several with commas"
-    )
-    offered(wanted, completers.quantities)
-    for axis in "xyz":
-        grid.add_argument(f"--{axis}", required=True, metavar="LOW:HIGH:STEP", help="mm, or one number")
-    grid.add_argument("--a-deg", type=number, default=0.0, help="tool tilt A")
-    grid.add_argument("--b-deg", type=number, default=0.0, help="tool tilt B")
-    _compliance_set(grid)
-    grid.add_argument("--out", help="write the map there: .csv, .parquet or .vti; an older file is replaced")
-
-
-def _identify_options(fit: argparse.ArgumentParser) -> None:
-    _robot(fit)
-    _named(fit, "tests", "load tests (.csv), a sample's name, or - for standard input", "load tests")
-    models = "joints, joints+bending, joints+tool, joints+bending+tool or constant"
-    _worded(fit, "--model", "identification.fit.models.MODELS", default="joints", help=models)
-    fit.add_argument(
-        "--bending",
-        "--bending-joints",
-        default=None,
-        help="joints with bending springs (2,3 in models with bending), or auto: none or those that cross-validation "
-        "chooses",
-    )
-    points = "points to fit too: none (default), force, gauge or both"
-    _worded(fit, "--fit-points", "identification.pull.points.FREED", default="none", help=points)
-    fit.add_argument("--robust", action="store_true", help="weigh down tests that do not fit")
-    weights = "equal (default), or size: every test by its relative error"
-    _worded(fit, "--weights", "identification.fit.treatment.WEIGHTS", default="equal", help=weights)
-    folds = "cross-validation by pose (default) or by neighbours"
-    _worded(fit, "--leave-out", "identification.fit.folds.LEAVE_OUT", default="pose", help=folds)
-    fit.add_argument("--exclude", default="", metavar="ROWS", help="rows of the file to leave out, with commas")
-    fit.add_argument(
-        "--out", metavar="ROBOT.toml", help="write the robot with these compliances there; an older file is replaced"
-    )
-    fit.add_argument("--sheet", metavar="SHEET.csv", help="write the tests to do next there, to be filled in")
-    fit.add_argument(
-        "--next", type=partial(whole, 100), default=3, metavar="TESTS", help="how many tests to do next (default 3)"
-    )
-
-
-def _setup(sub: argparse.ArgumentParser) -> None:
-    _named(sub, "setup", "a set-up (.toml), its folder, a sample's name, or - for standard input", "set-up")
-    _outside(sub, "the set-up")
-
-
-def _outside(sub: argparse.ArgumentParser, what: str) -> None:
-    sub.add_argument("--allow-outside", action="store_true", help=f"let {what} name files outside its own folder")
-
-
-def _design_options(sub: argparse.ArgumentParser) -> None:
-    _setup(sub)
-    sub.add_argument(
-        "--tolerance-mm", "--tol", type=number, metavar="MM", help="of walls and floors, mm (the set-up's)"
-    )
-    sub.add_argument(
-        "--measure",
-        default="verdict",
-        choices=("verdict", "wall", "floor", "tip"),
-        help="what has to keep it: what the verdict judges (default), one of its parts, or the tip's deviation",
-    )
-    sub.add_argument("--most", type=number, metavar="TIMES", help="how many times as stiff a joint may be made (10)")
-    sub.add_argument("--box", metavar="X,Y,Z:X,Y,Z", help="a box of the workspace in the place of the cut, mm")
-    sub.add_argument("--force", metavar="FX,FY,FZ", help="what pushes the tip at every point of the box, N")
-    sub.add_argument("--every", type=number, metavar="MM", help="how far apart its points are, mm (100)")
-
-
-def _asked_for(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument(
-        "--measure",
-        default="verdict",
-        choices=("verdict", "wall", "floor", "tip", "feed"),
-        help="what is made small: what the verdict judges (default), one of its parts, or the tip's deviation",
-    )
-
-
-def _turn_options(sub: argparse.ArgumentParser) -> None:
-    _setup(sub)
-    _another_robot(sub)
-    _asked_for(sub)
-    sub.add_argument("--rate", type=number, metavar="DEG_MM", help="how fast the spin may change, degrees a mm (1)")
-
-
-def _place_options(sub: argparse.ArgumentParser) -> None:
-    _setup(sub)
-    for axis in "xyz":
-        sub.add_argument(f"--{axis}", metavar="LOW:HIGH", help=f"{axis} of part zero in the robot's base, mm")
-    sub.add_argument("--yaw", metavar="LOW:HIGH", help="turn of the part about Z, degrees (as it is)")
-    sub.add_argument(
-        "--keep-out",
-        action="append",
-        metavar="X,Y,Z:X,Y,Z",
-        help="a box, mm, in the robot's base that the stock keeps out of; one --keep-out a box",
-    )
-    _asked_for(sub)
-    sub.add_argument(
-        "--room", type=number, metavar="SHARE", help="of its half range a joint keeps to its limits (0.05)"
-    )
-    sub.add_argument(
-        "--candidates", type=partial(whole, 100_000), default=1000, metavar="PLACES", help="places of the map (1000)"
-    )
-    sub.add_argument("--out", metavar="SETUP.toml", help="write the set-up moved there; an older file is replaced")
-
-
-def _cut_options(run: argparse.ArgumentParser) -> None:
-    _setup(run)
-    _named(run, "--program", "another program than the set-up's, or points (.csv, .parquet)", "program")
-    _points_options(run)
-    told = "of a corrected program: the one it was made of, from whose path the deviation is told"
-    _named(run, "--wanted", told, "program")
-    _another_robot(run)
-    run.add_argument(
-        "--tol", "--tolerance-mm", type=number, metavar="MM", help="another tolerance of walls and floors, mm"
-    )
-    _compliance_set(run, "another of the robot's compliance sets")
-
-
-def _simulate_options(run: argparse.ArgumentParser) -> None:
-    _cut_options(run)
-    run.add_argument(
-        "--out",
-        metavar="DIR",
-        help="write the result there: JSON, CSV tables, pictures, an STL below 10 MB, and a copy of the set-up that "
-        "runs again from there; what an earlier run wrote is replaced, other files stay",
-    )
-    run.add_argument("--full-stl", action="store_true", help="with --out: an STL of every cell, however large")
-
-
-def _report_options(run: argparse.ArgumentParser) -> None:
-    _cut_options(run)
-    run.add_argument(
-        "--out", required=True, metavar="FILE.html", help="write the page there; an older report is replaced"
-    )
-    run.add_argument("--remedies", action="store_true", help="compute remedies, too, and what each leaves (slower)")
-
-
-def _study_options(run: argparse.ArgumentParser) -> None:
-    _named(run, "study", "a study (.toml), a sample's name, or - for standard input", "study")
-    _outside(run, "the study")
-    run.add_argument(
-        "--out", required=True, metavar="DIR", help="keep its points there; where some are there already, go on"
-    )
-    run.add_argument(
-        "--scheduler", metavar="tcp://HOST:PORT", help="of a Dask cluster; left out: processes of this machine"
-    )
-    run.add_argument("--processes", type=partial(whole, 1000), metavar="N", help="how many of those (one a processor)")
-
-
-def _compensate_options(run: argparse.ArgumentParser) -> None:
-    _setup(run)
-    run.add_argument(
-        "--out", required=True, metavar="FILE.nc", help="write the corrected program there; an older file is replaced"
-    )
-    run.add_argument(
-        "--components",
-        default="normal,axial",
-        help="what is taken back: normal (across the path), axial, feed; with commas (default normal,axial)",
-    )
-    run.add_argument(
-        "--bound-um",
-        type=number,
-        default=2.0,
-        metavar="UM",
-        help="how near the program keeps to the corrected path, um (default 2)",
-    )
-
-
-def _grade_options(sub: argparse.ArgumentParser) -> None:
-    _named(sub, "folder", "a folder with files of answers (.toml), in it or below, or a sample's name", "answers")
-    sub.add_argument(
-        "--out", required=True, metavar="MARKS.csv", help="write the table of marks there; an older file is replaced"
-    )
-    told = "the robot that the class was given (any that comes with robomill)"
-    offered(sub.add_argument("--robot", metavar="NAME", help=told), completers.names, "robot")

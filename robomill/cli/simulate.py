@@ -52,9 +52,7 @@ def asked_setup(arguments: Any) -> Any:
     if arguments.wanted:
         changes["source"] = _corrected_for(changes.get("source", setup.source), arguments.wanted)
     if arguments.robot:
-        if setup.measured_map is not None:
-            raise SetupError("--robot: the set-up's compliances were measured on its own robot ([measured_map]).")
-        changes["robot"] = given.robot(arguments.robot, arguments.tip)
+        changes["robot"] = given.another_robot(arguments, setup)
     if arguments.tol is not None:
         changes |= {"tolerance_mm": arguments.tol, "floor_tolerance": None}
         said["tolerance"] = Provenance("user", "--tol")

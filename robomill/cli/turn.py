@@ -4,7 +4,6 @@ from typing import Any
 
 from robomill.cli import given
 from robomill.cli.saying import say
-from robomill.errors import SetupError
 
 
 def run_turn(arguments: Any) -> int:
@@ -16,9 +15,7 @@ def run_turn(arguments: Any) -> int:
     given.check_tip(arguments)
     setup = given.setup(arguments.setup, arguments.allow_outside)
     if arguments.robot:
-        if setup.measured_map is not None:
-            raise SetupError("--robot: the set-up's compliances were measured on its own robot ([measured_map]).")
-        setup = setup.replace(robot=given.robot(arguments.robot, arguments.tip))
+        setup = setup.replace(robot=given.another_robot(arguments, setup))
     found = turn(setup, measure=arguments.measure, rate_deg_mm=arguments.rate)
     record = turning_record(found)
     return say(arguments, record, turning_lines(record), int(found.course.level in RED))

@@ -132,27 +132,14 @@ def run_samples(arguments: Any) -> int:
 
 
 def run_reproduce(arguments: Any) -> int:
+    from robomill.learn.evidence import evidence
     from robomill.report.plain import reproduction_lines
     from robomill.report.reproduction import reproduction
     from robomill.report.reproduction_row import reproduction_record
 
-    evidence = _evidence()
-    record = reproduction_record(reproduction(evidence), evidence.robot)
+    held = evidence()
+    record = reproduction_record(reproduction(held), held.robot)
     return say(arguments, record, reproduction_lines(record), 0 if record["holds"] else 1)
-
-
-def _evidence() -> Any:
-    """The paper's test and robot, and the (synthetic) load tests, computed."""
-    from robomill.identification.fit.estimate import identify
-    from robomill.io.materials import sample_materials
-    from robomill.io.robot.robots import load_robot
-    from robomill.report.reproduction_row import Evidence
-    from robomill.simulation.run import simulate
-
-    robot, setup = load_robot("slavkovic_5r"), given.setup("paper_flute", False)
-    nine, single = (identify(robot, given.load_tests(n, None)[0]) for n in ("nine_points", "one_joint_at_a_time"))
-    other = setup.replace(robot=setup.robot.with_compliance_set("table_3"))
-    return Evidence(robot, simulate(setup), simulate(other), nine, single, tuple(sample_materials()))
 
 
 def run_completion(arguments: Any) -> int:

@@ -15,11 +15,14 @@ import argcomplete
 import pytest
 
 from robomill.cli import main, serve
-from robomill.cli.parser import EXAMPLES, SHELLS, make_parser
+from robomill.cli.parser import VERBS as RECORDS
+from robomill.cli.parser import make_parser
+from robomill.cli.verb_options import SHELLS
 from robomill.console import speak_plainly
 from robomill.io.samples import sample_names
 
 ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = {each.name: each.example for each in RECORDS}
 VERBS = next(a for a in make_parser()._actions if isinstance(a, argparse._SubParsersAction)).choices
 
 
@@ -156,3 +159,48 @@ def test_a_tolerance_goes_by_one_name_in_every_verb() -> None:
     for option in ("--tol", "--tolerance-mm"):
         assert parse(["simulate", "paper_flute", option, "0.2"]).tol == 0.2
         assert parse(["design", "paper_flute", option, "0.2"]).tolerance_mm == 0.2
+
+
+def test_what_help_states_of_libraries_is_what_they_declare() -> None:
+    """The parser loads none of them, so that help and completion are quick; defaults in words, too."""
+    from inspect import signature
+
+    from robomill.cli.design import EVERY
+    from robomill.improve import compensation, design, judged, placement, screening, turning
+    from robomill.io import point_tables
+    from robomill.io.compensated import compensate
+    from robomill.io.drawing import drawings
+    from robomill.io.setups import tool_tables
+    from robomill.toolpath import drawing, sketch
+    from robomill.units import format_short
+
+    def option(verb: str, name: str) -> argparse.Action:
+        return next(each for each in VERBS[verb]._actions if name in each.option_strings)
+
+    choices = {
+        ("design", "--measure"): judged.MEASURES,
+        ("place", "--measure"): screening.ASKED,
+        ("turn", "--measure"): screening.ASKED,
+        ("gcode", "--tools-unit"): tool_tables.UNITS,
+        ("gcode", "--unit"): point_tables.ASKED,
+        ("simulate", "--unit"): point_tables.ASKED,
+        ("drawing", "--unit"): drawings.ASKED,
+        ("drawing", "--origin"): drawing.ORIGINS,
+    }
+    for at, words in choices.items():
+        assert tuple(option(*at).choices or ()) == tuple(words), at
+    assert option("place", "--candidates").default == signature(placement.place).parameters["candidates"].default
+    assert option("compensate", "--bound-um").default == compensation.BOUND * 1e6
+    components = signature(compensate).parameters["components"].default
+    assert option("compensate", "--components").default == ",".join(components)
+    own = sketch.Sketch()
+    for at, words in {
+        ("place", "--candidates"): option("place", "--candidates").default,
+        ("place", "--room"): placement.ROOM,
+        ("design", "--most"): format_short(design.STIFFEST, "1"),
+        ("design", "--every"): f"{EVERY:g}",
+        ("turn", "--rate"): format_short(turning.RATE, "deg/mm").removesuffix("°/mm").strip(),
+        ("drawing", "--plunge"): format_short(own.v_plunge, "mm/min").removesuffix(" mm/min"),
+        ("drawing", "--clearance"): format_short(own.clearance, "mm").removesuffix(" mm"),
+    }.items():
+        assert (option(*at).help or "").endswith(f"({words})"), at

@@ -5,19 +5,14 @@ import html
 import streamlit as st
 
 from robomill.compliance.at_pose import PoseReport
-from robomill.identification.fit.estimate import identify
-from robomill.io.materials import sample_materials
-from robomill.io.measured.load_tests import read_load_tests
-from robomill.io.robot.robots import load_robot
-from robomill.io.samples import samples_dir
 from robomill.learn.equations import component, product
+from robomill.learn.evidence import evidence
 from robomill.learn.push import AsidePush
 from robomill.report.paper import Statement
 from robomill.report.reproduction import reproduction
-from robomill.report.reproduction_row import WORDS, Evidence, Row, columns, summary
+from robomill.report.reproduction_row import WORDS, Row, columns, summary
 from robomill.report.tags import Html
 from robomill.ui import pieces
-from robomill.ui.project import DEFAULT_PRESET, preset_setup
 from robomill.ui.work import cached
 from robomill.units import unit_label
 
@@ -51,19 +46,7 @@ def equations(pose: PoseReport, push: AsidePush) -> None:
 @cached.shared(lambda: "paper", "Computing the paper's tables and figures")
 def rows() -> list[Row]:
     """The reproduction table, computed once for the server."""
-    return reproduction(evidence())
-
-
-def evidence() -> Evidence:
-    """The samples the table is computed from."""
-    setup = preset_setup(DEFAULT_PRESET)
-    robot = load_robot("slavkovic_5r")
-    folder = samples_dir() / "load_tests"
-    nine, single = (
-        identify(robot, read_load_tests(folder / name)) for name in ("nine_points.csv", "one_joint_at_a_time.csv")
-    )
-    other = setup.replace(robot=setup.robot.with_compliance_set("table_3"))
-    return Evidence(robot, cached.result(setup), cached.result(other), nine, single, tuple(sample_materials()))
+    return reproduction(evidence(cached.result))
 
 
 def reproduced() -> None:
