@@ -5,7 +5,7 @@ from typing import Any
 from robomill.improve.advice import Advice, Way
 from robomill.report.design_record import deviations
 from robomill.simulation.origin.assumptions import assumed_of_setup
-from robomill.units import from_si
+from robomill.units import format_value, from_si
 from robomill.version import __version__
 
 
@@ -47,6 +47,6 @@ def advice_lines(record: dict[str, Any]) -> list[str]:
         if way["refused"]:
             lines.append(f"{way['title']}: does not apply. {way['refused']}")
             continue
-        lines.append(f"{way['title']}, {way['minutes']:.2f} min: {way['verdict_sentence']}")
+        lines.append(f"{way['title']}, {format_value(way['minutes'], 'min')}: {way['verdict_sentence']}")
     best = next(way["title"] for way in record["ways"] if way["name"] == record["best"])
     return [*lines, f"best      {best}"]

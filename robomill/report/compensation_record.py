@@ -6,7 +6,7 @@ from robomill.improve.compensation import Compensation, reversals
 from robomill.improve.errors import Errors, level_of
 from robomill.report.records import shown
 from robomill.simulation.origin.assumptions import assumed_of_setup
-from robomill.units import format_count, format_value
+from robomill.units import format_count, format_significant, format_value
 from robomill.version import __version__
 
 
@@ -56,7 +56,7 @@ def errors_record(errors: Errors) -> dict[str, Any]:
 def compensation_lines(record: dict[str, Any]) -> list[str]:
     """The record for a person at a terminal."""
     lines = [f"{record['name']}: {record['program']} on {record['robot']}"]
-    lines.append(f"corrected {', '.join(record['components'])}; within {record['bound_um']:g} um")
+    lines.append(f"corrected {', '.join(record['components'])}; within {format_significant(record['bound_um'])} um")
     for when, key in (("before", "before_mm"), ("after", "after_mm")):
         each = record[key]
         parts = [f"{name} {_mm(each[f'{name}_mm'])}" for name in ("wall", "floor") if _known(each[f"{name}_mm"])]
@@ -69,7 +69,7 @@ def compensation_lines(record: dict[str, Any]) -> list[str]:
     lines.append(f"{'':9} {', '.join(wrong)}")
     if _known(record["half_band_mm"]):
         lines.append(f"{'':9} +/- {_mm(record['half_band_mm'])} by how sure the compliances are (95 %)")
-    steps = ", ".join(f"{change:.3g}" for change in record["change_um"])
+    steps = ", ".join(format_significant(change, 3) for change in record["change_um"])
     lines.append(f"settled   after {format_count(record['iterations'], 'iteration')}: changes of {steps} um")
     lines.append(f"lines     {record['lines_in']} in, {record['lines_out']} out")
     return [*lines, *(f"note      {_said(each)}" for each in record["findings"])]

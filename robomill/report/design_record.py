@@ -1,6 +1,5 @@
 """A design of stiffer joints as a JSON-ready record in display units, and as lines for a person."""
 
-import math
 from typing import Any
 
 from robomill.improve.box_design import BoxDesign
@@ -8,6 +7,7 @@ from robomill.improve.design import Design
 from robomill.report.records import shown
 from robomill.simulation.origin.assumptions import assumed_of_setup
 from robomill.simulation.result import SimulationResult
+from robomill.units import format_number, format_significant, format_value
 from robomill.version import __version__
 
 
@@ -50,14 +50,20 @@ def deviations(result: SimulationResult) -> dict[str, Any]:
 
 def design_lines(record: dict[str, Any]) -> list[str]:
     """The answer first, then joint by joint."""
-    lines = [record["sentence"]]
-    for number, ratio, C in zip(record["joints"], record["stiffness_ratio"], record["C_theta"], strict=True):
-        lines.append(f"joint {number}   {ratio:8.3f} times as stiff   {C:.3e} rad/(N m)")
-    lines.append(f"cost      {record['cost']:.3f} (1 is one joint made twice as stiff)")
+    lines = joint_lines(record)
     for name, values in (("before", record["before"]), ("then", record)):
         lines.append(f"{name:9} {deviation_words(values)}")
     lines.append(f"verdict   {record['verdict_sentence']}")
     return lines
+
+
+def joint_lines(record: dict[str, Any]) -> list[str]:
+    """The answer of a design in a sentence, then joint by joint, and what it costs."""
+    lines = [record["sentence"]]
+    for number, ratio, C in zip(record["joints"], record["stiffness_ratio"], record["C_theta"], strict=True):
+        times, left = format_number(ratio, 3), format_significant(C, 4)
+        lines.append(f"joint {number}   {times:>8} times as stiff   {left} rad/(N m)")
+    return [*lines, f"cost      {format_number(record['cost'], 3)} (1 is one joint made twice as stiff)"]
 
 
 def box_record(found: BoxDesign) -> dict[str, Any]:
@@ -88,15 +94,11 @@ def box_record(found: BoxDesign) -> dict[str, Any]:
 
 def box_lines(record: dict[str, Any]) -> list[str]:
     """The answer first, then joint by joint."""
-    lines = [record["sentence"]]
-    for number, ratio, C in zip(record["joints"], record["stiffness_ratio"], record["C_theta"], strict=True):
-        lines.append(f"joint {number}   {ratio:8.3f} times as stiff   {C:.3e} rad/(N m)")
-    at = ", ".join(f"{each:.0f}" for each in record["worst_at_mm"])
+    at = ", ".join(format_number(each, 0) for each in record["worst_at_mm"])
     return [
-        *lines,
-        f"cost      {record['cost']:.3f} (1 is one joint made twice as stiff)",
-        f"before    {record['before']['max_deviation_mm']:.4f} mm at most",
-        f"then      {record['max_deviation_mm']:.4f} mm at most, at ({at}) mm",
+        *joint_lines(record),
+        f"before    {_mm(record['before']['max_deviation_mm'])} at most",
+        f"then      {_mm(record['max_deviation_mm'])} at most, at ({at}) mm",
         f"points    {record['reached']} of {record['points']} are reached by the upright tool",
     ]
 
@@ -104,4 +106,8 @@ def box_lines(record: dict[str, Any]) -> list[str]:
 def deviation_words(record: dict[str, Any]) -> str:
     """The deviations of a record: of the tip, and of walls and floors where there are any."""
     named = (("tip", "max_deviation_mm"), ("wall", "wall_mm"), ("floor", "floor_mm"))
-    return ", ".join(f"{name} {'none' if math.isnan(record[key]) else f'{record[key]:.4f} mm'}" for name, key in named)
+    return ", ".join(f"{name} {_mm(record[key])}" for name, key in named)
+
+
+def _mm(value: float) -> str:
+    return format_value(value, "mm", 4, missing="none")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from robomill.paper import BOX_SIZE, SLOT
-from robomill.units import from_si
+from robomill.units import format_number, format_short, format_si, from_si
 
 Status = Literal["reproduced", "assumed", "gap", "not computed"]
 
@@ -37,15 +37,15 @@ class Statement:
 
 
 def _joints(name: str) -> str:
-    return ", ".join(f"{value:.2f}" for value in TABLES[name]) + " × 10⁻⁷ rad/(N m)"
+    return ", ".join(format_number(value, 2) for value in TABLES[name]) + " × 10⁻⁷ rad/(N m)"
 
 
 def _box() -> str:
-    return " × ".join(f"{from_si(side, 'mm'):g}" for side in BOX_SIZE)
+    return " × ".join(format_number(from_si(side, "mm"), 0) for side in BOX_SIZE)
 
 
 def _mm(length: float) -> str:
-    return f"{from_si(length, 'mm'):g} mm"
+    return format_short(length, "mm")
 
 
 STATEMENTS = (
@@ -163,7 +163,7 @@ STATEMENTS = (
             "individual joints' compliances are calculated for the constant static forces in the feed normal "
             "directions, i.e., F_xstat = F_ystat = 100 N.",
         ),
-        f"deviation along six lines, {SLOT.force:.0f} N normal to the feed, total and by joint",
+        f"deviation along six lines, {format_si(SLOT.force, 'N', 0)} normal to the feed, total and by joint",
         "assumed",
         "The curves are printed without numbers; their shape follows from Figs. 5 and 6.",
     ),
@@ -230,7 +230,7 @@ STATEMENTS = (
         "force",
         "Fig. 15",
         ("As it can be noticed a constant static force level is approximately F_ystat=100N.",),
-        f"static feed-normal force about {SLOT.force:.0f} N (dynamometer, 50 Hz low-pass)",
+        f"static feed-normal force about {format_si(SLOT.force, 'N', 0)} (dynamometer, 50 Hz low-pass)",
         "gap",
         "The alloy and the signal are not printed; the measured value lies inside the spread.",
     ),
@@ -242,7 +242,7 @@ STATEMENTS = (
             "analytically determined compliance from Figure 5 is 0.23 mm, while the calculated displacement from the "
             "experimentally determined compliance, Figure 13, is approximately 0.29 mm.",
         ),
-        f"{SLOT.force:.0f} N moves the tip {_mm(SLOT.from_table_2)} in Y",
+        f"{format_si(SLOT.force, 'N', 0)} moves the tip {_mm(SLOT.from_table_2)} in Y",
         "assumed",
         "One of the three assumed lengths is set by this number.",
     ),

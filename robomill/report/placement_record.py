@@ -6,6 +6,7 @@ from robomill.improve.placed import WHY, Place, Placement
 from robomill.report.design_record import deviation_words
 from robomill.report.records import shown
 from robomill.simulation.origin.assumptions import assumed_of_setup
+from robomill.units import format_number
 from robomill.version import __version__
 
 NAMES = ("best", "now", "median", "worst")
@@ -62,8 +63,8 @@ def placement_lines(record: dict[str, Any]) -> list[str]:
     lines = []
     for name in NAMES:
         place = record[name]
-        at = ", ".join(f"{value:.1f}" for value in place["zero_mm"])
-        lines.append(f"{name:9} {at} mm, yaw {place['yaw_deg']:.2f} deg: {numbers(place)}")
+        at = ", ".join(format_number(value, 1) for value in place["zero_mm"])
+        lines.append(f"{name:9} {at} mm, yaw {format_number(place['yaw_deg'], 2)} deg: {numbers(place)}")
     lines.append(f"verdict   {record['best']['verdict_sentence']}")
     counts = record["candidates"]
     refused = "".join(f", {count} {why}" for why, count in counts["refused"].items())

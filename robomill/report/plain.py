@@ -9,7 +9,17 @@ from robomill.report.reproduction_row import WORDS as WORDS_OF_STATUS
 from robomill.simulation.judging.strays import WORDS
 from robomill.surface.sections.measures import MEASURED
 from robomill.surface.sections.section_law import MEASURES
-from robomill.units import format_beside, format_limit, format_percent, format_share, format_value, from_si, to_si
+from robomill.units import (
+    format_beside,
+    format_limit,
+    format_number,
+    format_percent,
+    format_share,
+    format_significant,
+    format_value,
+    from_si,
+    to_si,
+)
 
 AXES = "XYZ"
 SHORT = [name for name, of in MEASURED.items() if of.short]
@@ -18,12 +28,7 @@ SECTIONS = {kind: kind if kind != "unknown" else "-" for kind in MEASURES}
 
 def matrix_lines(rows: Sequence[Sequence[float]]) -> list[str]:
     """A matrix with aligned columns."""
-    return ["  " + " ".join(f"{_settled(v):10.4f}" for v in row) for row in rows]
-
-
-def _settled(value: float) -> float:
-    """To the four decimals that are shown, without a negative zero."""
-    return round(value, 4) + 0.0
+    return ["  " + " ".join(f"{format_number(v, 4):>10}" for v in row) for row in rows]
 
 
 def robot_lines(record: dict[str, Any]) -> list[str]:
@@ -80,8 +85,8 @@ def pose_lines(record: dict[str, Any]) -> list[str]:
 def ik_lines(record: dict[str, Any]) -> list[str]:
     if not record["reached"]:
         return [f"not reached: {record['reason']}"]
-    angles = ", ".join(f"{_settled(v):.4f}" for v in record["theta_deg"])
-    return [f"theta (deg)  {angles}", f"residual     {record['residual_m']:.1e} m"]
+    angles = ", ".join(format_number(v, 4) for v in record["theta_deg"])
+    return [f"theta (deg)  {angles}", f"residual     {format_significant(record['residual_m'], 2)} m"]
 
 
 def gcode_lines(record: dict[str, Any]) -> list[str]:
@@ -218,8 +223,9 @@ def identification_lines(record: dict[str, Any]) -> list[str]:
         if value is None:
             lines.append(f"{joint:5d}     not seen")
             continue
-        shown = [float("nan") if v is None else from_si(v, "1e-7 rad/(N m)") for v in (value, *interval)]
-        lines.append(f"{joint:5d}   {shown[0]:10.3f}                 {shown[1]:10.3f} to {shown[2]:.3f}")
+        each = [from_si(float("nan") if v is None else v, "1e-7 rad/(N m)") for v in (value, *interval)]
+        shown, low, high = (format_number(v, 3, missing="nan") for v in each)
+        lines.append(f"{joint:5d}   {shown:>10}                 {low:>10} to {high}")
     if record["cv_relative_error"] is not None:
         lines.append(
             f"cross-validated error  {format_percent(record['cv_relative_error'], 1)} of the measured displacement"
@@ -227,10 +233,11 @@ def identification_lines(record: dict[str, Any]) -> list[str]:
     if record["bending_joints"]:
         lines.append(f"links bend at joint {', '.join(map(str, record['bending_joints']))}")
     for name, point in record["points"].items():
-        place = ", ".join(f"{v:.1f} ± {(high - low) / 2:.1f}" for v, (low, high) in _held(point))
-        lines.append(
-            f"{name.replace('_', ' ')} in the flange  {place} mm (95 %), {point['off_mm']:.0f} mm off the stated one"
+        place = ", ".join(
+            f"{format_number(v, 1)} ± {format_number((high - low) / 2, 1)}" for v, (low, high) in _held(point)
         )
+        off = format_value(point["off_mm"], "mm", 0)
+        lines.append(f"{name.replace('_', ' ')} in the flange  {place} mm (95 %), {off} off the stated one")
     if record["band"] is not None:
         band = record["band"]
         held = "too little was left out to check them"

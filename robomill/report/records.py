@@ -15,7 +15,7 @@ from robomill.report.settled import settled
 from robomill.robot.model import Robot
 from robomill.simulation.origin.assumptions import assumed_of_program, assumed_of_robot
 from robomill.toolpath.path import Toolpath
-from robomill.units import from_si
+from robomill.units import from_si, rounded
 from robomill.workspace.fields import Field
 
 
@@ -30,7 +30,7 @@ def jsonable(value: Any) -> Any:
     if isinstance(value, np.generic):
         return jsonable(value.item())
     if isinstance(value, float):
-        return float(f"{value:.12g}") if math.isfinite(value) else None
+        return rounded(value) if math.isfinite(value) else None
     return value
 
 

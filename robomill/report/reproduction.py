@@ -66,7 +66,7 @@ def _jacobian(evidence: Evidence) -> Found:
     numeric = np.swapaxes((ahead - behind) / (2 * h), -1, -2)
     error = float(np.abs(numeric - geometric_jacobian(robot, theta)[:, :3]).max())
     return Found(
-        f"J equals the numeric derivative of the pose to {error:.0e} m/rad at 40 configurations",
+        f"J equals the numeric derivative of the pose to {format_significant(error, 1)} m/rad at 40 configurations",
         error < 1e-8,
     )
 
@@ -168,7 +168,7 @@ def _photographs(_: Evidence) -> Found:
 
 
 def _nothing(share: float) -> str:
-    return "nothing" if share < 1e-12 else f"{share:.0e} of it"
+    return "nothing" if share < 1e-12 else f"{format_significant(share, 1)} of it"
 
 
 def _span(values: FloatArray) -> str:

@@ -10,7 +10,7 @@ from robomill.report.paper import EQUATIONS, TABLES
 from robomill.report.reproduction_row import Evidence, Found
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import nearest_feed
-from robomill.units import format_si, from_si
+from robomill.units import format_many, format_number, format_si, from_si
 from robomill.workspace.fields import compliance_map
 
 
@@ -30,7 +30,7 @@ def table_3(evidence: Evidence) -> Found:
     nine, truth = evidence.nine, evidence.robot.compliance_sets["table_3"]
     printed = np.allclose(from_si(truth, "1e-7 rad/(N m)"), TABLES["table_3"])
     inside = bool(((nine.ci95[:, 0] <= truth) & (truth <= nine.ci95[:, 1])).all())
-    shown = ", ".join(f"{v:.2f}" for v in from_si(nine.C_theta, "1e-7 rad/(N m)"))
+    shown = ", ".join(format_number(v, 2) for v in from_si(nine.C_theta, "1e-7 rad/(N m)"))
     text = f"{shown}; the paper's values {'lie' if inside else 'do not lie'} in all intervals"
     return Found(text, inside and printed, {f"joint_{j}": C for j, C in enumerate(nine.C_theta, 1)})
 
@@ -39,7 +39,7 @@ def figure_13(evidence: Evidence) -> Found:
     """Fig. 13 and claim 6: maps from Table 3 are a little higher."""
     other = compliance_map(evidence.robot.with_compliance_set("table_3"), evidence.plane.grid)
     ratio = (other.total[..., :3] / evidence.plane.total[..., :3]).reshape(-1, 3)
-    text = f"direct compliances {ratio.min():.2f} to {ratio.max():.2f} times those of Table 2"
+    text = f"direct compliances {format_many((ratio.min(), ratio.max()), '1', 2, ' to ')} times those of Table 2"
     holds = bool((ratio > 1.0).all() and (ratio < 1.4).all())
     return Found(text, holds, {"low": ratio.min(), "high": ratio.max()})
 
@@ -52,8 +52,8 @@ def force(evidence: Evidence) -> Found:
     sizes = np.array([MechanisticForce(cutter, m).components(conditions)[1, 1] for m in rows])
     used = float(np.nanmax(evidence.flute.force_size))
     text = (
-        f"{format_si(used, 'N', 0)} is used as measured; {len(rows)} aluminium rows predict {sizes.min():.0f} to "
-        f"{sizes.max():.0f} N"
+        f"{format_si(used, 'N', 0)} is used as measured; {len(rows)} aluminium rows predict "
+        f"{format_many((sizes.min(), sizes.max()), 'N', 0, ' to ')}"
     )
     holds = bool(sizes.min() < SLOT.force < sizes.max() and abs(used - SLOT.force) < 0.5)
     return Found(text, holds, {"used": used, "rows": len(rows), "low": sizes.min(), "high": sizes.max()})

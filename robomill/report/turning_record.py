@@ -6,6 +6,7 @@ from robomill.improve.turning import Turning
 from robomill.report.placement_record import numbers, place_record
 from robomill.report.records import shown
 from robomill.simulation.origin.assumptions import assumed_of_setup
+from robomill.units import format_number, format_significant
 from robomill.version import __version__
 
 OF_PLACE = ("zero_mm", "yaw_deg")
@@ -43,9 +44,10 @@ def _course(found: Turning) -> dict[str, Any]:
 
 def turning_lines(record: dict[str, Any]) -> list[str]:
     """The course first, then what it is compared with."""
-    spin = f"at {record['spin_deg']:.0f} deg on the whole path"
+    spin = f"at {format_number(record['spin_deg'], 0)} deg on the whole path"
     turns = record["spins"]["spin_deg"]
-    ends = f"from {min(turns):.0f} to {max(turns):.0f} deg, at most {record['rate_deg_mm']:g} deg a mm"
+    low, high = (format_number(end, 0) for end in (min(turns), max(turns)))
+    ends = f"from {low} to {high} deg, at most {format_significant(record['rate_deg_mm'])} deg a mm"
     lines = [f"course    {ends}: {numbers(record['course'])}"]
     lines += [f"constant  {spin}: {numbers(record['constant'])}", f"now       {numbers(record['now'])}"]
     lines.append(f"verdict   {record['course']['verdict_sentence']}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import graphlib
+import re
 from fnmatch import fnmatch
 from functools import cache
 from pathlib import Path
@@ -180,3 +181,32 @@ def test_nothing_is_there_that_nobody_uses() -> None:
 def test_every_exception_is_still_needed() -> None:
     names = {item.name for item in unused([])}
     assert not {pattern for pattern in UNUSED if not any(fnmatch(name, pattern) for name in names)}
+
+
+# What is no word of a number: coordinates and shares of a picture, cells of a CSV; and what is to follow.
+DRAWN = {"drawn.py", "pictures.py", "tables.py"}
+DRAWN_IN = {"sections_told.py verdict", "plain.py _section_line"}
+
+
+def test_numbers_for_people_are_formatted_in_units_alone() -> None:
+    """Minus signs, digits and thousands of what a report and the command line say are one formatter's business."""
+    told = [path for path in PRODUCT if path.parent.name in ("report", "cli") and path.name not in DRAWN]
+    found = {f"{path.name} {name}" for path in told for name in formatting(path)}
+    assert found == DRAWN_IN
+
+
+def formatting(path: Path) -> set[str]:
+    """The functions of a file that give a number its decimals."""
+    return {
+        function.name
+        for function in ast.walk(tree(path))
+        if isinstance(function, ast.FunctionDef)
+        for each in ast.walk(function)
+        if isinstance(each, ast.FormattedValue)
+        and isinstance(each.format_spec, ast.JoinedStr)
+        and any(re.search(r"[efg%]$", str(part.value)) for part in specs(each.format_spec))
+    }
+
+
+def specs(spec: ast.JoinedStr) -> list[ast.Constant]:
+    return [part for part in spec.values if isinstance(part, ast.Constant)]
