@@ -70,6 +70,9 @@ def stated_blocks(said: Any, error: type[RobomillError], known: Iterable[str] | 
     return dict(said)
 
 
+TYPED = Provenance("user", "entered in the app")
+
+
 @asking
 @dataclass(frozen=True)
 class Finding:

@@ -16,12 +16,12 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats
 from robomill.cutting.tool import Cutter
 from robomill.errors import RobotError
+from robomill.provenance import TYPED as TYPED
 from robomill.provenance import Provenance
 from robomill.quantities import settle
 from robomill.values import Said
 
 ASSUMED = Provenance("assumed", "entered without a source")
-TYPED = Provenance("user", "entered in the app")
 
 
 class Spring(Said):

@@ -25,6 +25,7 @@ from robomill.provenance import Provenance
 from robomill.robot.model import Robot
 from robomill.units import format_percent, format_si
 
+POSES = 300  # among which those of a plan are chosen
 MARGIN = 0.15  # m: how far beyond the measured tips poses are looked for
 PRIOR = 1e-10  # information, scaled, that stands in where the tests have none
 
@@ -96,7 +97,7 @@ def box_candidates(
     *,
     tilt: float = np.pi / 6,
     load: float = 250.0,
-    poses: int = 300,
+    poses: int = POSES,
     seed: int = 1,
 ) -> Loads:
     """Poses spread over a box in {M} (corners in m) with the tool tilted by up to ``tilt`` rad, within the limits.

@@ -108,7 +108,7 @@ def in_other_convention(robot: Robot) -> Robot:
 
 def read_in_other_convention(robot: Robot) -> Robot:
     """Another robot: the same numbers, read in the other Denavit-Hartenberg convention."""
-    said = Provenance("user", f"read as a {CONVENTIONS[robot.convention]} table in the app")
+    said = Provenance("user", f"read as a {CONVENTIONS[robot.convention]} table")
     return robot.replace(convention=CONVENTIONS[robot.convention], provenance={**robot.provenance, "geometry": said})
 
 

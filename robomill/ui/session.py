@@ -19,7 +19,7 @@ import streamlit as st
 from robomill.budgets import weight
 from robomill.errors import RobomillError
 from robomill.identification.knowledge import Knowledge
-from robomill.provenance import GIVEN, Provenance
+from robomill.provenance import GIVEN, TYPED
 from robomill.robot.model import Robot
 from robomill.robot.sources import changed_blocks
 from robomill.simulation.origin.sources import changed_sources
@@ -29,7 +29,7 @@ from robomill.ui.closing import while_open
 from robomill.ui.project import DEFAULT_PRESET, MapView, Project, preset_setup, project_from_toml
 
 KEY = "robomill"
-EDITED = Provenance("user", "entered in the app")
+EDITED = TYPED
 MAX_HISTORY = 60
 MAX_HISTORY_BYTES = 32 * 2**20  # of a session; the project before the last change stays, however heavy
 HEAVY = 2**20  # bytes of a project whose history is weighed: weighing takes as long as a history is deep

@@ -7,7 +7,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray
-from robomill.identification.plan import MARGIN, Loads, Plan, candidates_around, next_best
+from robomill.identification.plan import MARGIN, POSES, Loads, Plan, candidates_around, next_best
 from robomill.identification.result import IdentificationResult
 from robomill.io.columns import append_rows
 from robomill.io.measured.load_test_columns import LAYOUT
@@ -20,8 +20,9 @@ from robomill.ui.entry import inputs
 from robomill.ui.identification.bench import decided, field, put_tests, remembered, tests_of
 from robomill.ui.identification.cut import cut_of
 from robomill.ui.identification.inputs import upload
-from robomill.units import format_si, from_si, unit_label
+from robomill.units import format_count, format_si, from_si, unit_label
 from robomill.viz.identification import gain_figure
+from robomill.wording import signed
 
 
 def measure_next(bench: Bench, robot: Robot, result: IdentificationResult, unit: str, dark: bool) -> None:
@@ -76,7 +77,7 @@ def _goal_inputs(bench: Bench, robot: Robot, result: IdentificationResult) -> No
     with fifth:
         field(bench, "tilt")
     pieces.note(
-        "Chosen among 300 poses within the joint limits and "
+        f"Chosen among {format_count(POSES, 'pose')} within the joint limits and "
         f"{format_si(MARGIN, 'mm', 0)} of the measured ones, each pushed along X, Y or Z."
     )
 
@@ -134,4 +135,4 @@ def theta_columns(robot: Robot, theta: FloatArray) -> dict[str, FloatArray]:
 
 def _direction(F: FloatArray) -> str:
     i = int(np.argmax(np.abs(F)))
-    return f"{'+' if F[i] > 0 else '−'}{'XYZ'[i]}"
+    return signed(float(F[i]), "XYZ"[i])

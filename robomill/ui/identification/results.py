@@ -16,6 +16,7 @@ from robomill.ui.identification.bench import decide, decided
 from robomill.ui.markup import as_html
 from robomill.units import format_count, format_number, format_si, from_si, unit_label
 from robomill.viz.identification import (
+    MAX_TESTS,
     correlation_figure,
     intervals_figure,
     residuals_figure,
@@ -132,7 +133,11 @@ def residuals(bench: Bench, result: IdentificationResult, dark: bool) -> None:
         else:
             drawn = from_si(result.residual, picked)
         odd = np.isin(result.row, [o.row for o in result.outliers])
-        note = f"Drawn: at most 3000 of {format_count(len(result.row))} tests. " if len(result.row) > 3000 else ""
+        note = (
+            f"Drawn: at most {MAX_TESTS} of {format_count(len(result.row))} tests. "
+            if len(result.row) > MAX_TESTS
+            else ""
+        )
         pieces.figure(
             residuals_figure(result.row, drawn, odd, unit_label(picked), result.components, dark=dark),
             f"ident-residuals-{picked}",

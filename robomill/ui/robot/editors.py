@@ -8,7 +8,7 @@ import pandas as pd
 import streamlit as st
 
 from robomill.io.robot.robots import load_robot, robot_titles
-from robomill.provenance import Provenance
+from robomill.provenance import TYPED
 from robomill.robot.model import USER_SET, Robot
 from robomill.ui import pieces, session
 from robomill.ui.entry import grid, inputs
@@ -91,7 +91,7 @@ def _whence(robot: Robot) -> None:
     mine = robot.compliance_set == USER_SET
     found = robot.provenance.get("compliance" if mine else f"compliance.{robot.compliance_set}")
     if mine and found is None:
-        found = Provenance("user", "entered in the app")
+        found = TYPED
     if found is not None:
         pieces.note(pieces.sourced(found))
     if mine and found is not None and found.kind == "assumed":
