@@ -12,7 +12,7 @@ from robomill.simulation.stations import sideways
 from robomill.ui import pieces
 from robomill.ui.project import DEFAULT_PRESET, Project, preset_setup
 from robomill.ui.work import cached, running
-from robomill.units import from_si
+from robomill.units import format_si, from_si
 from robomill.viz.evidence import Claim, evidence_figure
 
 
@@ -45,7 +45,7 @@ def claims(project: Project, process: bool = False) -> list[Claim]:
 @cached.shared(lambda process: process, "The paper's test, computed")
 def _papers(process: bool) -> list[Claim]:
     """What is the same for everyone."""
-    plain, force = preset_setup(DEFAULT_PRESET), f"{SLOT.force:.0f} N"
+    plain, force = preset_setup(DEFAULT_PRESET), format_si(SLOT.force, "N", 0)
     third = plain.robot.with_compliance_set("table_3")
     rows = [
         Claim("paper, predicted from Table 2", "paper", SLOT.from_table_2, note=f"{force} measured force"),

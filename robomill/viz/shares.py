@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.units import format_number
+from robomill.units import MINUS, format_number
 from robomill.viz.chart import Chart, Trace
 from robomill.viz.theme import ABOVE, axis, figure, hover, joint_colours, palette, say
 
@@ -79,7 +79,7 @@ def _marks(name: str, names: Sequence[str], values: FloatArray, colour: str, uni
 def _amount(value: float, top: float, unit: str, digits: int) -> str:
     """With ``digits`` decimals; what is a thousandth of the largest or less is none."""
     text = format_number(value, digits)
-    return "0" if abs(value) <= 1e-3 * top or not text.strip("−0.") else f"{text} {unit}"
+    return "0" if abs(value) <= 1e-3 * top or not text.strip(f"{MINUS}0.") else f"{text} {unit}"
 
 
 def gain_bars(gain: FloatArray, unit: str, digits: int, joints: Sequence[int], *, dark: bool, height: int) -> Chart:

@@ -20,7 +20,7 @@ from robomill.ui.entry import inputs
 from robomill.ui.entry.box import NumberBox
 from robomill.ui.shell import dark
 from robomill.ui.work import cached
-from robomill.units import format_beside, format_count, format_percent, format_si, from_si
+from robomill.units import format_beside, format_count, format_many, format_percent, format_si, format_value, from_si
 from robomill.viz.unsure import distribution, tornado_bars
 
 KEPT = "improve.spread"
@@ -87,7 +87,8 @@ def _pictures(found: Uncertainty, result: SimulationResult) -> None:
             distribution(used, now, sure, dark=dark()),
             "improve-draws",
             table=found.columns,
-            alt=f"Distribution of the tolerance used: {now:.0f} % predicted, {sure:.0f} % in 95 % of the draws.",
+            alt=f"Distribution of the tolerance used: {format_value(now, '%', 0)} predicted, "
+            f"{format_value(sure, '%', 0)} in 95 % of the draws.",
             caption="How often which part of the tolerance is used.",
         )
     with beside:
@@ -101,7 +102,10 @@ def _pictures(found: Uncertainty, result: SimulationResult) -> None:
             "improve-tornado",
             table=tornado.columns,
             alt="What each input alone does to the tolerance used: "
-            + ", ".join(f"{name} {a:.0f} to {b:.0f} %" for name, a, b in zip(names[:3], low, high, strict=False)),
+            + ", ".join(
+                f"{name} {format_many(ends, '%', 0, ' to ')}"
+                for name, *ends in zip(names[:3], tornado.low, tornado.high, strict=False)
+            ),
             caption="Each alone at the ends of its 95 % interval. Measure the first one next: it makes "
             f"{format_percent(float(tornado.part[0]))} of the variance.",
         )

@@ -18,7 +18,7 @@ from robomill.ui.point import InHand, place
 from robomill.ui.project import MapView, Project
 from robomill.ui.push import Decided, Moved, Push
 from robomill.ui.work import running
-from robomill.units import UNITS, format_many, format_si, from_si, unit_label
+from robomill.units import UNITS, format_many, format_number, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 from robomill.workspace.fields import ComplianceMap
 
@@ -185,7 +185,7 @@ def what_if(robot: Robot, view: MapView) -> None:
     with st.container(key="maps-factors"):
         for i, number in enumerate(robot.joint_numbers):
             name, slider = st.columns([0.52, 1], vertical_alignment="center")
-            name.markdown(f"Joint {number} **× {scale[i]:.2f}**")
+            name.markdown(f"Joint {number} **× {format_number(scale[i], 2)}**")
             with slider:
                 inputs.slider(
                     f"Joint {number}, times its stiffness",
