@@ -46,7 +46,7 @@ class ZMap(Value):
     --------
     >>> import robomill as rm
     >>> rm.simulate(rm.load_setup("paper_flute")).ideal
-    <ZMap 1100 x 400 cells of 0.100 x 0.100 mm, 1586 mm3 removed>
+    <ZMap 1100 x 400 cells of 0.100 x 0.100 mm, 1586 mm^3 removed>
     """
 
     x: FloatArray
