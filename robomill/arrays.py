@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robomill.errors import RobomillError
-from robomill.wording import with_article
 
 T = TypeVar("T")
 FloatArray = NDArray[np.float64]
@@ -113,6 +112,11 @@ def brief(value: Any, most: int = 60) -> str:
         return " ".join(f"{value!r:.{4 * most}}".split())[:most]
     except ValueError:  # Python writes no whole number of more than 4300 digits
         return "a whole number of thousands of digits"
+
+
+def with_article(name: str) -> str:
+    """A noun with its article: ``a list``, ``an Arc``."""
+    return f"{'an' if name[:1] in 'AEIOUaeiou' else 'a'} {name}"
 
 
 def check_place(p: ArrayLike, name: str, error: type[RobomillError]) -> None:

@@ -14,9 +14,8 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import NO_NUMBERS, Arrays, Numbers, Rows, brief, no_number
+from robomill.arrays import NO_NUMBERS, Arrays, Numbers, Rows, brief, no_number, with_article
 from robomill.errors import ArgumentError, RobomillError
-from robomill.wording import with_article
 
 LOOKED_AT = 1000  # entries of a sequence
 WORDS = {

@@ -1,4 +1,4 @@
-"""The small change of sentences: signs with their plain spelling, numbers below the line, lists in words, articles."""
+"""The small change of sentences: signs with their plain spelling, numbers below the line, lists in words."""
 
 from collections.abc import Callable, Iterable
 
@@ -55,8 +55,3 @@ def listed(words: Iterable[str], last: str = "and") -> str:
     """In words: ``A``, ``A and B``, ``A, B and C``; "" where there are none."""
     *first, end = [*words] or [""]
     return f"{', '.join(first)} {last} {end}" if first else end
-
-
-def with_article(name: str) -> str:
-    """A noun with its article: ``a list``, ``an Arc``."""
-    return f"{'an' if name[:1] in 'AEIOUaeiou' else 'a'} {name}"

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from robomill.arrays import as_floats, brief, check_place, digest, frozen, next_true, sealed
+from robomill.arrays import as_floats, brief, check_place, digest, frozen, next_true, sealed, with_article
 from robomill.errors import RobomillError, RobotError
 
 
@@ -192,3 +192,10 @@ def test_the_next_true_is_the_one_that_a_look_at_each_place_finds(length: int) -
         which = np.array([bool(bits >> k & 1) for k in range(length)], dtype=bool)
         looked = [next((j for j in range(i, length) if which[j]), length) for i in range(length)]
         assert next_true(which, length).tolist() == looked
+
+
+@pytest.mark.parametrize(
+    ("name", "text"), [("list", "a list"), ("Arc", "an Arc"), ("int", "an int"), ("Robot", "a Robot")]
+)
+def test_a_noun_has_its_article(name, text) -> None:
+    assert with_article(name) == text

@@ -1,11 +1,11 @@
-"""Signs and their plain spelling, lists in words, articles."""
+"""Signs and their plain spelling, lists in words."""
 
 from __future__ import annotations
 
 import pytest
 
 from robomill.unit_words import raised
-from robomill.wording import DASHES, LOWERED, PLAIN, RAISED, listed, lowered, signed, spelled, with_article
+from robomill.wording import DASHES, LOWERED, PLAIN, RAISED, listed, lowered, signed, spelled
 
 
 @pytest.mark.parametrize(
@@ -14,13 +14,6 @@ from robomill.wording import DASHES, LOWERED, PLAIN, RAISED, listed, lowered, si
 def test_a_list_in_words_has_its_last_word_before_the_last(words, text) -> None:
     assert listed(words) == text
     assert listed(iter(words), "or") == text.replace(" and ", " or ")
-
-
-@pytest.mark.parametrize(
-    ("name", "text"), [("list", "a list"), ("Arc", "an Arc"), ("int", "an int"), ("Robot", "a Robot")]
-)
-def test_a_noun_has_its_article(name, text) -> None:
-    assert with_article(name) == text
 
 
 def test_a_direction_has_a_true_sign_and_a_number_stands_below_the_line_with_all_its_digits() -> None:
