@@ -77,6 +77,11 @@ def next_true(which: BoolArray, otherwise: int) -> IntArray:
     return np.asarray(np.minimum.accumulate(first)[::-1])
 
 
+def stretches(which: BoolArray) -> IntArray:
+    """(r, 2): where each run of True in ``which`` (m,) begins, and the place past its end."""
+    return np.flatnonzero(np.diff(which, prepend=False, append=False)).reshape(-1, 2)
+
+
 def is_unreal(value: Any) -> bool:
     """Whether NumPy would take for numbers what is none: True and False alone or in lists, and complex ones."""
     if isinstance(value, np.ndarray):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray, next_true
+from robomill.arrays import BoolArray, FloatArray, IntArray, next_true, stretches
 from robomill.progress import checkpoint
 from robomill.simulation.judging.places import STEEP
 from robomill.simulation.led import led_beside, plunges, tip_error
@@ -236,8 +236,7 @@ class Places:
         """c (m, 3) m with one correction beside for all of a plunge whose own differ by no more than ``UPRIGHT``: along
         a wall that is not upright a tool cuts on its side, too."""
         path = self.path
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], self.steep & path.cutting, [False]]).astype(int)))
-        for begin, past in edges.reshape(-1, 2).tolist():
+        for begin, past in stretches(self.steep & path.cutting):
             some = slice(begin, past)
             aside = c[some] - np.einsum("mi,mi->m", c[some], path.k[some])[:, None] * path.k[some]
             if np.abs(aside - aside[-1]).max() <= UPRIGHT:

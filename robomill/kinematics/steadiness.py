@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robomill.arrays import BoolArray, IntArray
+from robomill.arrays import IntArray, stretches
 from robomill.kinematics import dexterity
 from robomill.kinematics.inverse import IKResult
 from robomill.kinematics.joining import easy_turn
@@ -67,15 +67,15 @@ def hasty_turns(ik: IKResult) -> list[Haste]:
     turn = np.abs(np.diff(ik.theta.reshape(-1, robot.n), axis=0))  # NaN beside what is not reached
     found = []
     for j in np.flatnonzero(~robot.chain.prismatic):
-        for first, last in _runs(turn[:, j] > easy + SLACK):
-            steps = slice(first, last + 1)
+        for first, past in stretches(turn[:, j] > easy + SLACK).tolist():
+            steps = slice(first, past)
             with np.errstate(divide="ignore"):
                 rate = turn[steps, j] / way[steps]
             worst = int(np.argmax(rate))
             found.append(
                 Haste(
                     first + 1,
-                    last + 1,
+                    past,
                     robot.joint_numbers[j],
                     float(turn[steps, j].sum()),
                     float(way[steps].sum()),
@@ -97,10 +97,3 @@ def passages(ik: IKResult) -> list[Passage]:
     det = np.where(np.abs(det) > dexterity.ROUNDING, det, 0.0)
     steps: IntArray = np.flatnonzero(det[1:] * det[:-1] < 0.0) + 1
     return [Passage(int(i), str(names[i - 1]), str(names[i])) for i in steps]
-
-
-def _runs(mask: BoolArray) -> list[list[int]]:
-    """First and last index of each run of True."""
-    edges = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
-    ends: list[list[int]] = np.column_stack([np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1]).tolist()
-    return ends

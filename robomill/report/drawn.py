@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray
+from robomill.arrays import BoolArray, FloatArray, stretches
 from robomill.report.tags import Html, joined, tag
 from robomill.units import format_number
 
@@ -67,9 +67,8 @@ class Axes:
 
     def stretches(self, x: FloatArray, which: BoolArray, class_: str) -> Html:
         """The parts of ``x`` (q,) where ``which`` (q,) holds, over the whole height."""
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], which, [False]]).astype(int)))
         parts = []
-        for first, after in edges.reshape(-1, 2)[:200]:
+        for first, after in stretches(which)[:200]:
             left, _ = self.at(x[max(first - 1, 0)], 0.0)
             right, _ = self.at(x[min(after, len(x) - 1)], 0.0)
             wide = max(float(right - left), 1.0)

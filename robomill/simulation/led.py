@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray, next_true
+from robomill.arrays import BoolArray, FloatArray, IntArray, next_true, stretches
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tool import DISH
 from robomill.simulation.cut import Led, met_conditions, through_stock
@@ -56,8 +56,7 @@ def led_conditions(setup: SimulationSetup, path: Toolpath, told: CutConditions, 
     if (down & found.part.touches).any():
         free = engagement(march.exponents, *through_stock(setup, path, told, replace(led, tips=led.meant)).run())
         rows, sectors = rows.copy(), sectors.copy()
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], down, [False]]).astype(int)))
-        for some in (slice(begin, past) for begin, past in edges.reshape(-1, 2).tolist()):
+        for some in (slice(begin, past) for begin, past in stretches(down)):
             if not free.part.touches[some].any():
                 rows[some], sectors[some] = 0.0, 0.0
         found = engagement(march.exponents, rows, sectors)

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray, stretches
 from robomill.errors import ToolpathError
 from robomill.progress import checkpoint
 from robomill.provenance import Finding, named
@@ -129,8 +129,7 @@ def _plunges(path: Toolpath, some: IntArray) -> list[tuple[int, int]]:
     some = some[(path.step_length[some] > 0.0) & (some > 0)]
     move = path.p[some] - path.p[some - 1]
     down = np.einsum("mi,mi->m", move, path.k[some]) < -PLUNGING * path.step_length[some]
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], down & path.cutting[some], [False]]).astype(int)))
-    return [(int(some[begin]), int(some[past - 1])) for begin, past in edges.reshape(-1, 2).tolist()]
+    return [(int(some[begin]), int(some[past - 1])) for begin, past in stretches(down & path.cutting[some])]
 
 
 def linked(path: Toolpath, wanted: Toolpath) -> BoolArray:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray, IntArray
+from robomill.arrays import FloatArray, IntArray, stretches
 from robomill.simulation.result import SimulationResult
 from robomill.viz.chart import QUIET, Chart
 from robomill.viz.theme import axis, axis_colours, figure, palette, rgba, say
@@ -90,8 +90,7 @@ def shade(
     """The region between the two curves (m,) of ``band`` against s (m,); it stops where either is NaN."""
     low, high = band
     good = np.isfinite(low) & np.isfinite(high)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
-    runs = [slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    runs = [slice(begin, past) for begin, past in stretches(good)]
     for k, run in enumerate(run for run in runs if np.any(high[run] - low[run] > 1e-9)):
         there, back = np.concatenate([s[run], s[run][::-1]]), np.concatenate([high[run], low[run][::-1]])
         named = {"name": name, "legendgroup": name, "showlegend": legend and k == 0}

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from robomill.arrays import as_floats, brief, check_place, digest, frozen, next_true, sealed, with_article
+from robomill.arrays import as_floats, brief, check_place, digest, frozen, next_true, sealed, stretches, with_article
 from robomill.errors import RobomillError, RobotError
 
 
@@ -199,3 +199,12 @@ def test_the_next_true_is_the_one_that_a_look_at_each_place_finds(length: int) -
 )
 def test_a_noun_has_its_article(name, text) -> None:
     assert with_article(name) == text
+
+
+@pytest.mark.parametrize("length", range(8))
+def test_stretches_are_those_that_a_look_at_each_place_finds(length: int) -> None:
+    for bits in range(2**length):
+        which = np.array([bool(bits >> k & 1) for k in range(length)], dtype=bool)
+        begins = [i for i in range(length) if which[i] and not (i and which[i - 1])]
+        looked = [[i, next((j for j in range(i, length) if not which[j]), length)] for i in begins]
+        assert stretches(which).tolist() == looked

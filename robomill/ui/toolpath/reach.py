@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, stretches
 from robomill.robot.model import Robot
 from robomill.simulation import reach
 from robomill.simulation.setup import SimulationSetup
@@ -45,7 +45,4 @@ def _board_runs(robot: Robot, T_MW: FloatArray, low: float, high: float, z: floa
     x = low + (np.arange(nx) + 0.5) * (high - low) / nx
     y = low + (np.arange(ny) + 0.5) * (high - low) / ny
     far = ~reach.plane_reach(robot, T_MW, x, y, z)
-    edges = np.diff(np.pad(far.astype(np.int8), ((0, 0), (1, 1))), axis=1)
-    rows, starts = np.nonzero(edges == 1)
-    ends = np.nonzero(edges == -1)[1]
-    return np.column_stack([rows, starts, ends]).tolist()
+    return [[row, *run] for row, cells in enumerate(far) for run in stretches(cells).tolist()]

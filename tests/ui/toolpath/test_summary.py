@@ -78,5 +78,3 @@ def test_a_finding_fits_its_tile_and_the_worst_is_first() -> None:
     said = finding_words(long)
     assert said == "the part is 4.0 x 2.0 mm across; if the program means inches …"
     assert len(said) <= 66
-
-
