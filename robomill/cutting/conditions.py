@@ -22,8 +22,8 @@ from robomill.errors import CuttingError
 from robomill.provenance import Finding
 from robomill.units import format_count, format_si
 
-#: Below this share of the feed across the tool axis a move counts as a plunge (or a retract).
-PLUNGE = 1e-6
+STRAIGHT = 1e-6  # share of the feed across the tool axis below which a move goes straight along that
+STEEP = 0.5  # share of it below which a move goes mostly along the axis: its wall is a hole's
 WHOLE = ("part", "tooling", "block_name")  # fields that are values of their own
 
 
@@ -118,13 +118,24 @@ class CutConditions:
         """(m,) True where the cutter cuts material; not where it only stands in it or is drawn out of it."""
         if self.part is not None:
             return sealed(np.asarray(self.cutting & self.part.touches))
-        down = (self.across > PLUNGE) | (self.along < 0.0)
+        down = (self.across > STRAIGHT) | (self.along < 0.0)
         return sealed(np.asarray(self.cutting & (self.a_p > 0.0) & (self.phi_ex > self.phi_st) & down))
 
     @property
     def sinks(self) -> FloatArray:
         """(m,) how steeply the end of the tool sinks, 0 to 1."""
         return sealed(sinks(self.along) if self.steep is None else self.steep)
+
+    @property
+    def mostly_axial(self) -> BoolArray:
+        """(m,) True where the tool goes more along its axis than across it, down or up: what stands beside is a
+        hole's."""
+        return sealed(self.across < STEEP)
+
+    @property
+    def plunges(self) -> BoolArray:
+        """(m,) True where that is the way down, on rapids, too."""
+        return sealed(self.mostly_axial & (self.along < 0.0))
 
     def f_z(self, flutes: ArrayLike) -> FloatArray:
         """Feed per tooth (m,) m: v_f / (n_s flutes); 0 outside the material, NaN where the speed is not known.

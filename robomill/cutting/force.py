@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, as_floats
-from robomill.cutting.conditions import PLUNGE, CutConditions
+from robomill.cutting.conditions import STRAIGHT, CutConditions
 from robomill.cutting.materials import Material
 from robomill.cutting.tool import Cutter
 from robomill.cutting.unjudged import Unjudged, against_hand
@@ -202,7 +202,7 @@ def feed_frame(way: ArrayLike, k: ArrayLike) -> FloatArray:
 
     def moves(some: slice) -> BoolArray:
         lies_across = np.linalg.norm(_across(step[some], axis[some]), axis=1) > 0.0
-        return np.asarray(lies_across & (feed_share(step[some], axis[some]) > PLUNGE))
+        return np.asarray(lies_across & (feed_share(step[some], axis[some]) > STRAIGHT))
 
     moving = gathered(m, "", moves)
     index = np.maximum.accumulate(np.where(moving, np.arange(m), -1))
@@ -215,7 +215,7 @@ def feed_frame(way: ArrayLike, k: ArrayLike) -> FloatArray:
             feed = _across(step[index[some]], axis[index[some]])
             # A direction carried over to a step whose axis has turned need not lie across that axis, or lie along it.
             lying = np.linalg.norm(np.cross(feed, here), axis=1, keepdims=True)
-            feed = np.where(lying > PLUNGE * np.linalg.norm(feed, axis=1, keepdims=True), feed, fallback)
+            feed = np.where(lying > STRAIGHT * np.linalg.norm(feed, axis=1, keepdims=True), feed, fallback)
         feed = _across(feed, here)
         feed = feed / np.linalg.norm(feed, axis=1, keepdims=True)
         return np.stack([feed, np.cross(here, feed), here], axis=-1)

@@ -13,7 +13,6 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, next_true, stretches
 from robomill.progress import checkpoint
-from robomill.simulation.judging.places import STEEP
 from robomill.simulation.led import led_beside, plunges, tip_error
 from robomill.simulation.meant import LINK
 from robomill.simulation.result import SimulationResult
@@ -67,8 +66,7 @@ def directions(run: SimulationResult, components: tuple[str, ...]) -> FloatArray
     plunge normal is all around, and axial is along the way: a hole's bottom.
     """
     frames = np.einsum("ji,mjk->mik", run.setup.T_MW[:3, :3], run.R_MF)  # columns feed, normal, axial in {W}
-    across, rise = run.conditions.across, run.conditions.along
-    steep = across < STEEP
+    across, rise, steep = run.conditions.across, run.conditions.along, run.conditions.mostly_axial
     feed, normal, axis = np.moveaxis(frames, 2, 0)
     way = across[:, None] * feed + rise[:, None] * axis
     way /= np.linalg.norm(way, axis=1, keepdims=True)

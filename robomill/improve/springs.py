@@ -9,7 +9,6 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.provenance import Finding, named
-from robomill.simulation.judging.places import STEEP
 from robomill.simulation.meant import LINK, SAME, linked
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, stepped
@@ -68,7 +67,7 @@ def springs(led: SimulationResult) -> tuple[Springs, ...]:
 
 def _touches(led: SimulationResult) -> BoolArray:
     """(m,) the first samples of plunges that cut."""
-    cuts = led.conditions.engaged & (led.conditions.across < STEEP)
+    cuts = led.conditions.engaged & led.conditions.mostly_axial
     before = np.append(False, led.path.cutting[:-1] & ~led.conditions.engaged[:-1])
     return np.asarray(cuts & before & led.path.cutting)
 

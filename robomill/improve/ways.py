@@ -14,7 +14,7 @@ from robomill.units import to_si
 
 CLEAR = 2e-3  # m above the stock: where rapids between passes go
 DOWN = 1e-9  # m
-PLUNGE = to_si(300.0, "mm/min")
+PLUNGE_FEED = to_si(300.0, "mm/min")
 
 
 def fed(path: Toolpath, factor: float) -> Toolpath:
@@ -24,7 +24,7 @@ def fed(path: Toolpath, factor: float) -> Toolpath:
 
 def turned_round(path: Toolpath, top: float) -> Toolpath:
     """From its end to its beginning, so that up milling becomes down milling; what was a rapid out of the material
-    (below ``top``, m) goes in with the lowest feed of the program, at most ``PLUNGE``."""
+    (below ``top``, m) goes in with the lowest feed of the program, at most ``PLUNGE_FEED``."""
     m = len(path)
     moves = np.concatenate([[0], np.arange(m - 1, 0, -1)])  # the move to a point was the one from it
     each = {name: np.array(getattr(path, name))[moves] for name in PER_MOVE}
@@ -33,7 +33,7 @@ def turned_round(path: Toolpath, top: float) -> Toolpath:
     rapid = ~each["cutting"]
     rapid[0] = False
     into = rapid & (p[:, 2] < np.roll(p[:, 2], 1) - DOWN) & (p[:, 2] < top)
-    slow = path.v_f[path.cutting & (path.v_f > 0.0)].min(initial=PLUNGE)
+    slow = path.v_f[path.cutting & (path.v_f > 0.0)].min(initial=PLUNGE_FEED)
     each["cutting"] = each["cutting"] | into
     each["v_f"] = np.where(into, slow, each["v_f"])
     return replace(path, p=p, k=path.k[::-1], **each, counts=None)

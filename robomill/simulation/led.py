@@ -10,7 +10,6 @@ from robomill.arrays import BoolArray, FloatArray, IntArray, next_true, stretche
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tool import DISH
 from robomill.simulation.cut import Led, met_conditions, through_stock
-from robomill.simulation.judging.places import STEEP
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import ways
 from robomill.simulation.setup import SimulationSetup
@@ -21,7 +20,7 @@ from robomill.toolpath.path import Toolpath
 def plunges(path: Toolpath, conditions: CutConditions) -> tuple[IntArray, BoolArray]:
     """(m,) of samples on the way down the first one of the level cut that goes on from there, else -1; (m,) plunges."""
     down = path.cutting & (conditions.along < -DISH)
-    steep = conditions.across < STEEP
+    steep = conditions.mostly_axial
     then = np.append(next_true(~down, len(path))[1:], len(path))  # the first sample behind that does not go down
     level = np.append(path.cutting & ~down & ~steep, False)
     return np.where(down & level[then], then, -1), steep
@@ -52,7 +51,7 @@ def led_conditions(setup: SimulationSetup, path: Toolpath, told: CutConditions, 
     march = through_stock(setup, path, told, led)
     rows, sectors = march.run()
     found = engagement(march.exponents, rows, sectors)
-    down = told.cutting & (told.across < STEEP) & (told.along < 0.0)
+    down = told.cutting & told.plunges
     if (down & found.part.touches).any():
         free = engagement(march.exponents, *through_stock(setup, path, told, replace(led, tips=led.meant)).run())
         rows, sectors = rows.copy(), sectors.copy()

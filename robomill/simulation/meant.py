@@ -7,11 +7,13 @@ ahead of it (dynamic time warping in a window that goes along).
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, stretches
+from robomill.cutting.conditions import STEEP
 from robomill.errors import ToolpathError
 from robomill.progress import checkpoint
 from robomill.provenance import Finding, named
@@ -30,7 +32,7 @@ FARTHEST = 2e-3  # m: no corrected program goes further beside its path, and non
 TURNED = 2e-3  # m: a place where the path goes the other way counts as so much further off, twice
 DIRECTED = 0.5e-3  # m: shorter steps may be links, which go any way
 ITS_WAY = 0.5  # cosine of the angle within which a sample goes the way of a step
-PLUNGING = 0.866  # cosine of the angle to the tool's axis within which a step is a plunge's
+PLUNGING = math.sqrt(1.0 - STEEP**2)  # cosine of the angle to the tool's axis within which a step is a plunge's
 WINDOW = 96  # samples of the path among which one looks
 SAID = 20_000  # samples between two words of progress
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from robomill.cutting.conditions import PLUNGE, CutConditions, cut_warnings
+from robomill.cutting.conditions import STRAIGHT, CutConditions, cut_warnings
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
@@ -81,9 +81,9 @@ def test_the_feed_of_a_tooth_is_that_of_a_turn_shared_by_the_teeth() -> None:
         ({"a_p": 0.0}, False),
         ({"phi_st": 1.0, "phi_ex": 1.0}, False),
         ({"cutting": False}, False),
-        ({"across": PLUNGE}, False),
-        ({"across": 2.0 * PLUNGE}, True),
-        ({"across": PLUNGE, "along": -1.0}, True),
+        ({"across": STRAIGHT}, False),
+        ({"across": 2.0 * STRAIGHT}, True),
+        ({"across": STRAIGHT, "along": -1.0}, True),
         ({"across": 0.0, "along": 1.0}, False),
     ],
 )
@@ -92,6 +92,14 @@ def test_where_the_cutter_cuts(change, engaged):
     conditions = CutConditions(**{**base, **change})
     np.testing.assert_array_equal(conditions.engaged, [engaged])
     np.testing.assert_array_equal(conditions.f_z(3), [0.03 / 200.0 / 3 if engaged else 0.0])
+
+
+def test_a_move_goes_mostly_along_the_tool_within_thirty_degrees_of_it():
+    angle = np.radians([0.0, 29.9, 30.1, 90.0, 149.9, 150.1, 180.0])  # of the way to the tool's axis
+    across, along = np.sin(angle), np.cos(angle)
+    c = CutConditions.steady(0.03, 200.0, 2e-3, across=across, along=along)
+    np.testing.assert_array_equal(c.mostly_axial, [True, True, False, False, False, True, True])
+    np.testing.assert_array_equal(c.plunges, [False, False, False, False, False, True, True])
 
 
 def test_the_first_step_that_cannot_be_is_named_by_its_line_or_its_number():

@@ -5,7 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import ToolpathError
-from robomill.improve.ways import CLEAR, PLUNGE, fed, in_levels, turned_round
+from robomill.improve.ways import CLEAR, PLUNGE_FEED, fed, in_levels, turned_round
 
 PATH = rm.read_gcode("G21 G90 S12000 M3\nG0 X-10 Y0 Z5\nG0 Z-2\nG1 X30 F1200\nG1 Y10 F600\nG0 Z5\nG0 X-10 Y0\nM2\n")
 
@@ -35,7 +35,7 @@ def test_turned_round_the_same_cuts_go_backwards_each_with_its_feed() -> None:
     assert len(extra) == 1, "the way into the material, where it came out as a rapid"
     ((start, end, feed),) = extra
     assert (start[2], end[2]) == (5.0, -2.0)
-    assert feed == pytest.approx(PLUNGE * 6e4)
+    assert feed == pytest.approx(PLUNGE_FEED * 6e4)
     twice = turned_round(back, 0.0)
     np.testing.assert_allclose(twice.p, PATH.p)
 

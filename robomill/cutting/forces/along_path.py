@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.cutting.conditions import PLUNGE, CutConditions
+from robomill.cutting.conditions import STRAIGHT, CutConditions
 from robomill.cutting.force import BY_HAND, COMPONENTS, ForceModel, MeanForce
 from robomill.cutting.unjudged import Unjudged
 from robomill.errors import CuttingError
@@ -74,12 +74,12 @@ class PathForce(ForceModel):
 
     def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
         """Plunges beside what holds for every force: stated along a path, it says nothing of a way straight down."""
-        where = conditions.engaged & (conditions.across <= PLUNGE)
+        where = conditions.engaged & (conditions.across <= STRAIGHT)
         why = "a force stated along the path says nothing of a plunge"
         return super().unjudged(conditions) + ((Unjudged("plunge_stated", where, why),) if where.any() else ())
 
     def components(self, conditions: CutConditions) -> FloatArray:
         """(m, 3) N, the same at every step; a plunge has no feed across the tool, so only the axial part there."""
         force = np.tile(self._vector, (len(conditions), 1))
-        force[conditions.across <= PLUNGE, :2] = 0.0
+        force[conditions.across <= STRAIGHT, :2] = 0.0
         return force

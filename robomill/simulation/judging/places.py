@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.cutting.conditions import STEEP
 from robomill.cutting.tool import Cutter
 from robomill.simulation.judging.seen import Run
 from robomill.surface.outline import Outline
@@ -12,7 +13,6 @@ from robomill.surface.raster import stock_heights
 from robomill.surface.stock import stock_grid
 from robomill.vectors import angle_between
 
-STEEP = 0.5  # share of the feed across the tool below which a move is a plunge: its wall is a hole's
 APART = 10e-6  # m: samples that differ by more are looked at in between,
 BETWEEN = (0.25, 0.5, 0.75)  # at these shares of the way
 REACH = 1.5e-3  # m: walls are looked for so far from where they were commanded, and no further than the radius allows
@@ -75,21 +75,20 @@ class Places:
     @property
     def steep(self) -> BoolArray:
         """(q,): plunges, whose wall is a hole's."""
-        return self.result.conditions.across[self.i] < STEEP
+        return self.result.conditions.mostly_axial[self.i]
 
     @property
     def begins_or_ends(self) -> tuple[BoolArray, BoolArray]:
         """(q,) (q,): where cutting along the part begins, and where it ends: beside rapids, plunges and nothing."""
         result = self.result
-        level = result.path.cutting & (result.conditions.across >= STEEP)
+        level = result.path.cutting & ~result.conditions.mostly_axial
         before, after = np.append(False, level[:-1]), np.append(level[1:], False)
         return (level & ~before)[self.i] & ~self.between, (level & ~after)[self.i] & ~self.between
 
     @property
     def bottoms(self) -> BoolArray:
         """(q,): where a plunge ends, at the floor of a hole."""
-        conditions, path = self.result.conditions, self.result.path
-        down = path.cutting & (conditions.across < STEEP) & (conditions.along < 0.0)
+        down = self.result.path.cutting & self.result.conditions.plunges
         return np.asarray((down & ~np.append(down[1:], False))[self.i] & ~self.between)
 
     @property

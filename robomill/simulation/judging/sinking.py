@@ -12,7 +12,6 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.engaged import sinks
-from robomill.simulation.judging.places import STEEP
 from robomill.toolpath.path import Toolpath
 
 
@@ -20,7 +19,7 @@ def told_to_sink(told: CutConditions) -> BoolArray:
     """(m,) bool: steps of mills with an end face that are told to go down, short of a plunge."""
     assert told.tooling is not None
     ends = told.tooling.each("flat_radius") > 0.0
-    return np.asarray(told.cutting & (told.along < 0.0) & (told.sinks > 0.0) & (told.across >= STEEP) & ends)
+    return np.asarray(told.cutting & (told.along < 0.0) & (told.sinks > 0.0) & ~told.mostly_axial & ends)
 
 
 def clear(told: CutConditions) -> CutConditions:
@@ -48,7 +47,7 @@ def _slopes(told: CutConditions, path: Toolpath, tips: FloatArray) -> FloatArray
         -np.einsum("mi,mi->m", np.diff(points, axis=0, prepend=points[:1]), path.k) for points in (tips, path.p)
     )
     fallen = np.cumsum(fallen)
-    kind = np.where(path.cutting, np.where(told.across < STEEP, 2, 1), 0)
+    kind = np.where(path.cutting, np.where(told.mostly_axial, 2, 1), 0)
     begins = np.append(True, kind[1:] != kind[:-1])
     first = np.maximum.accumulate(np.where(begins, np.arange(len(s)), 0))
     before = np.where(begins, fallen - fall, np.append(fallen[:1], fallen[:-1]))

@@ -13,6 +13,7 @@ from robomill.surface.swept import swept_path
 
 BESIDE = 20e-6  # m, at least, beyond the rim: where a wall bears the mark of the tool
 LOWER, ALIKE = 1e-6, 2e-6  # m: floors, and deviations, that differ by less are one
+ON_SIDE = 0.5  # share of the feed-normal in plan below which the tool lies on its side: there are no heights beside it
 PART = 0.1  # of the deviation: what takes less of it away has not cleaned it up
 
 Mark = Literal["wall", "floor", "feed"]
@@ -70,8 +71,8 @@ def _fate(result: Run, i: int, mark: Mark) -> str:
     tip, cutter = result.p_machined[i], result.tooling.at(i)
     left_of_feed = np.asarray(result.R_MF[i, :, 1] @ result.setup.T_MW[:3, :3])
     plan = float(np.hypot(left_of_feed[0], left_of_feed[1]))
-    if plan < 0.5:
-        return "stays"  # a plunge: its wall is all around
+    if plan < ON_SIDE:
+        return "stays"
     normal = np.array([left_of_feed[0], left_of_feed[1], 0.0]) / plan
     span = stock_span(result.setup.stock_block, tip, normal)
     moves, size = np.arange(len(result.path)), float(result.max_deviation)

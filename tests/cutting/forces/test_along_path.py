@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from robomill.cutting.conditions import PLUNGE, CutConditions
+from robomill.cutting.conditions import STRAIGHT, CutConditions
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
@@ -11,7 +11,7 @@ FORCE = PathForce(feed=-1.0, feed_normal=100.0, axial=-20.0)
 
 
 def test_a_plunge_has_only_the_axial_part_and_is_not_judged():
-    across = np.array([0.0, PLUNGE, 1.5 * PLUNGE, 1.0])
+    across = np.array([0.0, STRAIGHT, 1.5 * STRAIGHT, 1.0])
     conditions = CutConditions.steady(0.03, 200.0, 2e-3, across=across, along=-1.0)
     np.testing.assert_array_equal(
         FORCE.components(conditions), [[0, 0, -20], [0, 0, -20], [-1, 100, -20], [-1, 100, -20]]
