@@ -136,7 +136,7 @@ class Compensation(Tabled):
         path, ahead = self.led.path, self.led.ahead
         assert ahead is not None
         found: Columns = {path.block_name: path.block, "cutting": path.cutting, "station_mm": from_si(path.s, "mm")}
-        c = ahead @ self.setup.T_MW[:3, :3]
+        c = self.setup.to_part(ahead)
         found |= {f"correction_{axis}_mm": from_si(c[:, i], "mm") for i, axis in enumerate("xyz")}
         before = beside(path, self.wanted.path, self.wanted.delta_in_cut)
         for when, delta in (("before", before), ("after", self.led.delta_in_cut)):

@@ -13,6 +13,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, next_true, stretches
 from robomill.progress import checkpoint
+from robomill.simulation.judging.places import cut_axes
 from robomill.simulation.led import led_beside, plunges, tip_error
 from robomill.simulation.meant import LINK
 from robomill.simulation.result import SimulationResult
@@ -65,9 +66,8 @@ def directions(run: SimulationResult, components: tuple[str, ...]) -> FloatArray
     Normal to the path is to the left of the feed; axial is across both, so the tool axis where the path is level. In a
     plunge normal is all around, and axial is along the way: a hole's bottom.
     """
-    frames = np.einsum("ji,mjk->mik", run.setup.T_MW[:3, :3], run.R_MF)  # columns feed, normal, axial in {W}
     across, rise, steep = run.conditions.across, run.conditions.along, run.conditions.mostly_axial
-    feed, normal, axis = np.moveaxis(frames, 2, 0)
+    feed, normal, axis = np.moveaxis(cut_axes(run), 1, 0)
     way = across[:, None] * feed + rise[:, None] * axis
     way /= np.linalg.norm(way, axis=1, keepdims=True)
     up = np.cross(way, normal)
@@ -86,7 +86,7 @@ def correct(setup: SimulationSetup, first: SimulationResult, components: tuple[s
     Where a force jumps with the place of the tool (it just touches) there may be none: there the correction is held
     that came closest, and what it leaves is part of the error.
     """
-    wanted, to_W, places = first.path, setup.T_MW[:3, :3], Places.along(first)
+    wanted, places = first.path, Places.along(first)
     P, seeking = directions(first, components), _Seeking.begin(len(wanted))
     if {"normal", "axial"} <= set(components):  # where a plunge ends no step may be left, whichever way the cut goes on
         P[places.then[places.then >= 0]] = np.eye(3)
@@ -95,7 +95,7 @@ def correct(setup: SimulationSetup, first: SimulationResult, components: tuple[s
     while True:
         checkpoint(min(len(change) / 6.0, 0.95), "Correcting the path")
         known = result.path.cutting & np.isfinite(result.delta).all(axis=1)
-        asked = places.one_each(P, np.where(known[:, None], result.delta, 0.0) @ to_W, known)
+        asked = places.one_each(P, setup.to_part(np.where(known[:, None], result.delta, 0.0)), known)
         asked = places.held_outside(asked, known & (result.delta != 0.0).any(axis=1), ~result.over_stock)
         asked = places.upright(asked)
         seeking = seeking.looked(asked)

@@ -51,10 +51,9 @@ class At:
     def of(self, change: FloatArray) -> tuple[FloatArray, FloatArray]:
         """(1 + forces, s, 3) m by all that gives, and (springs, 1 + forces, s, 3) m per change of each compliance."""
         setup, looking = changed(self.unsure, change), self.looking
-        T_MW, path = setup.T_MW, looking.path
-        theta = self.configurations(setup).theta[0]
-        R_MF = T_MW[:3, :3] @ looking.R_WF
-        F = self.forces @ T_MW[:3, :3].T if looking.turns else self.forces
+        path, theta = looking.path, self.configurations(setup).theta[0]
+        R_MF = setup.T_MW[:3, :3] @ looking.R_WF
+        F = setup.to_base(self.forces) if looking.turns else self.forces
         C_joint, C_spring = compliances(setup, path, theta)
         C = C_joint.sum(axis=-3) + C_spring.sum(axis=-3)
         nominal = np.einsum("sij,fsj->fsi", C, F)
@@ -199,7 +198,7 @@ def _derivative(force: Callable[[FloatArray], FloatArray], unsure: Unsure, i: in
 
 def _force_of(unsure: Unsure, looking: Screen, change: FloatArray) -> FloatArray:
     F = unsure.run(change).F[looking.at]
-    return F @ unsure.setup.T_MW[:3, :3] if looking.turns else F
+    return unsure.setup.to_part(F) if looking.turns else F
 
 
 def _taylor(at: At, std: FloatArray, geometry: list[int]) -> tuple[FloatArray, FloatArray]:

@@ -240,7 +240,6 @@ def screen(result: SimulationResult, also: IntArray | None = None, most: int | N
     at = _few(result, most, np.zeros(0, dtype=np.int64) if also is None else also)
     keep = np.zeros(len(path), dtype=bool)
     keep[at] = True
-    R_MW = setup.T_MW[:3, :3]
     turns = setup.force.frame == "path" or setup.force.turns_with_part
     home = np.where(np.isnan(result.theta), setup.robot.home, result.theta)
     return Screen(
@@ -248,8 +247,8 @@ def screen(result: SimulationResult, also: IntArray | None = None, most: int | N
         path=chosen(path, keep),
         at=at,
         T_WT=tool_frames(path.p[at], path.k[at], farther(setup, path)[at]),
-        R_WF=R_MW.T @ result.R_MF[at],
-        F=result.F[at] @ R_MW if turns else result.F[at],
+        R_WF=setup.T_MW[:3, :3].T @ result.R_MF[at],
+        F=setup.to_part(result.F[at]) if turns else result.F[at],
         turns=turns,
         surfaces={name: surfaces(read, result.delta_in_cut, at) for name, read in _read(result).items()},
         judged=result.judged[at],

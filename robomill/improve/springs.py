@@ -50,7 +50,7 @@ def springs(led: SimulationResult) -> tuple[Springs, ...]:
     links = linked(path, led.path)
     if links.any():
         plain = along(led.setup, path)
-        tips = path.p + np.nan_to_num(plain.delta) @ led.setup.T_MW[:3, :3]
+        tips = path.p + led.setup.to_part(np.nan_to_num(plain.delta))
         off = _beside(tips, led.path, np.flatnonzero(links))
         begins = links & ~np.append(False, links[:-1])
         lines = tuple(sorted(set(led.path.block[links].tolist())))

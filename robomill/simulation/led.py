@@ -69,7 +69,7 @@ def _behind(links: BoolArray) -> IntArray:
 
 def tip_error(run: SimulationResult, wanted: Toolpath) -> FloatArray:
     """(m, 3) m in {W}: the tip of a run against the ``wanted`` path, sample by sample."""
-    return np.asarray(run.path.p - wanted.p + run.delta @ run.setup.T_MW[:3, :3])
+    return np.asarray(run.path.p - wanted.p + run.setup.to_part(run.delta))
 
 
 def against(
@@ -78,9 +78,10 @@ def against(
     """The run along a corrected path as one that was told to go along the ``wanted`` one, whose axes of the cut are
     R_MF (m, 3, 3): what a gauge reads on it is the error of the part. On ``links`` (m,) from one cut to the next it is
     taken to be where the next begins: how far the tip springs there is told apart."""
-    to_W = run.setup.T_MW[:3, :3]
-    off = np.where(wanted.cutting[:, None], tip_error(run, wanted), 0.0) @ to_W.T
-    ahead = np.where(wanted.cutting[:, None], run.path.p - wanted.p, 0.0) @ to_W.T
+    off, ahead = (
+        run.setup.to_base(np.where(wanted.cutting[:, None], each, 0.0))
+        for each in (tip_error(run, wanted), run.path.p - wanted.p)
+    )
     told = replace(run, path=wanted, delta=off, R_MF=R_MF, ahead=ahead)
     if links is None or not links.any():
         return told

@@ -35,10 +35,10 @@ def turned(setup: SimulationSetup, path: Toolpath) -> FloatArray:
     """(m,) rad at feed: how far the tool stands off the one the map was measured with; 0 elsewhere, or without one."""
     if setup.measured_map is None:
         return np.zeros(len(path))
-    field, R = setup.measured_map, setup.T_MW[:3, :3].T
+    field = setup.measured_map
 
     def angle(some: slice) -> FloatArray:
-        return field.turned(setup.in_base(path.p[some]), path.k[some] @ R)
+        return field.turned(setup.in_base(path.p[some]), setup.to_base(path.k[some]))
 
     return np.where(path.cutting, gathered(len(path), "Measured map", angle), 0.0)
 

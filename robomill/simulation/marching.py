@@ -100,11 +100,11 @@ class _Walk:
 
     def _step(self, i: int) -> tuple[Settled, FloatArray, FloatArray]:
         """Solve step i and cut it: how it was settled, and what it meets, row and sectors."""
-        bent, p, to_W = self.bent, self.bent.path.p, self.bent.setup.T_MW[:3, :3]
+        bent, p, to_part = self.bent, self.bent.path.p, self.bent.setup.to_part
         told = _only(bent.told, i)
 
         def meets(delta: FloatArray) -> tuple[FloatArray, FloatArray]:
-            shift = np.nan_to_num(delta) @ to_W
+            shift = to_part(np.nan_to_num(delta))
             return self.march.meet(i, p[i - 1] + shift, p[i] + shift)
 
         def pushed(row: FloatArray, sectors: FloatArray) -> FloatArray:
@@ -120,7 +120,7 @@ class _Walk:
         self.moved[i] = np.nan_to_num(displacement(bent.C[i], pushed(row, met[0][1])) + bent.offset[i])
         if not bent.path.cutting[i - 1]:  # a rapid arrives where the cut begins
             self.moved[i - 1] = self.moved[i]
-        self.march.cut(i, p[i - 1] + self.moved[i - 1] @ to_W, p[i] + self.moved[i] @ to_W)
+        self.march.cut(i, p[i - 1] + to_part(self.moved[i - 1]), p[i] + to_part(self.moved[i]))
         return found, row, met[0][1]
 
 

@@ -252,7 +252,7 @@ def _tips(bent: Bent) -> FloatArray:
     if bent.led is not None:
         return bent.led.meant
     delta = bent.delta(_once(replace(bent, told=clear(bent.told)))[1])
-    return np.asarray(bent.path.p + np.nan_to_num(delta) @ bent.setup.T_MW[:3, :3])
+    return np.asarray(bent.path.p + bent.setup.to_part(np.nan_to_num(delta)))
 
 
 def _reasons(bent: Bent, conditions: CutConditions) -> tuple[Unjudged, ...]:

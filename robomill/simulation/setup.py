@@ -286,9 +286,17 @@ class SimulationSetup(Replaceable, Value):
     @asked
     def in_base(self, p: ArrayLike) -> FloatArray:
         """Points p (..., 3) m of the part frame {W}, in the robot's frame {M}."""
-        return np.asarray(
-            as_floats(p, "Points", (3,), error=SetupError, finite=False) @ self.T_MW[:3, :3].T + self.T_MW[:3, 3]
-        )
+        return self.to_base(as_floats(p, "Points", (3,), error=SetupError, finite=False)) + self.T_MW[:3, 3]
+
+    @asked
+    def to_base(self, v: ArrayLike) -> FloatArray:
+        """Directions v (..., 3) of the part frame {W}, in the robot's frame {M}: turned, and not shifted."""
+        return np.asarray(as_floats(v, "Directions", (3,), error=SetupError, finite=False) @ self.T_MW[:3, :3].T)
+
+    @asked
+    def to_part(self, v: ArrayLike) -> FloatArray:
+        """Directions v (..., 3) of the robot's frame {M}, in the part frame {W}."""
+        return np.asarray(as_floats(v, "Directions", (3,), error=SetupError, finite=False) @ self.T_MW[:3, :3])
 
     def _said(self) -> str:
         return f"{self.name}: {self.robot.name}, {self.cutter.title}, tolerance {format_limit(self.tolerance, 'mm')}"

@@ -130,6 +130,8 @@ HELD: dict[str, tuple[Any, dict[str, Any]]] = {
     "with_compliance_set": (ARM.with_compliance_set, {"name": "table_2"}),
     "fields": (rm.compliance_map(ARM, GRID).fields, {}),
     "in_base": (SETUP.in_base, {"p": [0, 0, 0]}),
+    "to_base": (SETUP.to_base, {"v": [0, 0, 1]}),
+    "to_part": (SETUP.to_part, {"v": [0, 0, 1]}),
     "moved": (DRAWING.moved, {"origin": "corner"}),
     "of_layer": (DRAWING.of_layer, {"layer": "slots"}),
     "sketch": (DRAWING.sketch, {"cuts": [rm.LayerCut("slots", depth_mm=2, feed_mm_min=600)]}),

@@ -55,6 +55,18 @@ def test_points_are_turned_and_then_shifted():
         np.testing.assert_allclose(setup.in_base(p)[at], (T_MW @ [*p[at], 1.0])[:3], atol=1e-15)
 
 
+def test_directions_are_turned_and_turned_back_by_the_inverse():
+    yaw, tilt, T_MW = 0.7, -0.4, np.eye(4)
+    R_z = [[np.cos(yaw), -np.sin(yaw), 0.0], [np.sin(yaw), np.cos(yaw), 0.0], [0.0, 0.0, 1.0]]
+    R_x = [[1.0, 0.0, 0.0], [0.0, np.cos(tilt), -np.sin(tilt)], [0.0, np.sin(tilt), np.cos(tilt)]]
+    T_MW[:3, :3], T_MW[:3, 3] = np.array(R_z) @ R_x, [0.1, -1.3, 0.02]
+    setup, T_WM = SETUP.replace(T_MW=T_MW), np.linalg.inv(T_MW)
+    v = np.random.default_rng(2).normal(size=(2, 4, 3))
+    for at in np.ndindex(2, 4):
+        np.testing.assert_allclose(setup.to_base(v)[at], (T_MW @ [*v[at], 0.0])[:3], atol=1e-15)
+        np.testing.assert_allclose(setup.to_part(v)[at], (T_WM @ [*v[at], 0.0])[:3], atol=1e-15)
+
+
 @pytest.mark.parametrize("given", [[2e-4], [2e-4, 1e-4], [2e-4, 1e-4, None, None], {"floor": 1e-4}, [None, 1e-4, 1e-4]])
 def test_three_tolerances_are_three_and_the_first_is_needed(given):
     with pytest.raises(SetupError, match=r"Tolerance: found .*three for wall, floor, feed"):

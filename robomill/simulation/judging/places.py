@@ -120,9 +120,8 @@ def places(result: Run, most: int | None = None) -> Places:
     moves, of = np.flatnonzero(result.removes), np.asarray(tooling.of_step)
     reach = min(REACH, max(cutter.radius for cutter in tooling.cutters))
     axes, lift = _upright_balls(result)
-    to_W = result.setup.T_MW[:3, :3]
     off = np.where(share < 1.0, share * result.delta[i] + (1.0 - share) * result.delta[before], result.delta[i])
-    d: FloatArray = np.einsum("mij,mj->mi", axes[i], np.asarray(off @ to_W))
+    d = np.asarray(np.einsum("mij,mj->mi", axes[i], result.setup.to_part(off)))
     tips = path.p + lift
 
     told, left = (np.hstack([p[moves - 1], p[moves]]) for p in (path.p + lift, result.p_machined + lift))
@@ -146,11 +145,15 @@ def _changes(result: Run) -> FloatArray:
     return np.asarray(np.linalg.norm(np.diff(np.nan_to_num(result.delta), axis=0), axis=1))
 
 
+def cut_axes(result: Run) -> FloatArray:
+    """(m, 3, 3): the axes of the cut in {W}, rows feed, left, axial."""
+    return np.einsum("ji,mjk->mki", result.setup.T_MW[:3, :3], result.R_MF)
+
+
 def _upright_balls(result: Run) -> tuple[FloatArray, FloatArray]:
     """Axes of the cut (m, 3, 3), rows feed, left, axial in {W}, and how far (m, 3) m from the tip the lowest point is:
     a ball cuts the same however it leans, so it is taken upright; other tools have their own axes and their tip."""
-    to_W, path = result.setup.T_MW[:3, :3], result.path
-    axes = np.einsum("ji,mjk->mki", to_W, result.R_MF)
+    path, axes = result.path, cut_axes(result)
     ball = np.array([cutter.flat_radius == 0.0 and not cutter.conical for cutter in result.tooling.cutters])
     leans = ball[result.tooling.of_step] & (path.k[:, 2] < 1.0 - 1e-12)
     up = np.array([0.0, 0.0, 1.0])

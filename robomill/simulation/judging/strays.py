@@ -69,7 +69,7 @@ def _amid(result: Run) -> int:
 def _fate(result: Run, i: int, mark: Mark) -> str:
     """What other passes do to the walls or the floor that the tool leaves at a sample."""
     tip, cutter = result.p_machined[i], result.tooling.at(i)
-    left_of_feed = np.asarray(result.R_MF[i, :, 1] @ result.setup.T_MW[:3, :3])
+    left_of_feed = result.setup.to_part(result.R_MF[i, :, 1])
     plan = float(np.hypot(left_of_feed[0], left_of_feed[1]))
     if plan < ON_SIDE:
         return "stays"
