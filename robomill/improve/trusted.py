@@ -9,10 +9,10 @@ from robomill.improve.correction import Correction
 from robomill.provenance import named
 from robomill.simulation.judging.gauge import Gauge
 from robomill.simulation.judging.verdict import judge
+from robomill.simulation.meant import FARTHEST
 from robomill.simulation.result import SimulationResult
 from robomill.units import format_si, to_si
 
-FARTHEST = 2e-3  # m: an arm that is pushed further off is not predicted by its springs at rest
 MOST_HELD = 0.05  # of the length cut: so much may have no force that agrees with its place
 TURNED = to_si(5.0, "deg")  # a joint that stands further off than this stands otherwise
 

@@ -16,9 +16,8 @@ from robomill.provenance import Provenance
 from robomill.robot.checks import MAX_JOINTS, MIN_JOINTS
 from robomill.robot.dh import screw_x
 from robomill.robot.model import Robot
+from robomill.robot.table import ASSUMED_COMPLIANCE
 
-ASSUMED_COMPLIANCE = 1e-6
-"""rad/(N m), m/N where a joint slides: 1 um/N at a metre, until somebody gives a better one."""
 CONVENTIONS = {"standard": "modified", "modified": "standard"}
 ROWS = ("alpha", "a", "d", "theta_offset", "sign", "prismatic", "blocked", "limits_all", "C_theta_all")
 TABLE_BLOCKS = ("geometry", "lengths", "limits")

@@ -23,11 +23,12 @@ from robomill.robot import checks
 from robomill.robot.dh import Chain, build_chain
 from robomill.robot.plausible import checked
 from robomill.robot.sources import COMPLIANCE, USER_SET, changed_sources, of_set, stated_of_robot
+from robomill.robot.table import COLUMN_UNITS, OTHERS, changed_fields, refuse_printed, robot_fields
 from robomill.spelled import in_si
 from robomill.units import format_count, from_si
 from robomill.values import Tabled
 
-SOFTEST = 1e-2  # rad/(N m), m/N: no joint gives more: was it meant in 1e-7 of it?
+UNIT_SLIP = 1e-2  # rad/(N m), m/N: no joint gives more: was it meant in 1e-7 of it?
 LONGEST = 100.0  # m: no link is longer: was it meant in mm?
 Limits = Arrays | Sequence[float | Sequence[float] | Arrays | None]
 # Of the last axis's frame, where the tip stands in it: what of T_tool is typed as numbers.
@@ -66,7 +67,7 @@ class Robot(Tabled):
     theta_offset: FloatArray = quantity("θ₀", "deg", shape=(None,), slip=2.0 * math.tau)
     limits_all: FloatArray = quantity("limit", "deg", shape=(None, 2), axes=("lower", "upper"), sliding="mm")
     C_theta_all: FloatArray = quantity(
-        "compliance", "1e-7 rad/(N m)", shape=(None,), least=0.0, digits=2, sliding="1e-9 m/N", slip=SOFTEST
+        "compliance", "1e-7 rad/(N m)", shape=(None,), least=0.0, digits=2, sliding="1e-9 m/N", slip=UNIT_SLIP
     )
     title: str = ""
     sign: FloatArray = quantity("sign", shape=(None,), default=None)
@@ -221,9 +222,7 @@ class Robot(Tabled):
         >>> rm.tool_pose(arm, [0.0, 0.0])[:3, 3].round(6).tolist()
         [0.9, 0.0, 0.0]
         """
-        from robomill.robot.table import robot_fields
-
-        given = {key: value for key, value in locals().items() if key not in ("cls", "robot_fields")}
+        given = {key: value for key, value in locals().items() if key != "cls"}
         return checked(cls(**robot_fields(given, quantities(cls))), given)
 
     # ---- views --------------------------------------------------------------------------------------------------
@@ -337,8 +336,6 @@ class Robot(Tabled):
         Where changed numbers come from is that they were given in code, unless ``provenance`` says more of their block:
         geometry, lengths, limits, base, tool, compliance, or compliance. and the name of a set.
         """
-        from robomill.robot.table import COLUMN_UNITS, OTHERS, changed_fields, refuse_printed
-
         known = [f.name for f in fields(self)]
         columns, who = [f"{name}{unit}" for name, unit in COLUMN_UNITS.items()], f"Robot {self.name!r}"
         refuse_unknown(changes, [*known, "C_theta", "limits", *columns, *OTHERS], who)

@@ -18,7 +18,8 @@ from robomill.units import format_plain, from_si, to_si
 
 COLUMN_UNITS = {"alpha": "_deg", "a": "_mm", "d": "_mm", "theta_offset": "_deg"}
 COLUMNS = tuple(COLUMN_UNITS)
-ASSUMED_C = 1e-6  # rad/(N m), m/N: where nobody has given one
+ASSUMED_COMPLIANCE = 1e-6
+"""rad/(N m), m/N where a joint slides: 1 um/N at a metre, until somebody gives a better one."""
 SOFTEST, STIFFEST = 1e-3, 1e-9  # rad/(N m): no joint of a machine gives more, or less without being called rigid
 # How compliances may be given: by their names, in which unit, and whether the number is a stiffness.
 GIVES = {
@@ -297,8 +298,8 @@ def _compliances(given: Mapping[str, Any], slides: BoolArray, who: str) -> tuple
     if len(names) > 1:
         raise RobotError(f"{who}: compliances are given twice, as {' and '.join(names)}; keep one.")
     if not names:
-        words = f"nobody has given compliances; {ASSUMED_C:g} rad/(N m) (m/N) for every joint"
-        return np.full(len(slides), ASSUMED_C), Provenance("assumed", words)
+        words = f"nobody has given compliances; {ASSUMED_COMPLIANCE:g} rad/(N m) (m/N) for every joint"
+        return np.full(len(slides), ASSUMED_COMPLIANCE), Provenance("assumed", words)
     unit, stiff = GIVES[names[0]]
     numbers = _numbers(given[names[0]], names[0], who)
     if numbers.ndim and len(numbers) != len(slides):

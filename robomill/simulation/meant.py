@@ -28,7 +28,8 @@ from robomill.vectors import angle_between
 WANTED = "wanted-path"  # the findings that say from which path a corrected program's deviation is told
 LINK = 20e-6  # m: corrections at one place that differ by more are joined by a link
 SAME = 1e-6  # m: steps that go no further stay at one place
-FARTHEST = 2e-3  # m: no corrected program goes further beside its path, and none leaves out more of it
+FARTHEST = 2e-3  # m: no corrected program goes further beside its path, and none leaves out more of it: an arm that is
+# pushed further off is not predicted by its springs at rest
 TURNED = 2e-3  # m: a place where the path goes the other way counts as so much further off, twice
 DIRECTED = 0.5e-3  # m: shorter steps may be links, which go any way
 ITS_WAY = 0.5  # cosine of the angle within which a sample goes the way of a step

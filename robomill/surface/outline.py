@@ -14,7 +14,7 @@ from robomill.surface.outline_kernels import Tracks, floors_left, walls_left
 
 MOST_SQUARES = 1_000_000
 BLOCK = 8  # moves, at least, that are passed over at once
-SAME = 2e-6  # m: tracks whose heights differ by less are one floor
+SAME = 2e-6  # m: tracks whose heights differ by no more are one floor, and walls that stand so close are one
 
 
 class Walls(NamedTuple):

@@ -8,13 +8,13 @@ import pytest
 import robomill as rm
 from robomill.errors import RobotError
 from robomill.robot.joints import (
-    ASSUMED_COMPLIANCE,
     in_other_convention,
     read_in_other_convention,
     with_joints,
     with_new_joint,
 )
 from robomill.robot.model import Robot
+from robomill.robot.table import ASSUMED_COMPLIANCE
 
 SAMPLES = ("slavkovic_5r", "fanuc_r2000ic", "kuka_kr270", "planar_3r")
 

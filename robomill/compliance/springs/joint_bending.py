@@ -15,7 +15,7 @@ from robomill.errors import RobotError
 from robomill.kinematics.jacobian import twists
 from robomill.provenance import Provenance
 from robomill.quantities import quantity, switch, whole
-from robomill.robot.model import SOFTEST
+from robomill.robot.model import UNIT_SLIP
 from robomill.spelled import in_units
 
 STIFFEST = 1e-12  # rad/(N m): nothing gives as little without being called rigid
@@ -35,7 +35,7 @@ def bending_axes(frames: FloatArray, i: int, turned: bool) -> tuple[FloatArray, 
 
 def _bending(axis: str) -> Any:
     key = f"C_{axis}_1e-7_rad_per_Nm"
-    return quantity(f"about {axis}", UNIT, default=0.0, least=0.0, key=key, slip=SOFTEST, tiny=STIFFEST)
+    return quantity(f"about {axis}", UNIT, default=0.0, least=0.0, key=key, slip=UNIT_SLIP, tiny=STIFFEST)
 
 
 @in_units(RobotError, "Bending of a joint")
@@ -61,12 +61,8 @@ class JointBending(Spring):
     each_joint: ClassVar[bool] = True
 
     joint: int = whole("Joint", least=1)
-    C_x: float = quantity(
-        "about x", UNIT, default=0.0, least=0.0, key="C_x_1e-7_rad_per_Nm", slip=SOFTEST, tiny=STIFFEST
-    )
-    C_y: float = quantity(
-        "about y", UNIT, default=0.0, least=0.0, key="C_y_1e-7_rad_per_Nm", slip=SOFTEST, tiny=STIFFEST
-    )
+    C_x: float = _bending("x")
+    C_y: float = _bending("y")
     provenance: Provenance = ASSUMED
     turned: bool = switch("Axes turn with the joint", default=False)
 

@@ -22,7 +22,7 @@ TYPICAL = Provenance("assumed", "20 N/µm across and 50 N/µm along, typical of 
 
 STIFFEST = 1e-11  # m/N: nothing gives as little without being called rigid: was it meant in m/N?
 SOFT = 5e-6  # m/N: the softest spindles and longest tools give way a tenth as much
-SOFTEST = 1e-3  # m/N: no spindle gives as much: was it meant in um/N?
+UNIT_SLIP = 1e-3  # m/N: no spindle gives as much: was it meant in um/N?
 
 
 @in_units(RobotError, "Spindle and holder")
@@ -42,8 +42,8 @@ class SpindleSpring(Spring):
     follows_tooth: ClassVar[bool] = True
     rank: ClassVar[int] = 2
 
-    lateral: float = quantity("Across", "um/N", least=0.0, digits=4, slip=SOFTEST, tiny=STIFFEST)
-    axial: float = quantity("Along", "um/N", default=0.0, least=0.0, digits=4, slip=SOFTEST, tiny=STIFFEST)
+    lateral: float = quantity("Across", "um/N", least=0.0, digits=4, slip=UNIT_SLIP, tiny=STIFFEST)
+    axial: float = quantity("Along", "um/N", default=0.0, least=0.0, digits=4, slip=UNIT_SLIP, tiny=STIFFEST)
     name: str = "spindle and holder"
     provenance: Provenance = ASSUMED
 

@@ -18,7 +18,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.simulation.judging.leaning import lies
 from robomill.simulation.judging.places import Places, places
 from robomill.simulation.judging.seen import Run
-from robomill.surface.outline import Walls
+from robomill.surface.outline import SAME, Walls
 from robomill.values import ReadOnly
 
 CORNER = np.radians(45.0)
@@ -29,12 +29,11 @@ ACROSS = (0.0, -0.3, 0.3, -0.6, 0.6)  # of the flat radius: where a floor is loo
 RIM = 0.98  # and at this share of what the tool cuts flat although it goes aside: a ledge beside a wall is narrow
 HEIGHTS = (0.05, 0.9)  # of the depth, above the nose: where a wall is measured
 ON_NOSE = 0.95  # of the depth, where the nose alone cuts
-BESIDE = 20e-6  # m: material this far beyond the rim makes a wall
+BESIDE = 20e-6  # m: material this far beyond the rim makes a wall, and bears its mark
 LEVEL = 1e-6  # what the share of the feed across the axis lacks of 1 where a move is level
 SLENDER = 0.125  # of its height: a wall as thin gives way to a cutter as the arm does
-ALIKE = 2e-6  # m: readings that differ by less are one
+ALIKE = 2e-6  # m: readings, and deviations, that differ by less are one
 LEAST = 1e-4  # share that a single place stands for
-SAME = 2e-6  # m: what other passes go beyond a wall by no more is the same wall
 
 
 @dataclass(frozen=True, eq=False)

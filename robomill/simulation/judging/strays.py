@@ -6,13 +6,12 @@ from typing import Literal
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
-from robomill.simulation.judging.gauge import Gauge
+from robomill.simulation.judging.gauge import ALIKE, BESIDE, Gauge
 from robomill.simulation.judging.seen import Run
 from robomill.surface.stock import stock_span
 from robomill.surface.swept import swept_path
 
-BESIDE = 20e-6  # m, at least, beyond the rim: where a wall bears the mark of the tool
-LOWER, ALIKE = 1e-6, 2e-6  # m: floors, and deviations, that differ by less are one
+LOWER = 1e-6  # m: floors that differ by less are one
 ON_SIDE = 0.5  # share of the feed-normal in plan below which the tool lies on its side: there are no heights beside it
 PART = 0.1  # of the deviation: what takes less of it away has not cleaned it up
 
