@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import BoolArray, FloatArray, as_floats
 from robomill.cutting.conditions import STRAIGHT, CutConditions
 from robomill.cutting.materials import Material
+from robomill.cutting.numbers import Number, numbers_of, with_number
 from robomill.cutting.tool import Cutter
 from robomill.cutting.unjudged import Unjudged, against_hand
 from robomill.errors import CuttingError
@@ -115,6 +116,16 @@ class ForceModel(Said):
     def notes(self) -> tuple[str, ...]:
         """What a person has noted of its numbers."""
         return ()
+
+    @property
+    def uncertain(self) -> list[Number]:
+        """The numbers that make it larger or smaller and that nobody knows exactly: its components, in N. Where there
+        are none the whole of it is."""
+        return [each for each in numbers_of(self) if each.unit == "N"]
+
+    def changed(self, key: str, by: float) -> Self:
+        """With one of its ``uncertain`` numbers changed ``by`` so much; itself where it has no such one."""
+        return with_number(self, key, by)
 
     def findings(self, conditions: CutConditions) -> tuple[Finding, ...]:
         """What is unknown or assumed, for the result."""

@@ -15,6 +15,7 @@ from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import FACING, full_slot
 from robomill.cutting.force import ForceModel, ForceSpread
 from robomill.cutting.materials import CALIBRATED, PUBLISHED, RUBS, Material
+from robomill.cutting.numbers import Number, numbers_of, with_number
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged, against_hand
@@ -69,6 +70,16 @@ class ProcessForce(ForceModel):
                     f"{row.who} has {row.kind} coefficients; a {self.kind} force needs {self.takes.kind} ones.",
                     where="material",
                 )
+
+    @property
+    def uncertain(self) -> list[Number]:
+        """The coefficients of the material, and the shares that are assumed."""
+        return numbers_of(self.material) + numbers_of(self)
+
+    def changed(self, key: str, by: float) -> Self:
+        """With one of its ``uncertain`` numbers changed ``by`` so much: the material's, or its own."""
+        material = with_number(self.material, key, by)
+        return with_number(self, key, by) if material is self.material else replace(self, material=material)
 
     @cached_property
     def row(self) -> Material:

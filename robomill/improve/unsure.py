@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from robomill.arrays import FloatArray, frozen
 from robomill.cutting.force import ForceModel
-from robomill.cutting.process import ProcessForce
 from robomill.errors import SetupError
 from robomill.identification.fit.models import Model
 from robomill.identification.knowledge import Knowledge
 from robomill.kinematics.transforms import rotation_z, transform
 from robomill.progress import checkpoint
 from robomill.provenance import Provenance
-from robomill.quantities import Quantity, quantities, quantity, settle
+from robomill.quantities import quantities, quantity, settle
 from robomill.robot.model import Robot
 from robomill.simulation.origin.origins import robot_lengths
 from robomill.simulation.result import SimulationResult
@@ -199,7 +198,7 @@ def changed(unsure: Unsure, change: FloatArray) -> SimulationSetup:
     T_MW = transform(rotation_z(by.get("part_turn", 0.0)) @ setup.T_MW[:3, :3], setup.T_MW[:3, 3] + shift)
     force = setup.force
     for i in unsure.named("force"):
-        force = _with(force, unsure.inputs[i].key, float(change[i]))
+        force = force.changed(unsure.inputs[i].key, float(change[i]))  # the whole of it the run takes
     return setup.replace(robot=robot, T_MW=T_MW, force=force, provenance=setup.provenance)
 
 
@@ -253,46 +252,12 @@ def _springs(robot: Robot, spread: Spread, known: Knowledge | None) -> tuple[lis
 
 
 def _numbers(force: ForceModel, share: float, said: Provenance) -> list[Input]:
-    """What the force is computed from: the coefficients of the material, or the components that are stated; where it
-    is neither, the whole of it."""
-    material = force.material if isinstance(force, ProcessForce) else None
-    holders: list[tuple[Any, str]] = [(force, "force")] if material is None else [(material, "force"), (force, "force")]
-    found = []
-    for holder, group in holders:
-        for declared in quantities(type(holder)).values():
-            value = getattr(holder, declared.name)
-            if value is None or declared.kind not in ("number", "array"):
-                continue
-            if material is None and declared.unit != "N":
-                continue
-            for key, label, one in _entries(declared, value):
-                if one:
-                    found.append(Input(key, label, group, declared.unit, one, share * abs(one), said))
+    """What the force is computed from; where it is no number of its own, the whole of it."""
+    found = [
+        Input(each.key, each.label, "force", each.unit, each.value, share * abs(each.value), said)
+        for each in force.uncertain
+    ]
     return found or [Input("force", "Force", "force", "1", 1.0, share, said)]
-
-
-def _entries(declared: Quantity, value: Any) -> list[tuple[str, str, float]]:
-    """Key, label and number of a field, or of each entry of an array."""
-    if declared.kind == "number":
-        label = declared.label if declared.unit != "N" else f"Force, {declared.label.lower()}"
-        return [(declared.name, label, float(value))]
-    names = list(declared.axes) or [str(i) for i in range(len(value))]
-    return [(f"{declared.name}_{i}", f"{declared.label}_{n}", float(v)) for i, (n, v) in enumerate(zip(names, value))]
-
-
-def _with(force: Any, key: str, change: float) -> Any:
-    """The force model with one of its numbers changed."""
-    holder = force.material if isinstance(force, ProcessForce) and key in quantities(type(force.material)) else force
-    name, _, entry = key.rpartition("_")
-    if key in quantities(type(holder)):
-        made = replace(holder, **{key: getattr(holder, key) + change})
-    elif name in quantities(type(holder)):
-        values = np.array(getattr(holder, name))
-        values[int(entry)] += change
-        made = replace(holder, **{name: values})
-    else:
-        return force  # the whole of it, which the run takes
-    return made if holder is force else replace(force, material=made)
 
 
 def _lengths(robot: Robot, std: float, said: Provenance) -> list[Input]:
