@@ -25,7 +25,7 @@ import numpy as np
 
 from robomill.arrays import NO_NUMBERS, as_floats, brief, frozen, is_unreal
 from robomill.errors import RobomillError
-from robomill.units import UNITS, format_short, unit_label
+from robomill.units import UNITS, format_short, format_significant, from_si, unit_label
 from robomill.wording import listed
 
 QuantityKind = Literal["number", "array", "whole", "switch", "choice"]
@@ -96,17 +96,21 @@ class Quantity:
             return listed(self.options, "or")
         if self.kind == "switch":
             return "true or false"
+        words = self._between or ("a whole number" if self.kind == "whole" else "a finite number")
+        return f"{words}, or left out" if self.optional else words
+
+    @property
+    def _between(self) -> str:
+        """Its bounds in words; "" where it is free."""
         low, high = (None if bound is None else self.short(bound) for bound in (self._lowest, self._highest))
         if low is None and high is None:
-            words = "a whole number" if self.kind == "whole" else "a finite number"
-        elif high is None:
-            words = f"more than {low}" if self.above is not None else f"{low} or more"
-        elif low is None:
-            words = f"less than {high}" if self.below is not None else f"at most {high}"
-        else:
-            start = f"more than {low}" if self.above is not None else low
-            words = f"{start} to {f'less than {high}' if self.below is not None else high}"
-        return f"{words}, or left out" if self.optional else words
+            return ""
+        if high is None:
+            return f"more than {low}" if self.above is not None else f"{low} or more"
+        if low is None:
+            return f"less than {high}" if self.below is not None else f"at most {high}"
+        start = f"more than {low}" if self.above is not None else low
+        return f"{start} to {f'less than {high}' if self.below is not None else high}"
 
     def settled(self, value: Any, error: type[RobomillError] = RobomillError, who: str = "") -> Any:
         """``value`` as the field keeps it: float, int, bool, code or frozen array; ``error`` where it cannot be."""
@@ -249,7 +253,7 @@ def described(value: Any) -> str:
     for name, declared in quantities(type(value)).items():
         found = getattr(value, name)
         if declared.kind == "array":
-            numbers = ", ".join(declared.short(v).partition(" ")[0] for v in np.ravel(found))
+            numbers = ", ".join(format_significant(from_si(float(v), declared.unit)) for v in np.ravel(found))
             said.append(f"{declared.label} ({numbers}) {unit_label(declared.unit)}".rstrip())
         elif found is not None:
             said.append(f"{declared.label} {declared.short(found)}")
@@ -297,15 +301,11 @@ def _whole(declared: Quantity, value: Any, error: type[RobomillError], who: str)
             return int(number)
     except NO_NUMBERS:
         pass
+    bounds = f", {declared.expected}" if declared._between else ""
     raise error(
-        f"{declared.said_of(who)}: found {brief(value, 40)}; expected a whole number{_between(declared)}.",
+        f"{declared.said_of(who)}: found {brief(value, 40)}; expected a whole number{bounds}.",
         where=declared.name,
     )
-
-
-def _between(declared: Quantity) -> str:
-    bounds = declared.expected
-    return "" if bounds.startswith("a whole number") else f", {bounds}"
 
 
 def _switch(declared: Quantity, value: Any, error: type[RobomillError], who: str) -> bool:

@@ -80,9 +80,14 @@ class Field(Tabled):
         return _field, state  # a law does not pickle; its name says it
 
     def _said(self) -> str:
-        what, known = self.quantity, self.values[np.isfinite(self.values)]
-        ends = format_many((known.min(), known.max()), what.unit, between=" to ") if known.size else "nothing reached"
-        return f"{what.name} of {self.robot.name}: {ends} over {self.grid._said()}"
+        return f"{self.quantity.name} of {self.robot.name}: {self._ends}"
+
+    @property
+    def _ends(self) -> str:
+        """From where to where its values go, and over what."""
+        known = self.values[np.isfinite(self.values)]
+        ends = format_many((known.min(), known.max()), self.quantity.unit, between=" to ") if known.size else ""
+        return f"{ends or 'nothing reached'} over {self.grid._said()}"
 
 
 def _field(robot: Robot, grid: Grid, A: float, B: float, name: str, *found: Any) -> Field:
@@ -156,7 +161,7 @@ class ComplianceMap(SolvedGrid, Tabled):
 
     def _facts(self) -> list[tuple[str, str]]:
         direct = [self.field(f"C_{axis}{axis}") for axis in "xyz"]
-        return [(field.quantity.title, field._said().partition(": ")[2]) for field in direct]
+        return [(field.quantity.title, field._ends) for field in direct]
 
 
 def map_columns(fields: Sequence[Field]) -> Columns:
