@@ -113,7 +113,7 @@ def decoupled(robot: Robot) -> Decoupled | None:
         if np.linalg.norm(np.cross(centre - p[5], k[5])) > CROSSING:
             return None
         c_u = R.T @ k[5]
-    return _constants(robot, k, p, centre, R, c_u, c_w)
+    return _constants(robot, frames, centre, c_u, c_w)
 
 
 def _crossing(p: FloatArray, k: FloatArray, q: FloatArray, m: FloatArray) -> FloatArray | None:
@@ -126,8 +126,10 @@ def _crossing(p: FloatArray, k: FloatArray, q: FloatArray, m: FloatArray) -> Flo
 
 
 def _constants(
-    robot: Robot, k: FloatArray, p: FloatArray, centre: FloatArray, R: FloatArray, c_u: FloatArray, c_w: FloatArray
+    robot: Robot, frames: FloatArray, centre: FloatArray, c_u: FloatArray, c_w: FloatArray
 ) -> Decoupled | None:
+    """From the joint frames (n + 1, 4, 4) at theta = 0, the wrist's centre, and c_u and c_w."""
+    k, p, R = frames[:-1, :3, 2], frames[:-1, :3, 3], frames[-1, :3, :3]
     z = k[0] if k[0][np.argmax(np.abs(k[0]))] > 0 else -k[0]
     home = joint_frames(robot, robot.home)
     y_home = home[1, :3, 2]

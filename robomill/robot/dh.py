@@ -8,11 +8,12 @@ where ``M_i`` turns about (revolute) or slides along (prismatic) the z axis of i
 tool frame are folded into the constants, so a chain has one entry a *free* joint.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, frozen
+from robomill.arrays import FloatArray, frozen
 from robomill.compiled import In1, In2, In3, InBool1
 
 
@@ -55,46 +56,57 @@ def screw_z(theta: float, d: float) -> FloatArray:
     return np.array([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, d], [0.0, 0.0, 0.0, 1.0]])
 
 
-def build_chain(
-    convention: str,
-    alpha: FloatArray,
-    a: FloatArray,
-    d: FloatArray,
-    theta_offset: FloatArray,
-    sign: FloatArray,
-    prismatic: BoolArray,
-    T_base: FloatArray,
-    T_tool: FloatArray,
-    blocked: FloatArray,
-) -> Chain:
-    """The chain of a D-H table; ``blocked`` holds NaN for a free joint, else the coordinate it is held at."""
-    rows = len(alpha)
-    links = [screw_x(alpha[i], a[i]) for i in range(rows)]
+class Row(NamedTuple):
+    """A joint's row of the table; ``blocked`` is NaN where it is free, else the coordinate it is held at."""
+
+    alpha: float
+    a: float
+    d: float
+    theta_offset: float
+    sign: float
+    prismatic: bool
+    blocked: float
+
+    @property
+    def offset(self) -> float:
+        """What its own coordinate begins at: d of a prismatic, the angle of a revolute."""
+        return self.d if self.prismatic else self.theta_offset
+
+    @property
+    def still(self) -> FloatArray:
+        """The part of the joint's own screw that does not move: d of a revolute, the angle of a prismatic."""
+        return screw_z(self.theta_offset, 0.0) if self.prismatic else screw_z(0.0, self.d)
+
+    @property
+    def held(self) -> FloatArray:
+        """The part that would move, where it is held."""
+        q = self.sign * self.blocked + self.offset
+        return screw_z(0.0, q) if self.prismatic else screw_z(q, 0.0)
+
+
+def build_chain(convention: str, rows: Sequence[Row], T_base: FloatArray, T_tool: FloatArray) -> Chain:
+    """The chain of a D-H table."""
+    links = [screw_x(row.alpha, row.a) for row in rows]
     standard = convention == "standard"
     T_0 = np.array(T_base) if standard else T_base @ links[0]
     between: list[FloatArray] = []
-    free: list[int] = []
-    for i in range(rows):
-        # The part of the joint's own screw that does not move: d of a revolute, the angle of a prismatic.
-        E = screw_z(theta_offset[i], 0.0) if prismatic[i] else screw_z(0.0, d[i])
+    free: list[Row] = []
+    for i, row in enumerate(rows):
+        E = row.still
         if standard:
             E = E @ links[i]
-        elif i + 1 < rows:
+        elif i + 1 < len(rows):
             E = E @ links[i + 1]
-        if i == rows - 1:
+        if i == len(rows) - 1:
             E = E @ T_tool
-        offset = d[i] if prismatic[i] else theta_offset[i]
-        if np.isnan(blocked[i]):
-            free.append(i)
+        if np.isnan(row.blocked):
+            free.append(row)
             between.append(E)
-            continue
-        q = sign[i] * blocked[i] + offset
-        held = (screw_z(0.0, q) if prismatic[i] else screw_z(q, 0.0)) @ E
-        if between:
-            between[-1] = between[-1] @ held
+        elif between:
+            between[-1] = between[-1] @ (row.held @ E)
         else:
-            T_0 = T_0 @ held
-    offsets = np.where(prismatic, d, theta_offset)
+            T_0 = T_0 @ (row.held @ E)
+    own = ([row.sign for row in free], [row.offset for row in free])
     return Chain(
-        frozen(T_0), frozen(np.array(between)), frozen(sign[free]), frozen(offsets[free]), frozen(prismatic[free], bool)
+        frozen(T_0), frozen(np.array(between)), *map(frozen, own), frozen([row.prismatic for row in free], bool)
     )

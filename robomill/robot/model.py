@@ -20,7 +20,7 @@ from robomill.lazy import cached_property
 from robomill.provenance import UNSTATED, Provenance, stated_blocks
 from robomill.quantities import Quantity, quantities, quantity
 from robomill.robot import checks
-from robomill.robot.dh import Chain, build_chain
+from robomill.robot.dh import Chain, Row, build_chain
 from robomill.robot.plausible import checked
 from robomill.robot.sources import COMPLIANCE, USER_SET, changed_sources, of_set, stated_of_robot
 from robomill.robot.table import COLUMN_UNITS, OTHERS, changed_fields, refuse_printed, robot_fields
@@ -271,18 +271,8 @@ class Robot(Tabled):
     @cached_property
     def chain(self) -> Chain:
         """The arm as constants between its free joints."""
-        return build_chain(
-            self.convention,
-            self.alpha,
-            self.a,
-            self.d,
-            self.theta_offset,
-            self.sign,
-            self.prismatic,
-            self.T_base,
-            self.T_tool,
-            self.blocked,
-        )
+        columns = (self.alpha, self.a, self.d, self.theta_offset, self.sign, self.prismatic, self.blocked)
+        return build_chain(self.convention, [Row(*row) for row in zip(*columns)], self.T_base, self.T_tool)
 
     # ---- for people ---------------------------------------------------------------------------------------------
     def columns(self) -> Columns:
