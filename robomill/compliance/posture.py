@@ -4,6 +4,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import cartesian_compliance
+from robomill.kinematics.extent import drawn
 from robomill.kinematics.numeric import solve_numerically
 from robomill.robot.model import Robot
 
@@ -18,8 +19,6 @@ def over_posture(robot: Robot, T_MT: FloatArray) -> FloatArray:
     """
     if robot.n <= 6:
         return np.empty((0, 3, 3))
-    low, high = robot.limits.T
-    starts = np.random.default_rng(0).uniform(low, high, (POSTURES, robot.n))
     poses = np.array(np.broadcast_to(T_MT, (POSTURES, 4, 4)))
-    theta, found = solve_numerically(robot, poses, starts, "axis")
+    theta, found = solve_numerically(robot, poses, drawn(robot, POSTURES), "axis")
     return cartesian_compliance(robot, theta[found])

@@ -16,7 +16,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.compliance.deflection import displacement
 from robomill.improve.judged import MEASURES, Measure
-from robomill.kinematics.choice import SPIN_STEPS
+from robomill.kinematics.choice import spins
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.dexterity import determinant, largest_determinant, limit_distance
 from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_kinematics
@@ -127,7 +127,7 @@ class Screen:
         setup = self.setup
         if setup.spin != LEAST_DEVIATION or not spin_matters(setup.robot):
             return self._with(T_MW, setup.spin if isinstance(setup.spin, float) else LEAST_MOTION)
-        angles = (2 * np.pi / SPIN_STEPS * np.arange(SPIN_STEPS)).tolist()
+        angles = spins().tolist()
         every = [self._with(T_MW, angle) for angle in angles]
         rank = np.array([np.where(e.standing.missed > 0, np.inf, np.nan_to_num(e.errors["tip"])) for e in every])
         best, k = rank.argmin(axis=0), np.arange(len(T_MW))

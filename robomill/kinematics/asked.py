@@ -13,6 +13,7 @@ from robomill.arguments import asked
 from robomill.arrays import FloatArray
 from robomill.errors import KinematicsError
 from robomill.kinematics import inverse
+from robomill.kinematics.extent import stretch
 from robomill.kinematics.result import IKResult
 from robomill.kinematics.transforms import poses
 from robomill.robot.model import Robot, check_robot
@@ -38,11 +39,8 @@ def _in_metres(
 
 
 def longest_reach(robot: Robot) -> float:
-    """m: no tip lies farther from the zero of {M}: all links in a row, those that slide drawn out."""
-    chain, slides = robot.chain, robot.chain.prismatic
-    span = np.linalg.norm(chain.T_0[:3, 3]) + np.linalg.norm(chain.E[:, :3, 3], axis=1).sum()
-    span += np.abs(robot.limits[slides]).max(axis=1).sum() + np.abs(chain.offset[slides]).sum()
-    return float(span)
+    """m: no tip lies farther from the zero of {M}."""
+    return float(np.linalg.norm(robot.chain.T_0[:3, 3])) + stretch(robot)
 
 
 def in_the_foot(robot: Robot, p: FloatArray) -> bool:

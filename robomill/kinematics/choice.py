@@ -9,7 +9,7 @@ from robomill.kinematics.transforms import rotation_z, transform
 from robomill.progress import slices
 from robomill.robot.model import Robot
 
-SPIN_STEPS = 24
+SPIN_STEPS = 24  # all round the tool axis
 
 
 def rules(robot: Robot, arm: Decoupled, wanted: BoolArray, arm_first: bool, free_spin: bool) -> Rules:
@@ -20,9 +20,9 @@ def rules(robot: Robot, arm: Decoupled, wanted: BoolArray, arm_first: bool, free
     degrees; where the tool axis is axis 6, that stays as it is.
     """
     held = free_spin and arm.spindle_on_last_axis
-    spins = SPIN_STEPS if free_spin and not held else 0
+    tried = SPIN_STEPS if free_spin and not held else 0
     whole = robot.n == 6 and not free_spin
-    return Rules(robot.limits, frozen(wanted, bool), arm_first, spins, held, whole)
+    return Rules(robot.limits, frozen(wanted, bool), arm_first, tried, held, whole)
 
 
 def nearest(robot: Robot, arm: Decoupled, T_MT: FloatArray, goal: FloatArray, rules: Rules) -> Answer:
@@ -37,6 +37,11 @@ def nearest(robot: Robot, arm: Decoupled, T_MT: FloatArray, goal: FloatArray, ru
         into = Answer(answer.theta[some], answer.branch[some], answer.fit[some])
         inverse_kernels.nearest_of(poses[some], arm, robot.chain, rules, of, into)
     return answer
+
+
+def spins(count: int = SPIN_STEPS) -> FloatArray:
+    """(count,) rad: turns about the tool axis in even steps all round, the first none."""
+    return 2 * np.pi / count * np.arange(count)
 
 
 def every(robot: Robot, arm: Decoupled, T_MT: FloatArray) -> tuple[FloatArray, BoolArray]:

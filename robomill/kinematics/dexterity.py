@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.kinematics.extent import drawn
 from robomill.kinematics.forward import joint_angles
 from robomill.kinematics.jacobian import pose_and_jacobian, task_rows
 from robomill.robot.model import Robot
@@ -45,10 +46,7 @@ def _row_indices(robot: Robot) -> tuple[int, ...]:
     """The first n rows of J (v before omega) that are independent of each other over random configurations."""
     if robot.n >= 6:
         return tuple(range(6))
-    rng = np.random.default_rng(0)
-    low, high = robot.limits[:, 0], robot.limits[:, 1]
-    theta = rng.uniform(low, high, (24, robot.n))
-    rows = pose_and_jacobian(robot, theta)[1].transpose(1, 0, 2).reshape(6, -1)
+    rows = pose_and_jacobian(robot, drawn(robot, 24))[1].transpose(1, 0, 2).reshape(6, -1)
     kept: list[int] = []
     for i in range(6):
         trial = rows[[*kept, i]]
@@ -86,9 +84,7 @@ def determinant(robot: Robot, theta: ArrayLike) -> FloatArray:
 @lru_cache(maxsize=64)
 def largest_determinant(robot: Robot) -> float:
     """The largest |det(J)| of the arm: of ``SAMPLES`` configurations drawn within its limits, always the same ones."""
-    low, high = robot.limits.T
-    theta = np.random.default_rng(0).uniform(low, high, (SAMPLES, robot.n))
-    return float(np.abs(determinant(robot, theta)).max())
+    return float(np.abs(determinant(robot, drawn(robot, SAMPLES))).max())
 
 
 def near_singular(robot: Robot, det: ArrayLike) -> BoolArray:

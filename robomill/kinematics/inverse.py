@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.errors import KinematicsError
-from robomill.kinematics.choice import SPIN_STEPS, every, nearest, rules, spun
+from robomill.kinematics.choice import every, nearest, rules, spins, spun
 from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled
 from robomill.kinematics.joining import Joined, join
 from robomill.kinematics.numeric import bent_home, solve_numerically
@@ -197,9 +197,8 @@ def _along_path(robot: Robot, arm: Decoupled, wish: Wish, wanted: BoolArray) -> 
         best = 0.0
         if wish.free_spin and not held:
             few = wish.T_MT[run][:: max(wish.length // THINNED, 1)]
-            angles = (2 * np.pi / SPIN_STEPS * np.arange(SPIN_STEPS)).tolist()
-            ranks = {angle: (way.missed, way.cost) for angle in angles if (way := joined(few, angle))}
-            best = min(angles, key=ranks.__getitem__)
+            ranks = {angle: (way.missed, way.cost) for angle in spins().tolist() if (way := joined(few, angle))}
+            best = min(ranks, key=ranks.__getitem__)
         way = joined(wish.T_MT[run], best)
         theta[run], index[run] = way.theta, way.branch
         if turn is not None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.kinematics.decoupled import RESIDUAL
+from robomill.kinematics.extent import drawn, stretch
 from robomill.kinematics.forward import BLOCK, tool_pose
 from robomill.kinematics.jacobian import pose_and_jacobian
 from robomill.kinematics.result import Mode
@@ -86,10 +87,7 @@ def _remoteness(theta: FloatArray, reference: FloatArray) -> FloatArray:
 
 def _within_stretch(robot: Robot, T_MT: FloatArray) -> BoolArray:
     """(m,) False where the tip is further out than all links in a line, or off the plane of a planar arm."""
-    chain = robot.chain
-    travel = np.abs(robot.limits).max(axis=1) + np.abs(chain.offset)
-    stretch = np.linalg.norm(chain.E[:, :3, 3], axis=1).sum() + travel[chain.prismatic].sum()
-    near = np.linalg.norm(T_MT[:, :3, 3] - chain.T_0[:3, 3], axis=1) <= stretch + RESIDUAL
+    near = np.linalg.norm(T_MT[:, :3, 3] - robot.chain.T_0[:3, 3], axis=1) <= stretch(robot) + RESIDUAL
     normal, offset = _plane(robot)
     return near & (np.abs(T_MT[:, :3, 3] @ normal - offset) <= RESIDUAL).all(axis=1)
 
@@ -97,9 +95,7 @@ def _within_stretch(robot: Robot, T_MT: FloatArray) -> BoolArray:
 @lru_cache(maxsize=16)
 def _plane(robot: Robot) -> tuple[FloatArray, FloatArray]:
     """(normals (3, k), offsets (k,)): directions in which the tip cannot move; k is 1 for a planar arm, else 0."""
-    rng = np.random.default_rng(0)
-    theta = rng.uniform(robot.limits[:, 0], robot.limits[:, 1], (32, robot.n))
-    pose, J = pose_and_jacobian(robot, theta)
+    pose, J = pose_and_jacobian(robot, drawn(robot, 32))
     u, size, _ = np.linalg.svd(J[:, :3].transpose(1, 0, 2).reshape(3, -1))
     normal = u[:, size < 1e-9]
     return normal, pose[0, :3, 3] @ normal
@@ -180,8 +176,7 @@ def _features(T: FloatArray, mode: Mode) -> FloatArray:
 def _library(robot: Robot, mode: Mode) -> tuple[Any, FloatArray]:
     from scipy.spatial import cKDTree
 
-    rng = np.random.default_rng(20130401)
-    theta = rng.uniform(robot.limits[:, 0], robot.limits[:, 1], (LIBRARY, robot.n))
+    theta = drawn(robot, LIBRARY, seed=20130401)
     return cKDTree(_features(tool_pose(robot, theta), mode)), theta
 
 

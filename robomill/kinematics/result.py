@@ -10,7 +10,7 @@ import numpy as np
 from robomill.arguments import asked, made_by
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.frames import Columns
-from robomill.kinematics.choice import every, overshoot, spun, turn
+from robomill.kinematics.choice import every, overshoot, spins, spun, turn
 from robomill.kinematics.decoupled import LIMIT_SLACK, RESIDUAL, decoupled, shortfall
 from robomill.kinematics.forward import rows
 from robomill.kinematics.transforms import world_from_pose
@@ -18,8 +18,10 @@ from robomill.lazy import cached_property
 from robomill.progress import slices
 from robomill.robot.model import Robot
 from robomill.spelled import beside
-from robomill.units import format_count, format_many, format_si, from_si, to_si
+from robomill.units import format_count, format_many, format_si, from_si
 from robomill.values import Tabled
+
+LOOKED = 36  # spins at which the reason is looked for why a pose is not reached
 
 Mode = Literal["position", "axis", "pose"]
 
@@ -104,7 +106,7 @@ def explain(result: IKResult, T_MT: FloatArray, residual: float) -> str:
     arm = decoupled(robot)
     if arm is None:
         return f"no configuration within the limits found; the nearest attempt stays {format_si(residual, 'mm')} away"
-    angles = to_si(np.arange(0.0, 360.0, 10.0), "deg") if result.free_spin else [0.0]
+    angles = spins(LOOKED) if result.free_spin else [0.0]
     poses = np.array([spun(T_MT, float(angle)) for angle in angles])
     missing = [shortfall(arm, T) for T in poses]
     if all(missing):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray, frozen
-from robomill.kinematics.choice import SPIN_STEPS
+from robomill.kinematics.choice import SPIN_STEPS, spins
 from robomill.kinematics.inverse import LEAST_MOTION, inverse_kinematics
 from robomill.lazy import cached_property
 from robomill.robot.model import Robot
@@ -46,7 +46,7 @@ def over_spins(
 
     Arms of fewer than six axes have no free spin: one angle, 0.
     """
-    angles = frozen(2 * np.pi / count * np.arange(count if robot.n >= 6 else 1))
+    angles = frozen(spins(count if robot.n >= 6 else 1))
     missed, values = np.empty(len(angles), dtype=np.int64), np.empty(len(angles))
     for i, angle in enumerate(angles):
         ik = inverse_kinematics(robot, T_MT, near="path", spin=float(angle))

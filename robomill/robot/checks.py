@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import NO_NUMBERS, BoolArray, FloatArray, brief, check_place
+from robomill.arrays import NO_NUMBERS, BoolArray, FloatArray, brief, check_place, no_number
 from robomill.errors import RobotError
 from robomill.quantities import Quantity
 
@@ -17,7 +17,7 @@ def column(value: Any, declared: Quantity, rows: int | None, where: str, slides:
     try:
         array = np.asarray(value, dtype=np.float64)
     except NO_NUMBERS:
-        raise RobotError(f"{where}: {name}: expected numbers, found {_first_non_number(value)}.") from None
+        raise RobotError(f"{where}: {name}: expected numbers, found {no_number(value) or brief(value, 40)}.") from None
     if array.ndim != 1 or (rows is not None and len(array) != rows):
         want = "one number a joint" if rows is None else f"{rows} numbers, one a joint"
         raise RobotError(f"{where}: {name}: expected {want}, found shape {array.shape}.")
@@ -45,15 +45,6 @@ def flags(value: Any, rows: int, where: str) -> BoolArray:
                 f"{where}: prismatic{joint}: expected True where it slides or False where it turns, found {each!r:.40}."
             )
     return np.array(np.broadcast_to(found.astype(bool), (rows,)))
-
-
-def _first_non_number(value: Any) -> str:
-    for item in value if isinstance(value, list | tuple | np.ndarray) else [value]:
-        try:
-            float(item)
-        except NO_NUMBERS:
-            return brief(item, 40)
-    return brief(value, 40)
 
 
 def joint_count(rows: int, where: str) -> None:

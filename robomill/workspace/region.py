@@ -4,6 +4,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray, frozen
 from robomill.kinematics.decoupled import decoupled
+from robomill.kinematics.extent import drawn
 from robomill.kinematics.forward import tool_pose
 from robomill.robot.model import Robot
 from robomill.workspace.clear import largest_clear_box
@@ -71,9 +72,7 @@ def largest_region(robot: Robot, A: float = 0.0, B: float = 0.0) -> ReachBox | N
 
 def _tips(robot: Robot) -> FloatArray:
     """(m, 3) m: tips at random configurations within the limits, always the same ones."""
-    rng = np.random.default_rng(1)
-    theta = rng.uniform(robot.limits[:, 0], robot.limits[:, 1], (SAMPLES, robot.n))
-    return tool_pose(robot, theta)[..., :3, 3]
+    return tool_pose(robot, drawn(robot, SAMPLES, seed=1))[..., :3, 3]
 
 
 def _centred(low: float, high: float, step: float) -> FloatArray:
