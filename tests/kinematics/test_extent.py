@@ -26,7 +26,8 @@ def test_a_planar_arm_lies_in_a_row_at_zero() -> None:
 @pytest.mark.parametrize("robot", ARMS, ids=lambda robot: robot.name)
 def test_configurations_are_drawn_over_the_limits_and_of_one_seed_the_same(robot: rm.Robot) -> None:
     theta, (low, high) = drawn(robot, 4000, seed=3), robot.limits.T
-    assert (low <= theta).all() and (theta <= high).all()
+    assert (low <= theta).all()
+    assert (theta <= high).all()
     np.testing.assert_allclose(theta.min(axis=0), low, atol=0.01 * (high - low).max())
     np.testing.assert_allclose(theta.max(axis=0), high, atol=0.01 * (high - low).max())
     np.testing.assert_array_equal(drawn(robot, 4000, seed=3), theta)
