@@ -101,7 +101,7 @@ def lower_row(shape: Shape, move: Move, x: float, y: float, dy: float, row: Floa
 
 
 @part
-def cut_upright(shape: Shape, move: Move, tile: Heights, edge: EdgeRecord) -> None:
+def cut_move(shape: Shape, move: Move, tile: Heights, edge: EdgeRecord) -> None:
     """Cut a move of an upright cutter: cells wholly inside its track at once, those the edge may cross one by one."""
     half = 0.5 * math.hypot(tile.dx, tile.dy)
     first, end = rows_near(move, shape.R + half, tile)
@@ -230,7 +230,7 @@ def interval_below(shape: Shape, move: Move, frame: ToolFrame, tile: Heights, i:
 
 
 @part
-def cut_tilted(shape: Shape, ends: FloatArray, k: FloatArray, box: FloatArray, tile: Heights, hidden: Hidden) -> None:
+def cut_tilted_move(shape: Shape, ends: FloatArray, k: FloatArray, box: FloatArray, tile: Heights, hidden: Hidden) -> None:
     """Cut a move ``ends`` (6,) m of a cutter leaning along k (3,), seen from above within ``box`` (4,) m."""
     frame = tool_frame(k[0], k[1], k[2])
     move = move_in_frame(frame, ends)
@@ -252,14 +252,14 @@ def cut_moves(shape: Shape, ends: In2, chosen: InInt1, tile: Heights, edge: Edge
     """Cut the ``chosen`` rows of ``ends`` (n, 6) m of an upright cutter into a tile."""
     for n in chosen:
         move = move_between(ends[n, 0], ends[n, 1], ends[n, 2], ends[n, 3], ends[n, 4], ends[n, 5])
-        cut_upright(shape, move, tile, edge)
+        cut_move(shape, move, tile, edge)
 
 
 @kernel
 def cut_tilted_moves(shape: Shape, moves: TiltedMoves, chosen: InInt1, tile: Heights, hidden: Hidden) -> None:
     """Cut the ``chosen`` ones of moves of a leaning cutter into a tile."""
     for n in chosen:
-        cut_tilted(shape, moves.ends[n], moves.axes[n], moves.boxes[n], tile, hidden)
+        cut_tilted_move(shape, moves.ends[n], moves.axes[n], moves.boxes[n], tile, hidden)
 
 
 @kernel

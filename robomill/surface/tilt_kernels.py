@@ -74,19 +74,25 @@ def move_in_frame(frame: ToolFrame, ends: FloatArray) -> Move:
     )
 
 
-@kernel
-def plan_boxes(R: float, ends: In2, axes: In2, top: float, boxes: Out2) -> None:
-    """Plan limits (x low, x high, y low, y high) of what a leaning cutter meets below ``top`` on each move, m.
+@part
+def plan_box(R: float, ends: FloatArray, k: FloatArray, top: float) -> tuple[float, float, float, float]:
+    """Plan limits (x low, x high, y low, y high) of what a cutter leaning along k (3,) meets below ``top`` on a move
+    ``ends`` (6,), m.
 
     From its tip the cutter reaches up along its axis until its low side is above ``top``.
     """
+    up = max(0.0, top - min(ends[2], ends[5]) + R * math.hypot(k[0], k[1])) / k[2]
+    x, y = up * k[0], up * k[1]
+    x_low, x_high = min(ends[0], ends[3]) + min(0.0, x) - R, max(ends[0], ends[3]) + max(0.0, x) + R
+    y_low, y_high = min(ends[1], ends[4]) + min(0.0, y) - R, max(ends[1], ends[4]) + max(0.0, y) + R
+    return x_low, x_high, y_low, y_high
+
+
+@kernel
+def plan_boxes(R: float, ends: In2, axes: In2, top: float, boxes: Out2) -> None:
+    """Those of moves ``ends`` (n, 6) m and axes (n, 3), into ``boxes`` (n, 4) m."""
     for n in range(len(ends)):
-        k = axes[n]
-        up = max(0.0, top - min(ends[n, 2], ends[n, 5]) + R * math.hypot(k[0], k[1])) / k[2]
-        for xy in range(2):
-            a, b, lean = ends[n, xy], ends[n, 3 + xy], up * k[xy]
-            boxes[n, 2 * xy] = min(a, b) + min(0.0, lean) - R
-            boxes[n, 2 * xy + 1] = max(a, b) + max(0.0, lean) + R
+        boxes[n, 0], boxes[n, 1], boxes[n, 2], boxes[n, 3] = plan_box(R, ends[n], axes[n], top)
 
 
 @called

@@ -47,7 +47,7 @@ HALVINGS = 8  # of the angle across which the engaged length jumps
 # of a part beside its moments: hull of its angles, mean height along the axis over them, width, highest place, size and
 # how many gaps between layers of material were closed before
 PHI_ST, PHI_EX, DEPTH, WIDTH, REACH, SIZE, LOST, REST = range(8)
-CLOSE = 0.04  # rad: from angle to angle where there are ribs
+RIB_STEP = 0.04  # rad: from angle to angle where there are ribs
 GAPS = 6 * PANELS + HIDDEN
 ROWS = 2 * ANGLES + HIDDEN + GAPS * HALVINGS  # angles looked at in a turn, at most
 
@@ -201,7 +201,7 @@ def look_round(room: Room, world: World, shape: Shape, step: Step, halves: int) 
         hidden = aim_at_changes(world, step, walk, rows, every, HIDDEN if walk.plain else 1)
         if not walk.plain and (hidden > 0 or alternates(world, step, walk, rows, ANGLES * halves)):
             room.fine[0] = fine_pitch(world)
-            walk = Walk(walk.circles, walk.used, walk.coarse, walk.fine, walk.plain, CLOSE, walk.rim)
+            walk = Walk(walk.circles, walk.used, walk.coarse, walk.fine, walk.plain, RIB_STEP, walk.rim)
             hidden = aim_at_changes(world, step, walk, rows, every, HIDDEN)
     measure(room, world, shape, step, 0, ANGLES * halves)
     if hidden > 0:

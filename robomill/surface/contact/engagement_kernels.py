@@ -42,7 +42,7 @@ from robomill.surface.contact.turn_kernels import (
     turn_row,
 )
 
-ENDS = 7  # looks, at most, at a piece of the profile for where material begins or ends in it (rule of false position)
+END_LOOKS = 7  # looks, at most, at a piece of the profile for where material begins or ends in it (rule of false position)
 NARROW = 0.3e-3  # m: so far apart a nose is looked at where material may end between its pieces' ends
 EXACT = 1e-7  # m: so near to where it ends is there
 END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 9, 96  # of each stretch of the profile, at most
@@ -278,7 +278,7 @@ def end_between(
     if abs(deep_high) == FAR:
         deep_high = engaged_at(world, step, ray, high)
     middle = on_profile(shape, stretch, 0.5 * (low.s + high.s))
-    for _ in range(ENDS):
+    for _ in range(END_LOOKS):
         at = beside_place(shape, stretch, middle, low.s + (high.s - low.s) * deep_low / (deep_low - deep_high))
         deep = engaged_at(world, step, ray, at)
         if (deep > 0.0) == cuts:

@@ -34,7 +34,7 @@ from robomill.surface.contact.soon import soon
 from robomill.surface.contact.step_kernels import step_at
 from robomill.surface.contact.track_kernels import Track, row_of, track_of
 from robomill.surface.envelope_kernels import Move, nearest, swept_height
-from robomill.surface.tilt_kernels import tilted_interval, tool_frame, vertical_line
+from robomill.surface.tilt_kernels import plan_box, tilted_interval, tool_frame, vertical_line
 
 Singles1 = Annotated[NDArray[np.float32], Axes("float32", 1)]
 Singles2 = Annotated[NDArray[np.float32], Axes("float32", 2, written=True)]
@@ -78,14 +78,14 @@ def cut_run(world: World, r: int, stops: bool) -> None:
     run = world.runs[r]
     shape, move = shape_of(run), see_move(run)
     if not is_upright(run):
-        cut_leaning(world, shape, move, r)
+        cut_leaning_run(world, shape, move, r)
     else:
-        cut_upright(world, shape, move, r)
+        cut_upright_run(world, shape, move, r)
     note_rim(world, shape, r, stops)
 
 
 @part
-def cut_upright(world: World, shape: Shape, move: Move, r: int) -> None:
+def cut_upright_run(world: World, shape: Shape, move: Move, r: int) -> None:
     """Cut a run of an upright cutter."""
     dexels = world.dexels
     if world.bounds.z_high <= move.az:
@@ -164,17 +164,14 @@ def swallows(world: World, shape: Shape, move: Move, i: int, j: int) -> bool:
 
 
 @part
-def cut_leaning(world: World, shape: Shape, move: Move, r: int) -> None:
+def cut_leaning_run(world: World, shape: Shape, move: Move, r: int) -> None:
     """Cut a step of a leaning cutter, ``move`` in its own frame, into columns of several layers."""
     dexels, ends, k = world.dexels, world.runs[r, ENDS:AXIS], world.runs[r, AXIS:MOVE]
     frame = tool_frame(k[0], k[1], k[2])
-    up = max(0.0, world.bounds.z_high - min(ends[2], ends[5]) + shape.R * frame.sine) / k[2]
-    x_low, x_high = min(ends[0], ends[3]) + min(0.0, up * k[0]), max(ends[0], ends[3]) + max(0.0, up * k[0])
-    y_low, y_high = min(ends[1], ends[4]) + min(0.0, up * k[1]), max(ends[1], ends[4]) + max(0.0, up * k[1])
-    corner, other = (x_low - shape.R, y_low - shape.R), (x_high + shape.R, y_high + shape.R)
-    first, end = cells_between(corner[0], other[0], dexels.x0, dexels.dx, dexels.heights.shape[0])
-    j_first, j_end = cells_between(corner[1], other[1], dexels.y0, dexels.dy, dexels.heights.shape[1])
-    tell(world.relief, corner, other, LOW, -math.inf)
+    x_low, x_high, y_low, y_high = plan_box(shape.R, ends, k, world.bounds.z_high)
+    first, end = cells_between(x_low, x_high, dexels.x0, dexels.dx, dexels.heights.shape[0])
+    j_first, j_end = cells_between(y_low, y_high, dexels.y0, dexels.dy, dexels.heights.shape[1])
+    tell(world.relief, (x_low, y_low), (x_high, y_high), LOW, -math.inf)
     for i in range(first, end):
         for j in range(j_first, j_end):
             top = dexels.heights[i, j, 0]

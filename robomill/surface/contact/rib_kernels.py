@@ -34,12 +34,12 @@ THICK = 0.25  # of the radius: ribs and gaps that are thicker are met by the pla
 CIRCLES = 4  # looked at on a stretch of the profile
 ALONG = 0.245  # of a stretch, from one of its circles to the next; a little more to the first one
 # of a circle: itself; what stands on it at the angles of rows, whether a side is near there, and what stands on the
-# whole gap before each (UNSEEN: it is not known)
+# whole gap before each (UNASKED: it is not known)
 RADIUS, HEIGHT, SEEN = 0, 1, 2
 NEAR = SEEN + 2 * ANGLES
 WHOLE = NEAR + 2 * ANGLES
 COLUMNS = WHOLE + 2 * ANGLES
-UNSEEN = -1.0
+UNASKED = -1.0
 
 Point = tuple[float, float, float]
 Pace = tuple[float, float, float]
@@ -167,7 +167,7 @@ def look_about(world: World, step: Step, walk: Walk, rows: FloatArray, halves: i
         for half in range(halves):
             first = half * ANGLES
             a = place_on(step, circle, rows[first, SINE], rows[first, COSINE])
-            circle[SEEN + first] = UNSEEN
+            circle[SEEN + first] = UNASKED
             for row in range(first + 1, first + ANGLES):
                 b = place_on(step, circle, rows[row, SINE], rows[row, COSINE])
                 tops = tops_between(relief, a, b)
@@ -175,7 +175,7 @@ def look_about(world: World, step: Step, walk: Walk, rows: FloatArray, halves: i
                 if step.kz != 1.0:
                     aside = 0.125 * circle[RADIUS] * (rows[row, PHI] - rows[row - 1, PHI]) ** 2
                     z_low, z_high = z_low - aside, z_high + aside
-                seen = UNSEEN
+                seen = UNASKED
                 if walk.plain:
                     if tops[1] <= z_low + SKIN:
                         seen = 0.0
@@ -183,14 +183,14 @@ def look_about(world: World, step: Step, walk: Walk, rows: FloatArray, halves: i
                         seen = tops[1] - z_low
                 else:
                     what = told(relief, tops, z_low, z_high)
-                    seen = UNSEEN if what == UNKNOWN else 0.5 + 0.5 * what
+                    seen = UNASKED if what == UNKNOWN else 0.5 + 0.5 * what
                 circle[WHOLE + row] = circle[SEEN + row] = seen
-                if seen != UNSEEN:
+                if seen != UNASKED:
                     circle[SEEN + row - 1] = seen
                 a = b
         for row in range(ANGLES * halves):
             circle[NEAR + row] = 0.0
-            if circle[SEEN + row] == UNSEEN:
+            if circle[SEEN + row] == UNASKED:
                 sine, cosine = rows[row, SINE], rows[row, COSINE]
                 circle[SEEN + row], circle[NEAR + row] = seen_at(world, step, walk, seen_as, sine, cosine)
 
@@ -233,7 +233,7 @@ def next_change(
         end = rows[right, PHI]
         first = min(end, rows[row, PHI] + walk.most)
         for n in range(walk.used):
-            if walk.circles[n, WHOLE + right] == UNSEEN:
+            if walk.circles[n, WHOLE + right] == UNASKED:
                 first = first_change(world, step, walk, n, (rows[row], row, right, first, end))
         if first < end:
             return gap, first
