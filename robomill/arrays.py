@@ -145,6 +145,11 @@ def shut(array: NDArray[Any]) -> NDArray[Any]:
     return array.view() if array.base is None else array
 
 
+def made_array(default: Any = None) -> Any:
+    """The default of a field that holds an array, of which ``__post_init__`` makes one."""
+    return default
+
+
 def sealed(value: T) -> T:
     """The same value, read-only from now on: an array, or every array that a dataclass or a sequence holds.
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen, sealed
+from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats, frozen, made_array, sealed
 from robomill.cutting.engaged import EngagedPart, sinks
 from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
@@ -61,10 +61,10 @@ class CutConditions:
     cutting: BoolArray
     s: FloatArray
     t: FloatArray
-    across: FloatArray = 1.0  # type: ignore[assignment]
-    block: IntArray = 0  # type: ignore[assignment]
-    along: FloatArray = 0.0  # type: ignore[assignment]
-    ccw: BoolArray = False  # type: ignore[assignment]
+    across: FloatArray = made_array(1.0)
+    block: IntArray = made_array(0)
+    along: FloatArray = made_array(0.0)
+    ccw: BoolArray = made_array(False)
     part: EngagedPart | None = None
     reach: FloatArray | None = None
     tooling: Tooling | None = None

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked, asking
-from robomill.arrays import BoolArray, FloatArray, IntArray, digest, frozen
+from robomill.arrays import BoolArray, FloatArray, IntArray, digest, frozen, made_array
 from robomill.errors import LoadTestError
 from robomill.frames import Columns
 from robomill.identification.configurations import checked, solved, ways
@@ -114,12 +114,12 @@ class LoadTests(_Rows):
     displacement: FloatArray
     theta: FloatArray | None = None
     x_M: FloatArray | None = None
-    force_point: FloatArray = None  # type: ignore[assignment]
-    measuring_point: FloatArray = None  # type: ignore[assignment]
-    noise: FloatArray = None  # type: ignore[assignment]
-    row: IntArray = None  # type: ignore[assignment]
+    force_point: FloatArray = made_array()
+    measuring_point: FloatArray = made_array()
+    noise: FloatArray = made_array()
+    row: IntArray = made_array()
     gauges: FloatArray | None = None
-    pulley: FloatArray = None  # type: ignore[assignment]
+    pulley: FloatArray = made_array()
     findings: tuple[Finding, ...] = ()
     provenance: Provenance = MEASURED
     protocol: str = "displacements"
@@ -305,8 +305,8 @@ class JointTests(_Rows):
     joint: IntArray
     torque: FloatArray
     angle: FloatArray
-    noise: FloatArray = None  # type: ignore[assignment]
-    row: IntArray = None  # type: ignore[assignment]
+    noise: FloatArray = made_array()
+    row: IntArray = made_array()
     findings: tuple[Finding, ...] = ()
     provenance: Provenance = MEASURED
     protocol: str = "one joint at a time"

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robomill.arrays import FloatArray, IntArray, as_floats, frozen
+from robomill.arrays import FloatArray, IntArray, as_floats, frozen, made_array
 from robomill.errors import LoadTestError
 from robomill.frames import Columns
 from robomill.identification.load_test import MEASURED, LoadTests
@@ -42,10 +42,10 @@ class MeasuredField(Tabled):
 
     p: FloatArray
     C: FloatArray
-    AB: FloatArray = None  # type: ignore[assignment]
+    AB: FloatArray = made_array()
     reach: float = 0.0
     provenance: Provenance = MEASURED
-    stderr: FloatArray = None  # type: ignore[assignment]
+    stderr: FloatArray = made_array()
 
     def __post_init__(self) -> None:
         p = as_floats(self.p, "measured points", (None, 3), error=LoadTestError)

@@ -41,7 +41,7 @@ def nearest(robot: Robot, arm: Decoupled, T_MT: FloatArray, goal: FloatArray, ru
 
 def spins(count: int = SPIN_STEPS) -> FloatArray:
     """(count,) rad: turns about the tool axis in even steps all round, the first none."""
-    return 2 * np.pi / count * np.arange(count)
+    return np.asarray(2 * np.pi / count * np.arange(count), dtype=np.float64)
 
 
 def every(robot: Robot, arm: Decoupled, T_MT: FloatArray) -> tuple[FloatArray, BoolArray]:

@@ -106,7 +106,5 @@ def build_chain(convention: str, rows: Sequence[Row], T_base: FloatArray, T_tool
             between[-1] = between[-1] @ (row.held @ E)
         else:
             T_0 = T_0 @ (row.held @ E)
-    own = ([row.sign for row in free], [row.offset for row in free])
-    return Chain(
-        frozen(T_0), frozen(np.array(between)), *map(frozen, own), frozen([row.prismatic for row in free], bool)
-    )
+    sign, offset = (frozen([getattr(row, name) for row in free]) for name in ("sign", "offset"))
+    return Chain(frozen(T_0), frozen(np.array(between)), sign, offset, frozen([row.prismatic for row in free], bool))

@@ -12,7 +12,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked, asking, refuse_unknown
-from robomill.arrays import Arrays, BoolArray, FloatArray, Numbers, Rows, as_floats, frozen, no_number, of_kind
+from robomill.arrays import (
+    Arrays,
+    BoolArray,
+    FloatArray,
+    Numbers,
+    Rows,
+    as_floats,
+    frozen,
+    made_array,
+    no_number,
+    of_kind,
+)
 from robomill.errors import RobotError
 from robomill.frames import Columns
 from robomill.kinds import kinds_told
@@ -71,9 +82,9 @@ class Robot(Tabled):
     )
     title: str = ""
     sign: FloatArray = quantity("sign", shape=(None,), default=None)
-    prismatic: BoolArray = None  # type: ignore[assignment]
-    T_base: FloatArray = None  # type: ignore[assignment]
-    T_tool: FloatArray = None  # type: ignore[assignment]
+    prismatic: BoolArray = made_array()
+    T_base: FloatArray = made_array()
+    T_tool: FloatArray = made_array()
     blocked: FloatArray = quantity("held at", "deg", shape=(None,), sliding="mm", default=None)
     compliance_sets: Mapping[str, FloatArray] = field(default_factory=dict)
     compliance_set: str = USER_SET

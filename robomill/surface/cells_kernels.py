@@ -230,7 +230,9 @@ def interval_below(shape: Shape, move: Move, frame: ToolFrame, tile: Heights, i:
 
 
 @part
-def cut_tilted_move(shape: Shape, ends: FloatArray, k: FloatArray, box: FloatArray, tile: Heights, hidden: Hidden) -> None:
+def cut_tilted_move(
+    shape: Shape, ends: FloatArray, k: FloatArray, box: FloatArray, tile: Heights, hidden: Hidden
+) -> None:
     """Cut a move ``ends`` (6,) m of a cutter leaning along k (3,), seen from above within ``box`` (4,) m."""
     frame = tool_frame(k[0], k[1], k[2])
     move = move_in_frame(frame, ends)

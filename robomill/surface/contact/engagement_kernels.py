@@ -42,7 +42,7 @@ from robomill.surface.contact.turn_kernels import (
     turn_row,
 )
 
-END_LOOKS = 7  # looks, at most, at a piece of the profile for where material begins or ends in it (rule of false position)
+END_LOOKS = 7  # at most, at a piece of the profile for where material begins or ends in it (rule of false position)
 NARROW = 0.3e-3  # m: so far apart a nose is looked at where material may end between its pieces' ends
 EXACT = 1e-7  # m: so near to where it ends is there
 END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 9, 96  # of each stretch of the profile, at most
