@@ -13,7 +13,6 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import CompensationError, GCodeError
 from robomill.improve.program import Moves
 from robomill.simulation.setup import SimulationSetup
-from robomill.toolpath.apt import is_apt
 from robomill.toolpath.corrected import key_of, marked
 from robomill.toolpath.fitting import Piece
 from robomill.toolpath.gcode.program import TAP, Program
@@ -22,6 +21,7 @@ from robomill.toolpath.gcode.rewriting import Rewriter
 from robomill.toolpath.gcode.trace import trace
 from robomill.toolpath.path import PER_MOVE, Toolpath
 from robomill.toolpath.source import LEANS, GCodeSource, PathSource
+from robomill.toolpath.text import is_apt
 
 WriteGCode = Callable[[Toolpath], str]
 NEAR = 0.6e-6  # m: what was read again lies so near to what was written

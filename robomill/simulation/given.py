@@ -18,8 +18,10 @@ from robomill.identification.knowledge import Knowledge
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.result import IdentificationResult
 from robomill.kinematics.asked import in_the_foot
+from robomill.kinematics.transforms import rotation_z
 from robomill.provenance import Provenance, stated_blocks
 from robomill.quantities import Quantity
+from robomill.rigid import transform
 from robomill.robot.model import Robot, check_robot
 from robomill.simulation.origin import sources
 from robomill.simulation.origin.sources import AROUND, UNSTATED_TOLERANCE, unstated
@@ -42,13 +44,9 @@ _FRAME = replace(PART_ZERO, label="place", name="T_MW", key="part_zero_mm")
 _TURN = replace(PART_TURN, name="part_rotation_z", key="part_rotation_z_deg")
 
 
-def part_frame(zero: Any, rotation_z: float = 0.0) -> FloatArray:
+def part_frame(zero: Any, turn: float = 0.0) -> FloatArray:
     """T_MW from the part zero (3,) m in {M} and the part's turn about z_M in rad."""
-    c, s = np.cos(rotation_z), np.sin(rotation_z)
-    T_MW = np.eye(4)
-    T_MW[:2, :2] = [[c, -s], [s, c]]
-    T_MW[:3, 3] = zero
-    return T_MW
+    return transform(rotation_z(turn), zero)
 
 
 def taken(given: Mapping[str, Any], T_MW: FloatArray | None = None, robot: Any = None) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from robomill.cutting.tool import DISH
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SetupError
 from robomill.provenance import Finding
+from robomill.rigid import transform
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
@@ -91,9 +92,7 @@ def reaching(robot: Robot, farther: float) -> Robot:
     """The robot with a tool whose tip stands ``farther`` (m) along its axis, away from the spindle."""
     if farther == 0.0:
         return robot
-    shift = np.eye(4)
-    shift[2, 3] = -farther
-    return robot.replace(T_tool=robot.T_tool @ shift)
+    return robot.replace(T_tool=robot.T_tool @ transform(np.eye(3), [0.0, 0.0, -farther]))
 
 
 def tool_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:

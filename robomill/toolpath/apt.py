@@ -28,7 +28,6 @@ from robomill.toolpath.apt_moves import (
 from robomill.toolpath.findings import NO_UNITS, Findings
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
-from robomill.toolpath.text import is_apt as is_apt  # by its old name for the rooms above
 from robomill.toolpath.tools import MOST
 from robomill.units import to_si
 

@@ -178,20 +178,20 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
     rims, told, left, carried = rims.only(keep), told[keep], left[keep], carried[keep]
     q = rims.q
     ahead, aside = _dot(rims.u, at.feed[q]), _dot(rims.u, at.left_of[q])
-    own = at.d[q, 0] * ahead + at.d[q, 1] * aside
+    upright = _upright(at, q, rims.height)
+    slanting = np.sqrt(1.0 - upright**2)
+    own = at.d[q, 0] * ahead + at.d[q, 1] * aside - at.d[q, 2] * slanting / upright
     # Beside a corner one looks along the wall of another pass: it is off by what that one has carried it, no more.
     carried = np.where(left > told, np.maximum(np.maximum(carried, own), 0.0), carried)
     error = np.where(np.abs(carried) < np.abs(left - told), carried, left - told)
     error = np.where(np.isnan(left) | steep[q] | begin[q] | end[q], own, error)
-    upright = _upright(at, q, rims.height)
     level, up = np.hypot(at.d[:, 0], at.d[:, 1]).max(), np.abs(at.d[:, 2]).max()
-    slanting = np.sqrt(1.0 - upright**2)
     most = level * upright + up * slanting  # no wall moves further
     error = np.clip(error * upright, -most, most)
     reached = at.c[q] + (rims.radius + np.nan_to_num(left) + BESIDE)[:, None] * rims.u
     lost = _nothing_stands(at, rims, (left - told > most + SAME) | ~at.stands(q, reached, rims.height))
     way = rims.sign[:, None] * np.column_stack([ahead * upright, aside * upright, -slanting])
-    readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * rims.sign, way)
+    readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * upright * rims.sign, way)
     along = rims.only(rims.length > 0.0)
     return readings, np.unique(at.i[q[lost]]), np.unique(at.i[along.q[_thin(at, along)]])
 
@@ -260,7 +260,9 @@ def _floors(at: Places) -> Readings:
     lines = np.hstack([at.c[q], at.axial[q], u])
     told, error, found = at.outline.floors(lines, offset, (at.slope * aside)[q])
     found &= ~(at.bottoms[q] & (told < -SAME))  # a peck's end is drilled away
-    deepest = at.bottoms[q] & (told > -SAME)  # a hole is as deep as its lowest point, wherever its cone has gone
+    # A hole, or a groove with the sides of a cone, is as deep as its lowest point, wherever that has gone aside.
+    level = at.result.conditions.across[at.i] > 1.0 - LEVEL
+    deepest = (at.bottoms | at.number("conical") & level)[q] & (told > -SAME)
     error[deepest] = np.fmin(error, at.d[q, 2])[deepest]
     q, error = q[found], error[found]
     length = at.length[q] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]

@@ -11,7 +11,7 @@ from robomill.quantities import described, quantities
 from robomill.robot.model import Robot
 from robomill.simulation.origin.origins import MODEL, Source, robot_lengths, robot_sources, sources
 from robomill.simulation.setup import SimulationSetup
-from robomill.toolpath.gcode.findings import NO_UNITS
+from robomill.toolpath.findings import NO_UNITS
 from robomill.units import format_many
 
 MANY = 4  # lengths that are called by their symbols

@@ -5,11 +5,11 @@ from functools import lru_cache
 
 from robomill.arrays import FloatArray
 from robomill.provenance import Finding
-from robomill.toolpath.apt import is_apt
-from robomill.toolpath.gcode.findings import NO_UNITS
+from robomill.toolpath.findings import NO_UNITS
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.toolpath.summary import summary_of
+from robomill.toolpath.text import is_apt
 from robomill.units import format_count, format_many, format_si
 from robomill.wording import listed
 

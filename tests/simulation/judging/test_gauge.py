@@ -193,6 +193,24 @@ def test_a_wall_that_leans_is_off_by_less_than_its_cutter_goes_aside(angle):
         np.testing.assert_allclose(found, aside * lean, atol=2e-7)
 
 
+@pytest.mark.parametrize("tip", [0.0, 0.1e-3])
+@pytest.mark.parametrize("angle", [60.0, 90.0, 120.0])
+def test_a_groove_with_the_sides_of_a_cone_is_as_deep_as_its_root(angle, tip):
+    """Pushed 0.2 mm aside and 0.1 mm down or up: where its root was to be, its side stands, but a gauge finds the root.
+    Each side is off along its normal, and the sections, which see the surface alone, say so, too."""
+    cone = Cutter("chamfer", 2 * R, tip_angle=np.radians(angle), tip_diameter=tip)
+    result = run(*PARTS["slot"], cutter=cone)
+    half = np.radians(0.5 * angle)
+    for left, up in ((0.2e-3, -0.1e-3), (-0.2e-3, -0.1e-3), (0.2e-3, 0.1e-3), (0.0, -0.1e-3)):
+        bent = pushed(result, left=left, up=up)
+        np.testing.assert_allclose(bent.gauge.floors.error, up, atol=1e-9)
+        assert bent.groove(0.03).floor_error == pytest.approx(up, abs=1e-6)
+        off = [left * np.cos(half) - up * np.sin(half), left * np.cos(half) + up * np.sin(half)]  # left and right of it
+        found = bent.gauge.walls.error[bent.gauge.walls.length > 0.0]
+        assert np.isclose(found[:, None], off, atol=1e-8).any(axis=1).all()
+        assert np.isclose(found[:, None], off, atol=1e-8).any(axis=0).all()
+
+
 def test_facing_leaves_a_floor_and_no_wall():
     wide = SETUP.cutter.replace(diameter=60e-3)
     lines = ["G0 X-80 Y0 Z5", "G0 Z-1", "G1 X80 F1800"]
@@ -508,9 +526,11 @@ def test_walls_and_floors_are_spread_by_area() -> None:
         assert walls.histogram(edges).sum() + floors.histogram(edges).sum() == pytest.approx(20.0)
 
 
-def test_an_error_goes_with_the_tip_as_its_way_says():
+@pytest.mark.parametrize("kind", ["flat", "chamfer", "ball"])
+def test_an_error_goes_with_the_tip_as_its_way_says(kind):
     """By differences: the same slot, which ends in the block, pushed along, to the left and up by 1 um."""
-    slot = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X3 F600", "G0 Z5")
+    cutter = Cutter(kind, 2 * R, tip_angle=np.radians(70.0) if kind == "chamfer" else None)
+    slot = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X3 F600", "G0 Z5", cutter=cutter)
     still = gauge(pushed(slot))
     assert all(len(kind.error) for kind in (still.walls, still.floors, still.ends))
     for axis, name in enumerate(("along", "left", "up")):
