@@ -262,7 +262,7 @@ def _floors(at: Places) -> Readings:
     found &= ~(at.bottoms[q] & (told < -SAME))  # a peck's end is drilled away
     # A hole, or a groove with the sides of a cone, is as deep as its lowest point, wherever that has gone aside.
     level = at.result.conditions.across[at.i] > 1.0 - LEVEL
-    deepest = (at.bottoms | at.number("conical") & level)[q] & (told > -SAME)
+    deepest = (at.bottoms | (at.number("conical") > 0) & level)[q] & (told > -SAME)
     error[deepest] = np.fmin(error, at.d[q, 2])[deepest]
     q, error = q[found], error[found]
     length = at.length[q] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]
