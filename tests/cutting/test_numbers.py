@@ -27,3 +27,8 @@ def test_each_number_is_changed_by_itself(force: ForceModel, numbers: dict[str, 
         changed = {each.key: each.value for each in force.changed(key, 0.5).uncertain}
         assert changed == {**numbers, key: value + 0.5}
     assert force.changed("another", 0.5) is force
+
+
+def test_entries_of_a_vector_are_called_by_its_axes() -> None:
+    force = rm.ConstantForce((5.0, 100.0, 7.0))
+    assert [each.label for each in force.uncertain] == ["F_X", "F_Y", "F_Z"]

@@ -134,3 +134,15 @@ def test_a_range_of_yaw_that_hardly_turns_the_part_is_doubted(given: dict, doubt
     """57.3 degrees are a radian: a range within half a turn in radians may be one; whoever gives rad means it."""
     said = [each.message for each in area(setup(), given).doubts]
     assert [words.endswith(doubted) for words in said] == [True] * bool(doubted)
+
+
+@pytest.mark.parametrize("candidates", [8, 50, 400])
+@pytest.mark.parametrize("high", [1e-6, 1e-3, 0.05, 1.0, 30.0, 1e4])
+def test_a_grid_has_about_as_many_places_as_were_asked_for_however_long_its_box(high: float, candidates: int) -> None:
+    """Never more than asked for, at least half of them, and both ends of both sides."""
+    upper = np.array([0.5, 0.5 * high, 0.0, 0.0])
+    here = Area(-upper, upper, np.eye(3), setup().stock_block, np.empty((0, 2, 3)))
+    axes = here.axes(candidates)
+    assert 0.5 * candidates <= np.prod([len(each) for each in axes]) <= candidates
+    for axis, half in zip(axes, (0.5, 0.5 * high)):
+        assert (axis[0], axis[-1]) == pytest.approx((-half, half))

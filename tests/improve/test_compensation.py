@@ -65,6 +65,14 @@ def test_the_same_holds_of_a_force_that_follows_the_cut(process: Compensation) -
     assert np.abs(mirrored[-5] - process.c[-5, 1]) > 0.02e-3
 
 
+def test_a_notebook_shows_what_stays_if_stiffness_or_force_is_a_fifth_off(slot: Compensation) -> None:
+    page = slot._repr_html_()
+    for name, left in (("Before", slot.before), ("After", slot.after), ("Compliances 20 % wrong", slot.softer)):
+        assert name in page
+        assert f"{left.max * 1e3:.4f}"[:5] in page
+    assert "Force 20 % wrong" in page
+
+
 def test_a_fifth_stays_where_every_joint_gives_a_fifth_more(slot: Compensation) -> None:
     arm = slot.setup.robot
     softer = slot.setup.replace(robot=arm.replace(C_theta=1.2 * arm.C_theta))

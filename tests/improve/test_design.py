@@ -71,6 +71,18 @@ def test_what_cannot_be_met_is_not_met_by_the_stiffest_joints_either(name: str) 
     assert found.share <= judged(stiffest, tolerance=tolerance).share * 1.01
 
 
+@pytest.mark.parametrize("mm", [0.1, 0.16])
+def test_a_joint_is_blamed_alone_where_it_alone_leaves_too_much(mm: float) -> None:
+    """Of the reference groove's 0.2295 mm joint 3 has 0.1474: too much for 0.10 mm whatever the others do, and not
+    too much by itself for 0.16 mm."""
+    run = rm.simulate(short())
+    of_joint = np.einsum("mij,mki->mkj", run.R_MF, run.delta_joint)[run.verdict.wall.worst, :, 1]
+    found = design(short(), tolerance_mm=mm, bounds=(1.0, 1.0))
+    assert not found.feasible
+    assert ("joint 3 alone" in found.reason) == (of_joint.max() > mm * 1e-3)
+    assert int(np.argmax(of_joint)) == 2
+
+
 def test_a_dear_joint_is_left_and_a_fixed_one_stays() -> None:
     setup = short()
     cheap = design(setup, 0.2e-3, weight=[1, 1, 50, 1, 1])

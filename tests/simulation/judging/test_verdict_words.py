@@ -15,7 +15,7 @@ from robomill.cutting.tool_table import ASKED, TableTool, ToolTable
 from robomill.cutting.unjudged import Unjudged
 from robomill.io.materials import load_material
 from robomill.provenance import Provenance
-from robomill.simulation.judging.verdict_words import LEVELS, gauge_end, level_of_share
+from robomill.simulation.judging.verdict_words import LEVELS, Reading, gauge_end, level_of_share
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
@@ -194,3 +194,12 @@ def test_a_grade_is_that_of_its_share_unless_a_wall_is_gone_or_the_force_may_be_
         assert graded.grade == level_of_share(share)
         assert replace(graded, gone=(3,)).grade == "out"
         assert replace(graded, far=1.2).grade == max(level_of_share(share), "tight", key=LEVELS.index)
+
+
+@pytest.mark.parametrize(
+    ("worst", "stated", "decides"), [(0, True, True), (7, True, True), (-1, True, False), (0, False, False)]
+)
+def test_a_reading_decides_where_the_cut_leaves_one_and_its_tolerance_is_its_own(worst, stated, decides) -> None:
+    """The first sample of a path is as good as any."""
+    value = 1e-4 if worst >= 0 else float("nan")
+    assert Reading(worst, value, 3e-4, stated=stated).decides is decides
