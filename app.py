@@ -1,4 +1,4 @@
-"""The app. Streamlit serves it as ``app`` says (``robomill/ui/front.py``), and runs this file itself as start page."""
+"""The app. Streamlit serves it as ``app`` says (``robomill/ui/serving/front.py``), and runs this file as start page."""
 
 from pathlib import Path
 
@@ -7,12 +7,13 @@ from streamlit.starlette import App
 
 from robomill import ui
 from robomill.learn.worked import of_the_run
-from robomill.ui import front, other
-from robomill.ui.arm import arm_at
+from robomill.ui.comparing import other
+from robomill.ui.judged.verdict import NOT_COUNTED, tiles_of_b
+from robomill.ui.judged.worked import mathematics
+from robomill.ui.posed.arm import arm_at
+from robomill.ui.serving import front
 from robomill.ui.start import carved, story
 from robomill.ui.toolpath.doors import take_file
-from robomill.ui.verdict import NOT_COUNTED, tiles_of_b
-from robomill.ui.worked import mathematics
 from robomill.units import format_limit
 
 HEIGHT, ASPECT = 285, 1.1  # of the pictures; of the arm's frame: it is whole in the narrowest column

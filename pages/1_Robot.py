@@ -4,10 +4,11 @@ import streamlit as st
 
 from robomill import ui
 from robomill.learn.worked import at_the_pose
-from robomill.ui import other, push
-from robomill.ui.arm import arm
+from robomill.ui.comparing import other
+from robomill.ui.judged.worked import mathematics
+from robomill.ui.posed import push
+from robomill.ui.posed.arm import arm
 from robomill.ui.robot import editors, pose
-from robomill.ui.worked import mathematics
 from robomill.units import format_many, format_times
 from robomill.viz.arm import displacement_scale
 

@@ -3,8 +3,10 @@
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import fields, other, session
+from robomill.ui import session
+from robomill.ui.comparing import other
 from robomill.ui.maps import workspace
+from robomill.ui.posed import fields
 
 project = ui.begin("Workspace")
 robot, unit = project.setup.robot, project.view.length

@@ -4,9 +4,10 @@ import streamlit as st
 
 from robomill import ui
 from robomill.learn.worked import at_the_pose
-from robomill.ui import other, session
+from robomill.ui import session
+from robomill.ui.comparing import other
+from robomill.ui.judged.worked import mathematics
 from robomill.ui.maps import compliance, plane, point, sheets
-from robomill.ui.worked import mathematics
 
 project = ui.begin("Compliance")
 robot, unit = project.setup.robot, project.view.length

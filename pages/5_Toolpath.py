@@ -6,7 +6,10 @@ import streamlit as st
 
 from robomill import ui
 from robomill.learn.worked import of_the_run
-from robomill.ui import other, pieces, tools
+from robomill.ui import pieces
+from robomill.ui.comparing import other
+from robomill.ui.entry import tools
+from robomill.ui.judged.worked import mathematics
 from robomill.ui.toolpath import details, drawing, question, view
 from robomill.ui.toolpath.doors import file_inputs
 from robomill.ui.toolpath.lines import lines_inputs
@@ -18,7 +21,6 @@ from robomill.ui.toolpath.sketch import sketch_inputs
 from robomill.ui.toolpath.sketch_pad import sketch_pad
 from robomill.ui.toolpath.sources import kind_switch
 from robomill.ui.work.running import path_of
-from robomill.ui.worked import mathematics
 
 project = ui.begin("Toolpath")
 setup, dark, unit = project.setup, ui.dark(), project.view.length

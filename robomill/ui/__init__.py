@@ -16,9 +16,10 @@ How to write a page (at most 120 lines)::
         ui.figure(fig, "components", table=lambda: columns)   # keyed, PNG, CSV, table twin
 
 The core is ``project`` (what a person decided), ``session`` (its history and what is kept by name), ``cached`` and
-``rendered`` (results, pictures by fingerprint), ``inputs``, ``pieces``, ``verdict`` and ``shell``; the room ``keeping``
-brings the project back where a page or its server went away, ``sharing`` hands it on. Every page has a room of its own
-beside them, and no page's room knows another's.
+``rendered`` (results, pictures by fingerprint), ``inputs``, ``pieces`` and ``shell``. Rooms of the core: ``entry``
+(boxes, choices, uploads, tools), ``work`` (what takes time), ``judged`` (the verdict and what it rests on), ``posed``
+(the arm somewhere), ``comparing`` (A and B), ``keeping`` (work is there again), ``sharing`` (it is handed on) and
+``serving`` (the server itself). Every page has a room of its own beside them, and no page's room knows another's.
 
 Rules of the house:
 
@@ -40,10 +41,10 @@ Rules of the house:
 """
 
 from robomill.ui.entry.inputs import number
+from robomill.ui.judged.verdict import open_question, tip_tile, verdict_sentence, verdict_tiles
 from robomill.ui.pieces import Tile, attempt, figure, headline, note, split, thirds, tiles
 from robomill.ui.project import Project, View
 from robomill.ui.shell import begin, dark
-from robomill.ui.verdict import open_question, tip_tile, verdict_sentence, verdict_tiles
 from robomill.ui.work.cached import kept_figure
 from robomill.ui.work.running import result
 

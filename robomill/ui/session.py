@@ -25,8 +25,8 @@ from robomill.robot.sources import changed_blocks
 from robomill.simulation.origin.sources import changed_sources
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui.bench import Bench
-from robomill.ui.closing import while_open
 from robomill.ui.project import DEFAULT_PRESET, MapView, Project, preset_setup, project_from_toml
+from robomill.ui.serving.closing import while_open
 
 KEY = "robomill"
 EDITED = TYPED

@@ -6,10 +6,10 @@ import streamlit as st
 
 from robomill.budgets import weight
 from robomill.errors import RobomillError
-from robomill.ui import bar, menu, pieces, rendered, session
-from robomill.ui.closing import settle
+from robomill.ui import pieces, rendered, session
 from robomill.ui.comparing import projects
 from robomill.ui.entry import declared, inputs
+from robomill.ui.judged import bar
 from robomill.ui.keeping import autosave
 from robomill.ui.markup import as_markdown
 from robomill.ui.pieces import error
@@ -22,6 +22,8 @@ from robomill.ui.project import (
     project_from_file,
     project_to_toml,
 )
+from robomill.ui.serving import menu
+from robomill.ui.serving.closing import settle
 from robomill.ui.sharing import arriving, buttons
 from robomill.ui.work import preparing
 from robomill.viz.theme import palette

@@ -6,7 +6,7 @@ import time
 
 import streamlit as st
 
-from robomill.ui.asked import heed_pages
+from robomill.ui.serving.asked import heed_pages
 
 heed_pages()
 SPEAKS = """

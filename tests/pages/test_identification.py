@@ -27,11 +27,12 @@ from robomill.io.setups.projects import load_setup
 from robomill.io.texts import read_text
 from robomill.provenance import Kind, Provenance
 from robomill.simulation.run import simulate
-from robomill.ui import session, uncertainty
+from robomill.ui import session
 from robomill.ui.bench import SAMPLES, Bench, sample_text
 from robomill.ui.identification import words
 from robomill.ui.identification.inputs import adopted
 from robomill.ui.identification.laboratory import KEY, Exercise, Trial
+from robomill.ui.judged import uncertainty
 from robomill.ui.project import Project, project_from_toml, project_to_toml
 from robomill.ui.session import KEY as PROJECT
 from robomill.ui.session import Store

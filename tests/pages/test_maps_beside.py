@@ -10,7 +10,7 @@ from conftest import go, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.progress import checkpoint
-from robomill.ui import fields
+from robomill.ui.posed import fields
 from robomill.ui.work import beside, cached
 from robomill.ui.work.job import Job
 from robomill.workspace.region import largest_region

@@ -14,7 +14,8 @@ from conftest import PAGES, ROOT, go, store, words
 from streamlit.testing.v1 import AppTest
 
 import robomill as rm
-from robomill.ui import other, session
+from robomill.ui import session
+from robomill.ui.comparing import other
 from robomill.ui.keeping import autosave
 from robomill.ui.keeping.settings import Settings
 from robomill.ui.keeping.shelf import Shelf

@@ -12,7 +12,7 @@ from test_start_odd_numbers import PAGES
 
 from robomill.ui.entry.box import NumberBox
 from robomill.ui.entry.grid import Sheet
-from robomill.ui.tools import TABLE
+from robomill.ui.entry.tools import TABLE
 
 REFUSED = {
     "1,220": "1.220 to some and 1220 to others",

@@ -13,7 +13,7 @@ from robomill.io.setups.projects import setup_from_toml, setup_to_toml
 from robomill.provenance import Provenance
 from robomill.simulation.run import simulate
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.rows import OWN
+from robomill.ui.entry.rows import OWN
 
 POCKET = "G21 G90\nG0 X-20 Y0 Z5\nS8000 M3\nG1 Z-1 F300\nG1 X20 F600\nG0 Z20\nM2\n"
 SILENT = POCKET.replace("S8000 M3\n", "")

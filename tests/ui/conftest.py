@@ -6,7 +6,7 @@ import pytest
 
 import robomill as rm
 from robomill.compliance.at_pose import PoseReport
-from robomill.ui.point import in_hand
+from robomill.ui.posed.point import in_hand
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ from robomill.io.tables import parse_toml
 from robomill.quantities import Quantity, quantities
 from robomill.simulation.judging.verdict_words import FLOOR, WALL
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui.verdict import WORDS
+from robomill.ui.judged.verdict import WORDS
 from robomill.ui.work import cached
 from robomill.units import format_si, unit_label
 

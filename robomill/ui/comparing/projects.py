@@ -10,7 +10,8 @@ from functools import partial
 import streamlit as st
 
 from robomill.errors import ProjectError, RobomillError
-from robomill.ui import other, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.comparing import other
 from robomill.ui.comparing.differences import differences, outcomes
 from robomill.ui.entry import inputs
 from robomill.ui.keeping import autosave

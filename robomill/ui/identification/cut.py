@@ -15,11 +15,12 @@ from robomill.robot.model import Robot
 from robomill.simulation.band import deviation_band, size_band, worst_half
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import pieces, session, uncertainty
+from robomill.ui import pieces, session
 from robomill.ui.bench import Bench
 from robomill.ui.entry import inputs
 from robomill.ui.identification.bench import field
 from robomill.ui.identification.inputs import adopted, knowledge
+from robomill.ui.judged import uncertainty
 from robomill.ui.work import running
 from robomill.ui.work.job import Underway
 from robomill.units import format_si, from_si

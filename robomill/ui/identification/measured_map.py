@@ -16,11 +16,12 @@ from robomill.identification.map_check import MapCheck
 from robomill.identification.measured_field import MeasuredField
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
-from robomill.ui import pieces, session, uncertainty
+from robomill.ui import pieces, session
 from robomill.ui.bench import MAP_SAMPLES, OWN, Bench
 from robomill.ui.entry import inputs
 from robomill.ui.identification.bench import field_of, put_map, put_map_sample, remembered, robot_of
 from robomill.ui.identification.inputs import robot_choice, upload
+from robomill.ui.judged import uncertainty
 from robomill.ui.project import View
 from robomill.ui.work import running
 from robomill.units import NOT_REACHED, format_many, format_percent, format_si, from_si, unit_label

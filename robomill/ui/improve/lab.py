@@ -12,7 +12,7 @@ from robomill.report.drawn import Axes, svg
 from robomill.report.tags import Html, joined, tag
 from robomill.simulation.result import SimulationResult
 from robomill.ui.improve.remedies import error_words
-from robomill.ui.verdict import WORDS
+from robomill.ui.judged.verdict import WORDS
 from robomill.units import format_duration, format_percent, from_si, unit_label
 
 WIDE, HIGH = 260, 150  # of a picture

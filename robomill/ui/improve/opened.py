@@ -20,8 +20,8 @@ from robomill.ui import pieces
 from robomill.ui.entry import inputs
 from robomill.ui.improve import lab, stiffen
 from robomill.ui.improve.remedies import Found, Shown, error_words, take, use
+from robomill.ui.judged.verdict import WORDS
 from robomill.ui.shell import dark
-from robomill.ui.verdict import WORDS
 from robomill.units import (
     format_count,
     format_duration,

@@ -37,8 +37,8 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
 from robomill.ui.improve import sure
+from robomill.ui.judged.verdict import WORDS
 from robomill.ui.sharing import report
-from robomill.ui.verdict import WORDS
 from robomill.ui.work import cached
 from robomill.ui.work.job import Underway
 from robomill.units import (

@@ -14,7 +14,7 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import joint_shares
 from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
-from robomill.ui.verdict import WORDS, previous
+from robomill.ui.judged.verdict import WORDS, previous
 from robomill.ui.work import cached
 from robomill.units import format_percent, format_share, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars

@@ -27,8 +27,8 @@ from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
 from robomill.ui.entry.box import NumberBox
 from robomill.ui.entry.inputs import Look
+from robomill.ui.judged.verdict import WORDS
 from robomill.ui.shell import dark
-from robomill.ui.verdict import WORDS
 from robomill.ui.work import cached
 from robomill.units import (
     format_count,

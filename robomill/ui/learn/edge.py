@@ -8,11 +8,12 @@ from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import soft_direction
 from robomill.kinematics.dexterity import near_singular
 from robomill.learn.push import FORCE
-from robomill.ui import fields, pieces, session, shell
-from robomill.ui.arm import arm
+from robomill.ui import pieces, session, shell
 from robomill.ui.entry import inputs
 from robomill.ui.learn import lesson
-from robomill.ui.point import InHand, in_hand
+from robomill.ui.posed import fields
+from robomill.ui.posed.arm import arm
+from robomill.ui.posed.point import InHand, in_hand
 from robomill.ui.work.cached import shared
 from robomill.units import format_si, format_times, format_value, from_si, split_unit, unit_label
 from robomill.viz import solids

@@ -18,10 +18,11 @@ from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.deflection import displacement
 from robomill.learn.push import FORCE, AsidePush
-from robomill.ui import fields, pieces, push, session
-from robomill.ui.arm import arm
+from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
-from robomill.ui.point import InHand, default_point, in_hand, place
+from robomill.ui.posed import fields, push
+from robomill.ui.posed.arm import arm
+from robomill.ui.posed.point import InHand, default_point, in_hand, place
 from robomill.ui.project import Project
 from robomill.ui.work import running
 from robomill.units import format_number, format_si, format_times, from_si, unit_label

@@ -24,12 +24,12 @@ from robomill.learn.lessons import lesson
 from robomill.learn.marking import check
 from robomill.learn.push import AsidePush
 from robomill.ui import pieces, session
-from robomill.ui.arm import arm
 from robomill.ui.entry import inputs
 from robomill.ui.learn import arrow as arrow_board
 from robomill.ui.learn.lesson import ASPECT, BIG, HEIGHT
 from robomill.ui.markup import unparted
-from robomill.ui.point import InHand
+from robomill.ui.posed.arm import arm
+from robomill.ui.posed.point import InHand
 from robomill.ui.work import cached
 from robomill.units import format_si, format_times
 from robomill.viz.arm import ArmScene, displacement_scale

@@ -15,10 +15,11 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.paper import Point
 from robomill.robot.model import Robot
-from robomill.ui import fields, pieces, session, shell
+from robomill.ui import pieces, session, shell
 from robomill.ui.component import component
 from robomill.ui.maps import outlines
 from robomill.ui.maps.plane import Region
+from robomill.ui.posed import fields
 from robomill.units import from_si
 from robomill.viz.maps import Scale
 from robomill.viz.planes import Codes, PlaneMap, PlaneSheet, sheet_data

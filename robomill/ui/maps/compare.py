@@ -10,9 +10,10 @@ from robomill.errors import RobomillError, WorkspaceError
 from robomill.improve.sensitivity import stiffened
 from robomill.io.robot.robots import load_robot, robot_names
 from robomill.robot.model import USER_SET, Robot
-from robomill.ui import fields, pieces, session
+from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
 from robomill.ui.maps.board import Planes
+from robomill.ui.posed import fields
 from robomill.ui.project import MapView
 from robomill.units import UNITS, format_percent, format_value, from_si
 from robomill.viz.maps import Scale

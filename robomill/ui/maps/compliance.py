@@ -11,12 +11,13 @@ from robomill.compliance.at_pose import PoseReport
 from robomill.improve.sensitivity import deflection_sensitivity, stiffened
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.ui import fields, pieces, push, session, shell
+from robomill.ui import pieces, session, shell
 from robomill.ui.entry import declared, inputs
 from robomill.ui.maps import plane
-from robomill.ui.point import InHand, place
+from robomill.ui.posed import fields, push
+from robomill.ui.posed.point import InHand, place
+from robomill.ui.posed.push import Decided, Moved, Push
 from robomill.ui.project import MapView, Project
-from robomill.ui.push import Decided, Moved, Push
 from robomill.ui.work import running
 from robomill.units import UNITS, format_many, format_number, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars

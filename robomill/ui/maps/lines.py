@@ -9,9 +9,10 @@ from robomill.errors import WorkspaceError
 from robomill.improve.sensitivity import scaled_shares
 from robomill.learn.push import FORCE
 from robomill.robot.model import Robot
-from robomill.ui import fields, pieces, shell
+from robomill.ui import pieces, shell
 from robomill.ui.maps import plane
 from robomill.ui.maps.plane import Region
+from robomill.ui.posed import fields
 from robomill.units import format_si, format_significant, from_si, unit_label
 from robomill.viz.shares import LinePanel, line_panels
 

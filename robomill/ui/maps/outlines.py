@@ -6,7 +6,7 @@ from scipy.spatial import ConvexHull, QhullError
 from robomill.arrays import FloatArray
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
-from robomill.ui.cut import path_there
+from robomill.ui.posed.cut import path_there
 from robomill.units import from_si
 
 DRAWN = 300  # points of a path

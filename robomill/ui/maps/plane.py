@@ -10,8 +10,9 @@ from robomill.errors import WorkspaceError
 from robomill.paper import Point
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.ui import fields, pieces, session
+from robomill.ui import pieces, session
 from robomill.ui.entry import declared, inputs
+from robomill.ui.posed import fields
 from robomill.ui.project import MapView
 from robomill.units import decimals, format_si, from_si, to_si, unit_label
 from robomill.workspace import reach

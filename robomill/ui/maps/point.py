@@ -6,10 +6,11 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.components import COMPONENTS
-from robomill.ui import fields, pieces, session, shell
-from robomill.ui.arm import arm
-from robomill.ui.point import InHand, compliance_matrix, place
-from robomill.ui.push import Decided, Moved
+from robomill.ui import pieces, session, shell
+from robomill.ui.posed import fields
+from robomill.ui.posed.arm import arm
+from robomill.ui.posed.point import InHand, compliance_matrix, place
+from robomill.ui.posed.push import Decided, Moved
 from robomill.units import (
     format_many,
     format_number,

@@ -17,7 +17,7 @@ from robomill.ui.entry import declared, inputs
 from robomill.ui.maps import board, compare, lines, plane, sides
 from robomill.ui.maps.board import Planes
 from robomill.ui.maps.plane import Region
-from robomill.ui.point import InHand
+from robomill.ui.posed.point import InHand
 from robomill.units import format_number, from_si, unit_label
 from robomill.viz.maps import Scale
 from robomill.viz.planes import PlaneMap, ends, extremes, means

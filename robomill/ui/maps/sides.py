@@ -8,9 +8,11 @@ from typing import Any
 from robomill.arrays import FloatArray
 from robomill.improve.sensitivity import stiffened
 from robomill.robot.model import Robot
-from robomill.ui import fields, other, pieces, session
+from robomill.ui import pieces, session
+from robomill.ui.comparing import other
 from robomill.ui.entry import inputs
 from robomill.ui.maps.board import Planes
+from robomill.ui.posed import fields
 from robomill.units import format_count, unit_label
 from robomill.viz.maps import Scale
 from robomill.viz.planes import Codes, ends

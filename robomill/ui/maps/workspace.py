@@ -13,16 +13,17 @@ from robomill.compliance.at_pose import at_pose
 from robomill.kinematics.dexterity import singularity_among
 from robomill.learn.worked import at_the_pose
 from robomill.robot.model import Robot
-from robomill.ui import fields, pieces, session, shell
-from robomill.ui.cut import path_there
+from robomill.ui import pieces, session, shell
 from robomill.ui.entry import declared, inputs
+from robomill.ui.judged.worked import mathematics
 from robomill.ui.maps import plane, sides
 from robomill.ui.maps.board import Planes, beneath, board
 from robomill.ui.maps.plane import Region
-from robomill.ui.point import in_hand, middle
+from robomill.ui.posed import fields
+from robomill.ui.posed.cut import path_there
+from robomill.ui.posed.point import in_hand, middle
 from robomill.ui.project import MapView, Project
 from robomill.ui.work import running
-from robomill.ui.worked import mathematics
 from robomill.units import (
     NOT_REACHED,
     UNITS,

@@ -10,11 +10,13 @@ from robomill.cutting.force import ForceSpread
 from robomill.learn.worked import of_the_run
 from robomill.simulation.origin.spread import AlloySpread, alloy_spread, peak_force
 from robomill.simulation.result import SimulationResult
-from robomill.ui import evidence as evidence_panel
-from robomill.ui import other, pieces, session
-from robomill.ui import tools as tools_panel
-from robomill.ui.arm import arm_at
+from robomill.ui import pieces, session
+from robomill.ui.comparing import other
 from robomill.ui.entry import inputs
+from robomill.ui.entry import tools as tools_panel
+from robomill.ui.judged import evidence as evidence_panel
+from robomill.ui.judged.verdict import NOT_COUNTED, tiles_of_b, verdict_tiles
+from robomill.ui.judged.worked import mathematics
 from robomill.ui.milling import cut as cut_panel
 from robomill.ui.milling import film, force_view, live_cut
 from robomill.ui.milling import force as force_panel
@@ -24,9 +26,8 @@ from robomill.ui.milling import scrubber as linked
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling import station as station_views
 from robomill.ui.pieces import Tile
-from robomill.ui.verdict import NOT_COUNTED, tiles_of_b, verdict_tiles
+from robomill.ui.posed.arm import arm_at
 from robomill.ui.work import cached, running
-from robomill.ui.worked import mathematics
 from robomill.units import format_count, format_limit, format_many, format_si
 
 QUESTIONS = {"force": "How hard does it push?", "tip": "Where does the tip go?", "part": "What will I measure?"}

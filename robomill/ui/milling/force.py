@@ -21,8 +21,8 @@ from robomill.quantities import declared_types
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces, session
 from robomill.ui.entry import declared, inputs
+from robomill.ui.entry.rows import others, rows
 from robomill.ui.milling import materials as material_panel
-from robomill.ui.rows import others, rows
 from robomill.ui.work import cached, running
 from robomill.ui.work.job import Underway
 from robomill.units import format_count

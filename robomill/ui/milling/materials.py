@@ -18,7 +18,7 @@ from robomill.quantities import quantities
 from robomill.ui import pieces, session
 from robomill.ui.entry import grid, inputs
 from robomill.ui.entry.box import box_of
-from robomill.ui.rows import force_of, keep, others, rows
+from robomill.ui.entry.rows import force_of, keep, others, rows
 from robomill.units import unit_label
 
 NEW = "milling.material"

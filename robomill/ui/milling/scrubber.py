@@ -11,7 +11,8 @@ import streamlit as st
 from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import nearest_judged
-from robomill.ui import pieces, session, uncertainty
+from robomill.ui import pieces, session
+from robomill.ui.judged import uncertainty
 from robomill.units import format_many, from_si
 from robomill.viz.along import add_picks, add_point, at_feed, shade
 from robomill.viz.deviation import components_figure

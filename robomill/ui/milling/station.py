@@ -13,7 +13,8 @@ from robomill.simulation.tools import cutting_numbers
 from robomill.surface.sections.groove import GrooveSection
 from robomill.surface.sections.measures import MEASURED
 from robomill.surface.sections.section_law import TITLES
-from robomill.ui import other, pieces, session, shell
+from robomill.ui import pieces, session, shell
+from robomill.ui.comparing import other
 from robomill.ui.entry import declared, inputs
 from robomill.ui.milling import springs as springs_panel
 from robomill.ui.milling.scrubber import station_m

@@ -9,13 +9,15 @@ import streamlit as st
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport, at_pose
 from robomill.robot.model import Robot
-from robomill.ui import other, pieces, point, push, session
+from robomill.ui import pieces, session
+from robomill.ui.comparing import other
 from robomill.ui.entry import inputs
 from robomill.ui.entry.box import NumberBox
 from robomill.ui.entry.typed import said_below
+from robomill.ui.judged.verdict import previous
+from robomill.ui.posed import point, push
+from robomill.ui.posed.push import Decided, Moved
 from robomill.ui.project import Project, View
-from robomill.ui.push import Decided, Moved
-from robomill.ui.verdict import previous
 from robomill.ui.work import cached
 from robomill.units import format_many, format_percent, format_si, from_si, to_si
 from robomill.viz.arm import ArmScene

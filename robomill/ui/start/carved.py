@@ -13,9 +13,9 @@ from robomill.report.tags import Html
 from robomill.simulation.judging.verdict_words import Level
 from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
+from robomill.ui.judged.verdict import WORDS
 from robomill.ui.markup import unparted
 from robomill.ui.project import preset_setup
-from robomill.ui.verdict import WORDS
 from robomill.units import format_beside, format_limit, format_times, to_si
 
 HERE = Path(__file__).parent

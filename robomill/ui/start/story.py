@@ -14,12 +14,13 @@ from robomill.simulation.judging.verdict_words import TIP
 from robomill.simulation.origin.origins import sources
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import evidence, pieces, rendered, session
+from robomill.ui import pieces, rendered, session
 from robomill.ui.entry import inputs
+from robomill.ui.judged import evidence
+from robomill.ui.judged.verdict import verdict_sentence
 from robomill.ui.markup import unparted
+from robomill.ui.posed.push import decided
 from robomill.ui.project import Project, View
-from robomill.ui.push import decided
-from robomill.ui.verdict import verdict_sentence
 from robomill.ui.work import cached
 from robomill.units import format_beside, format_count, format_si, format_times
 from robomill.viz.rendered.picture import SurfacePicture

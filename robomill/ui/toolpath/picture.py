@@ -14,8 +14,8 @@ from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.stations import nearest_judged
 from robomill.simulation.tools import cutting_numbers
 from robomill.ui import pieces, session
-from robomill.ui.arm import arm_at
 from robomill.ui.entry import inputs
+from robomill.ui.posed.arm import arm_at
 from robomill.ui.toolpath.program_view import select_line, selected_line
 from robomill.ui.toolpath.summary import path_summary
 from robomill.units import decimals, from_si, unit_label

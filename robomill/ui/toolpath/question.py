@@ -23,8 +23,8 @@ from robomill.toolpath.source import GCodeSource
 from robomill.ui import pieces, session
 from robomill.ui.entry import declared, inputs, typed
 from robomill.ui.entry.box import NumberBox, box_of
-from robomill.ui.rows import force_of, rows
-from robomill.ui.tools import missing
+from robomill.ui.entry.rows import force_of, rows
+from robomill.ui.entry.tools import missing
 from robomill.units import format_many, format_si
 
 KEY, MATERIAL = "toolpath.question", "material"

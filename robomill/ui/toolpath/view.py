@@ -11,7 +11,9 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.tools import feed_notes
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PathSource
-from robomill.ui import other, pieces
+from robomill.ui import pieces
+from robomill.ui.comparing import other
+from robomill.ui.judged.verdict import reading_tile, tip_tile, tone
 from robomill.ui.project import Project
 from robomill.ui.toolpath.reach import path_reach
 from robomill.ui.toolpath.summary import (
@@ -22,7 +24,6 @@ from robomill.ui.toolpath.summary import (
     worst_first,
     written_in,
 )
-from robomill.ui.verdict import reading_tile, tip_tile, tone
 from robomill.units import (
     format_count,
     format_duration,

@@ -15,8 +15,8 @@ from robomill.arrays import digest
 from robomill.errors import RobomillError
 from robomill.progress import Cancelled, Progress, watched
 from robomill.ui import session
-from robomill.ui.asked import heed_pages
 from robomill.ui.entry import inputs
+from robomill.ui.serving.asked import heed_pages
 from robomill.ui.work.turns import Turn
 
 EVERY_S = 0.4

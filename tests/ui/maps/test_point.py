@@ -11,8 +11,8 @@ import robomill as rm
 from robomill.compliance.at_pose import PoseReport
 from robomill.frames import Columns
 from robomill.ui.maps.point import headline, lead, share_columns
-from robomill.ui.point import in_hand, place
-from robomill.ui.push import Moved, Push
+from robomill.ui.posed.point import in_hand, place
+from robomill.ui.posed.push import Moved, Push
 from robomill.workspace.quantities import COMPONENTS
 
 POINT = (0.2, -1.2, -0.1)

@@ -6,8 +6,8 @@ import pytest
 
 from robomill.io.robot.robots import load_robot
 from robomill.simulation.run import simulate
+from robomill.ui.posed.push import whole
 from robomill.ui.project import preset_setup
-from robomill.ui.push import whole
 from robomill.ui.start.story import cause
 
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from robomill.ui import front
+from robomill.ui.serving import front
 from robomill.viz.theme import palette
 
 LEAST = 4.5
-PROGRAM = Path(front.__file__).parent / "toolpath" / "program_view.css"
+PROGRAM = Path(front.__file__).parents[1] / "toolpath" / "program_view.css"
 Colour = tuple[float, ...]
 
 

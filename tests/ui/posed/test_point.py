@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.ui.point import default_point, in_hand, middle
+from robomill.ui.posed.point import default_point, in_hand, middle
 from robomill.ui.project import MapView
 from robomill.workspace.fields import ComplianceMap, compliance_map
 from robomill.workspace.grid import box_grid

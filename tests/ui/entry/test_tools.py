@@ -10,7 +10,7 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import CuttingError
 from robomill.io.setups.tool_tables import read_tool_table
-from robomill.ui.tools import missing, tool_frame, tools_of
+from robomill.ui.entry.tools import missing, tool_frame, tools_of
 
 TBL = "T1 P1 D8 Z50 ; roughing\nT2 P2 D-20 Z62.5 X1.5 Q3\n"
 KNOWN = ToolTable(

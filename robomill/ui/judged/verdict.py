@@ -12,10 +12,12 @@ from robomill.report.ranges import Range, out_over, ranges
 from robomill.simulation.judging.verdict_words import FLOOR, TIP, TITLES, WALL, Reading, ReadingKind, Verdict, said, way
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.tooth import LEFT_OUT
-from robomill.ui import other, pieces, session, uncertainty
+from robomill.ui import pieces, session
+from robomill.ui.comparing import other
+from robomill.ui.judged import uncertainty
 from robomill.ui.pieces import Tile
+from robomill.ui.posed.push import by_axis
 from robomill.ui.project import Project
-from robomill.ui.push import by_axis
 from robomill.ui.work import cached
 from robomill.units import format_beside, format_count, format_limit, format_many, format_share, format_si
 

@@ -12,8 +12,10 @@ from robomill.report.tags import Html
 from robomill.simulation.judging.verdict_words import TIGHT_FROM, Verdict, gauge_end
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import other, pieces, session, verdict
+from robomill.ui import pieces, session
+from robomill.ui.comparing import other
 from robomill.ui.entry import inputs
+from robomill.ui.judged import verdict
 from robomill.ui.pieces import Tile
 from robomill.ui.work import job, running
 from robomill.ui.work.job import Underway

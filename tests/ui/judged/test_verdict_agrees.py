@@ -15,7 +15,7 @@ from robomill.simulation.judging.verdict_words import KINDS
 from robomill.simulation.judging.verdict_words import WORDS as JUDGED
 from robomill.simulation.result import SimulationResult
 from robomill.toolpath.source import GCodeSource
-from robomill.ui import verdict
+from robomill.ui.judged import verdict
 from robomill.ui.milling.metrology import share_out_words
 from robomill.units import format_share
 

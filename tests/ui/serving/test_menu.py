@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from robomill.ui import menu
+from robomill.ui.serving import menu
 
 
 @dataclass

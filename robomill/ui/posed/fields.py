@@ -18,7 +18,7 @@ from robomill.progress import slices
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.ui import session
-from robomill.ui.cut import middle_of_cut
+from robomill.ui.posed.cut import middle_of_cut
 from robomill.ui.project import MapView
 from robomill.ui.work.cached import commons, name_of, shared
 from robomill.ui.work.commons import NOTHING

@@ -12,7 +12,7 @@ from robomill.report.ranges import Range
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import verdict as panel
+from robomill.ui.judged import verdict as panel
 from robomill.ui.project import preset_setup
 
 WALL, FLOOR = 0.22953, -0.1024  # mm, from Table 2 and 100 N: 0.2295 to four digits

@@ -7,7 +7,7 @@ import numpy as np
 import robomill as rm
 from robomill.compliance.at_pose import PoseReport
 from robomill.improve.sensitivity import stiffened
-from robomill.ui import fields
+from robomill.ui.posed import fields
 from robomill.ui.project import MapView
 from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import PAPER_BOX, box_grid

@@ -3,7 +3,7 @@
 import pytest
 from streamlit.proto.ClientState_pb2 import ClientState
 
-from robomill.ui.asked import heeding_pages
+from robomill.ui.serving.asked import heeding_pages
 
 
 def said(page: str, boxes: int = 2, part: str = "", tick: bool = False) -> ClientState:

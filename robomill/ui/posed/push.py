@@ -17,9 +17,9 @@ from robomill.learn.push import ASIDE, FORCE
 from robomill.robot.model import Robot
 from robomill.simulation.result import SimulationResult
 from robomill.ui import session
-from robomill.ui.cut import middle_of_cut
 from robomill.ui.entry import declared, inputs
-from robomill.ui.point import InHand, default_point, holds, in_hand
+from robomill.ui.posed.cut import middle_of_cut
+from robomill.ui.posed.point import InHand, default_point, holds, in_hand
 from robomill.ui.project import MapView, View
 from robomill.units import format_si, unit_label
 from robomill.wording import listed

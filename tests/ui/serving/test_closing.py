@@ -10,8 +10,8 @@ from streamlit.runtime.caching import clear_session_resource_cache
 from streamlit.runtime.scriptrunner import get_script_run_ctx
 from streamlit.testing.v1 import AppTest
 
-from robomill.ui import closing
 from robomill.ui.project import Project, preset_setup
+from robomill.ui.serving import closing
 from robomill.ui.session import KEY, Store
 from robomill.ui.work.job import Job
 

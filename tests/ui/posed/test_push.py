@@ -9,8 +9,8 @@ import pytest
 
 import robomill as rm
 from robomill.compliance.at_pose import at_pose
+from robomill.ui.posed.push import Moved, Push, by_axis, decided, in_force
 from robomill.ui.project import View, preset_setup
-from robomill.ui.push import Moved, Push, by_axis, decided, in_force
 
 ROBOT = rm.load_robot("slavkovic_5r")
 

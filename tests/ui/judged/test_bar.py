@@ -14,7 +14,8 @@ from robomill.provenance import Provenance
 from robomill.simulation.judging.verdict_words import MOST
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
-from robomill.ui import bar, session
+from robomill.ui import session
+from robomill.ui.judged import bar
 from robomill.ui.project import preset_setup
 from robomill.ui.session import Store
 from robomill.ui.work import cached

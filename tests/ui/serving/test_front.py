@@ -16,8 +16,8 @@ from starlette.routing import Route
 from streamlit.web.server.app_discovery import discover_asgi_app
 
 from robomill.io.samples import app_dir
-from robomill.ui import front
-from robomill.ui.front import MIDDLEWARE, PLACE, TITLE, is_own
+from robomill.ui.serving import front
+from robomill.ui.serving.front import MIDDLEWARE, PLACE, TITLE, is_own
 
 INDEX = (Path(streamlit.__file__).parent / "static" / "index.html").read_bytes()
 SCRIPT = b"const long = 'words';\n" * 1000
