@@ -261,9 +261,11 @@ def _floors(at: Places) -> Readings:
     told, error, found = at.outline.floors(lines, offset, (at.slope * aside)[q])
     found &= ~(at.bottoms[q] & (told < -SAME))  # a peck's end is drilled away
     # A hole, or a groove with the sides of a cone, is as deep as its lowest point, wherever that has gone aside.
-    level = at.result.conditions.across[at.i] > 1.0 - LEVEL
-    deepest = (at.bottoms | (at.number("conical") > 0) & level)[q] & (told > -SAME)
-    error[deepest] = np.fmin(error, at.d[q, 2])[deepest]
+    deepest = (at.bottoms | (at.number("conical") > 0))[q] & (told > -SAME)
+    conditions = at.result.conditions
+    rise = np.where(at.steep, 0.0, conditions.along[at.i])
+    root = at.d[:, 2] * np.where(at.steep, 1.0, conditions.across[at.i]) - at.d[:, 0] * rise
+    error[deepest] = np.fmin(error, root[q])[deepest]
     q, error = q[found], error[found]
     length = at.length[q] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]
     return Readings(

@@ -211,6 +211,20 @@ def test_a_groove_with_the_sides_of_a_cone_is_as_deep_as_its_root(angle, tip):
         assert np.isclose(found[:, None], off, atol=1e-8).any(axis=0).all()
 
 
+@pytest.mark.parametrize("z", [-3.0, -1.0])
+def test_a_cones_groove_on_a_slope_is_off_normal_to_its_root(z):
+    """Its root is a line, which moves with the tip: what of that is normal to the line, beneath it or above."""
+    cone = Cutter("chamfer", 2 * R, tip_angle=np.radians(90.0))
+    result = run("G0 X-40 Y0 Z5", "G0 Z-2", f"G1 X-36 Z{z} F1800", f"G1 X-10 Z{z}", f"G1 X20 Z{z - 3}", cutter=cone)
+    line = np.array([30.0, 0.0, -3.0]) / np.hypot(30.0, 3.0)
+    for d in ([0.1e-3, 0.2e-3, -0.1e-3], [-0.1e-3, -0.2e-3, 0.05e-3]):
+        found = pushed(result, *d).gauge.floors
+        on = result.path.p[found.sample, 0] > -5e-3
+        normal = np.array([-line[2], 0.0, line[0]])
+        assert on.sum() > 10
+        np.testing.assert_allclose(found.error[on], np.array(d) @ normal, atol=2e-7)
+
+
 def test_facing_leaves_a_floor_and_no_wall():
     wide = SETUP.cutter.replace(diameter=60e-3)
     lines = ["G0 X-80 Y0 Z5", "G0 Z-1", "G1 X80 F1800"]
