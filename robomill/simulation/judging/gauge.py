@@ -261,7 +261,7 @@ def _floors(at: Places) -> Readings:
     told, error, found = at.outline.floors(lines, offset, (at.slope * aside)[q])
     found &= ~(at.bottoms[q] & (told < -SAME))  # a peck's end is drilled away
     # A hole, or a groove with the sides of a cone, is as deep as its lowest point, wherever that has gone aside.
-    deepest = (at.bottoms | (at.number("conical") > 0))[q] & (told > -SAME)
+    deepest = (at.bottoms | _alone(at, aside))[q] & (told > -SAME)
     conditions = at.result.conditions
     rise = np.where(at.steep, 0.0, conditions.along[at.i])
     root = at.d[:, 2] * np.where(at.steep, 1.0, conditions.across[at.i]) - at.d[:, 0] * rise
@@ -271,6 +271,19 @@ def _floors(at: Places) -> Readings:
     return Readings(
         at.i[q], error, length, 2.0 * at.number("radius")[q], at.d[q, 2], np.tile([0.0, 0.0, 1.0], (len(q), 1))
     )
+
+
+def _alone(at: Places, aside: FloatArray) -> BoolArray:
+    """(q,) bool: grooves of cones below whose sides nobody else was told to cut, as far as they have gone ``aside``."""
+    alone = np.zeros(len(at.i), dtype=bool)
+    q = np.flatnonzero((at.number("conical") > 0) & ~at.steep)
+    if not len(q):
+        return alone
+    own = np.stack([cutter.profile(np.minimum(aside, cutter.radius)) for cutter in at.cutters])[at.of[q], q]
+    lines, no_slack = np.hstack([at.c[q], at.axial[q], at.left_of[q]]), np.zeros(len(q))
+    left, right = (at.outline.floors(lines, side * aside[q], no_slack)[0] for side in (1.0, -1.0))
+    alone[q] = np.minimum(left, right) >= own - SAME
+    return alone
 
 
 def _under(at: Places, flat: FloatArray, aside: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:

@@ -211,6 +211,22 @@ def test_a_groove_with_the_sides_of_a_cone_is_as_deep_as_its_root(angle, tip):
         assert np.isclose(found[:, None], off, atol=1e-8).any(axis=0).all()
 
 
+def test_a_slope_that_cones_leave_in_steps_is_off_where_it_has_gone_aside():
+    """Thirteen passes 0.1 mm beside and 0.05 mm above each other: pushed 0.2 mm down their slope, each place is as much
+    too high as the pass two further up was told to be, which no root of its own tells."""
+    cone = Cutter("chamfer", 2 * R, tip_angle=np.radians(90.0))
+    lines = [
+        line
+        for k in range(13)
+        for line in (f"G0 X-40 Y{0.1 * k:g} Z5", f"G0 Z{-2 + 0.05 * k:g}", "G1 X20 F1800", "G0 Z5")
+    ]
+    result = run(*lines, cutter=cone)
+    found = pushed(result, left=-0.2e-3).gauge.floors
+    inner = (result.path.p[found.sample, 1] > 0.15e-3) & (result.path.p[found.sample, 1] < 0.95e-3)
+    assert inner.sum() > 100
+    np.testing.assert_allclose(found.error[inner], 0.1e-3, atol=1e-6)
+
+
 @pytest.mark.parametrize("z", [-3.0, -1.0])
 def test_a_cones_groove_on_a_slope_is_off_normal_to_its_root(z):
     """Its root is a line, which moves with the tip: what of that is normal to the line, beneath it or above."""
