@@ -67,5 +67,5 @@ def lower_in_turn(
         for i in range(first, end):
             for j in range(j_first, j_end):
                 low, high = interval_below(shape, move, frame, tile, i, j)
-                if low < high and high >= tile.z[i, j] and low < tile.z[i, j] - least:
+                if high >= tile.z[i, j] and low < tile.z[i, j] - least:
                     lower(tile, i, j, low, number[n], found)

@@ -346,3 +346,9 @@ def test_forces_next_to_nothing_are_no_crash() -> None:
     )
     field = MeasuredField.from_tests(rm.load_robot("slavkovic_5r"), tests)
     np.testing.assert_allclose(field.C[0], 1e-6 * np.eye(3), atol=1e-12)
+
+
+def test_a_place_exactly_as_far_as_the_map_reaches_is_answered():
+    field = MeasuredField(np.array([[0.0, 0, 0], [1.0, 0, 0]]), np.stack([np.eye(3), 3 * np.eye(3)]), reach=0.5)
+    np.testing.assert_array_equal(field.compliance([0.5, 0, 0]), 2 * np.eye(3))
+    np.testing.assert_array_equal(answered(field, [[0.5, 1e-12, 0], [0.5, 1e-3, 0]]), [True, False])

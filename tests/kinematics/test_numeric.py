@@ -234,3 +234,26 @@ def test_a_path_that_is_solved_pose_by_pose_tells_how_far_it_is(arm):
     T_MT = rm.tool_pose(arm, theta)
     (shares,) = told(lambda: rm.inverse_kinematics(arm, T_MT, near="path", spin="fixed")).values()
     np.testing.assert_allclose(np.unique(shares), np.arange(9) / 9)
+
+
+@pytest.mark.parametrize("mode", ["pose", "axis"])
+def test_a_pose_that_is_met_or_cannot_be_is_given_no_further_start(arm, monkeypatch, mode):
+    """Every further start is one of a pose that no descent before has met and that lies within the arm's stretch."""
+    T_MT, calls = rm.tool_pose(arm, configurations(arm, 12)), []
+    T_MT[:3, :3, 3] += 20.0
+
+    def descend(robot, goal, start, mode):
+        theta, error = descended(robot, goal, start, mode)
+        calls.append((goal[:, 0, 3].copy(), error.copy()))
+        return theta, error
+
+    descended = numeric.descend
+    monkeypatch.setattr(numeric, "descend", descend)
+    _, found = numeric.solve_numerically(arm, T_MT, numeric.bent_home(arm)[None], mode)
+    np.testing.assert_array_equal(found, np.arange(12) > 2)
+    left = dict(zip(*calls[0], strict=True))
+    for x, error in calls[1:]:
+        open_ = [place for place in T_MT[3:, 0, 3] if left[place] > numeric.TIGHT]
+        np.testing.assert_array_equal(x, open_)
+        left |= {place: min(left[place], now) for place, now in zip(x, error, strict=True)}
+    assert len(calls) > 1

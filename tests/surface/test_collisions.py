@@ -66,3 +66,17 @@ def test_what_points_that_go_one_after_the_other_say(seed):
         assert clear.sum() >= 4
         np.testing.assert_array_equal(said[clear], depth[clear] > 0.0)
         assert not said[feed].any(), "feed moves are meant to cut"
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.2])
+@pytest.mark.parametrize("kind", ["flat", "ball"])
+@pytest.mark.parametrize(("deeper", "meets"), [(-1e-6, False), (0.0, False), (0.5e-6, False), (2e-6, True)])
+def test_a_rapid_back_through_its_own_groove_meets_nothing_but_what_it_goes_deeper(kind, lean, deeper, meets):
+    """A groove cut there at feed; back on the same way, and a micrometre is rounding."""
+    cutter, k = Cutter(kind, 4e-3), np.array([np.sin(lean), 0.0, np.cos(lean)])
+    there = np.array([-3e-3, 4.2e-3, -2e-3, 15e-3, 4.7e-3, -2.5e-3])
+    back = np.concatenate([there[3:], there[:3]]) - deeper * np.array([0.0, 0.0, 1.0] * 2)
+    moves, feed = Passes(np.array([there, back]), np.tile(k, (2, 2))), np.array([True, False])
+    found = collisions(STOCK, CELL, Tooling((cutter,), np.zeros(2, dtype=int)), moves, (feed, ~feed))
+    np.testing.assert_array_equal(found.early, [False, meets])
+    np.testing.assert_array_equal(found.never, [False, meets])

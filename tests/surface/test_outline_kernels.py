@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from robomill.cutting.tool import Cutter
 from robomill.surface.outline import Outline
-from robomill.surface.outline_kernels import Seen, Tracks, furthest, seen_from, squares_near
+from robomill.surface.outline_kernels import Seen, Tracks, furthest, furthest_block, seen_from, squares_near
 
 R = 4e-3
 FLAT = Cutter("flat", 2 * R)
@@ -146,3 +146,37 @@ def test_walls_of_a_wide_field_are_where_the_outlines_of_its_low_moves_end():
         assert found[2] == one
         judged[one] += 1
     assert min(judged.values()) > 5
+
+
+def test_the_block_that_may_reach_furthest_is_that_of_the_widest_capsule_round_a_box():
+    """Of all boxes near that hold a start of the line: the one from which a disc of the largest radius reaches on
+    furthest, by corners and discs; -1 where no box is low and near enough."""
+    told, left, cutter = field(seed=8)
+    outline = Outline(told, left, CUTTERS, cutter, 1e-3)
+    (tracks_told, _), blocks = outline._tracks, outline._blocks
+    rng, seen = np.random.default_rng(2), set()
+    for n in range(0, len(told), 3):
+        angle, height = rng.uniform(0, 7), rng.choice([0.5e-3, -0.5e-3, -2.5e-3])
+        u = np.array([np.cos(angle), np.sin(angle), 0.0])
+        c, start = 0.5 * (told[n, :3] + told[n, 3:]), 2e-3
+        found = furthest_block(tracks_told, blocks, blocks.told, np.concatenate([c, UP, u, [height, start]]))
+        i, i_end, j, j_end = squares_near(tracks_told, c[0], c[1])
+        squares = [a * tracks_told.squares[1] + b for a in range(i, i_end) for b in range(j, j_end)]
+        best, furthest_to = -1, -np.inf
+        for square in squares:
+            for b in range(blocks.of_square[square], blocks.of_square[square + 1]):
+                moves = slice(blocks.first[b], blocks.first[b + 1])
+                corners = tracks_told.ends[moves].reshape(-1, 3)
+                low, high = corners.min(axis=0), corners.max(axis=0)
+                radius = max(CUTTERS[t].radius for t in tracks_told.cutter[moves])
+                edges = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) - c[:2]
+                along, across = edges @ u[:2], edges @ [-u[1], u[0]]
+                aside = max(across.min(), -across.max(), 0.0)
+                if aside > radius or low[2] - c[2] >= height:
+                    continue
+                reach = np.sqrt(radius**2 - aside**2)
+                if along.min() - reach <= start and along.max() + reach > furthest_to:
+                    best, furthest_to = b, along.max() + reach
+        assert found == best
+        seen.add(found >= 0)
+    assert seen == {True, False}

@@ -14,7 +14,7 @@ from robomill.identification.fit.crossvalidation import Folded
 from robomill.identification.fit.folds import folds_of
 from robomill.identification.fit.models import Model
 from robomill.identification.fit.system import build_system
-from robomill.identification.pull.points import Factored
+from robomill.identification.pull.points import Factored, Normal, at_shift
 from tests.identification.cables import Arm, Rig, as_csv, in_tool, make, postures
 
 ARMS = {name: (Arm.of(name), rm.load_robot(name)) for name in ("kuka_kr500", "fanuc_r2000ic")}
@@ -283,3 +283,24 @@ def test_where_nothing_moved_nothing_gives_and_no_point_is_seen(freed):
     assert not found.shift.any()
     assert not found.fit.x.any()
     assert found.fit.seen.tolist() == [True] * 3 + [False] * 3 * len(freed)
+
+
+@pytest.mark.parametrize("freed", [("force",), ("force", "gauge")])
+def test_the_way_to_a_point_is_the_same_in_any_unit_of_the_readings(freed):
+    """Terms and readings a million times as large or small: the same shift and compliances, and no step is left."""
+    rng = np.random.default_rng(3)
+    k, p, s = 4 ** len(freed), 3, 3 * len(freed)
+    x, shift = np.array([1.0, 2.0, 0.5]), rng.uniform(-0.4, 0.4, s)
+    terms = rng.normal(size=(80, k, p))
+    readings = at_shift(terms, shift, freed) @ x + 0.02 * rng.normal(size=80)
+    whole = np.column_stack([terms.reshape(80, -1), readings])
+    found = []
+    for unit in (1.0, 1e-6, 1e6):
+        normal = Normal((unit * whole).T @ (unit * whole), np.zeros(p, dtype=bool), freed)
+        cost, at, gives = normal.descend(np.zeros(s))
+        assert cost == pytest.approx(((at_shift(terms, at, freed) @ gives - readings) ** 2).sum() * unit**2, rel=1e-6)
+        for step in np.concatenate([np.eye(s), -np.eye(s)]):
+            assert normal.cost(at + 1e-3 * step)[0] > cost
+        found.append(np.concatenate([at, gives]))
+    np.testing.assert_allclose(found[1:], found[:1] * np.ones((2, 1)), atol=1e-9)
+    np.testing.assert_allclose(found[0], [*shift, *x], atol=0.05)

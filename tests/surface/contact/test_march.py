@@ -187,3 +187,24 @@ def test_a_link_to_where_a_cut_begins_is_cut_before_the_cut_is_met():
     for name in ("phi_st", "phi_ex", "a_p", "a_e"):
         np.testing.assert_allclose(getattr(found, name)[2:], getattr(expected, name)[3:], rtol=1e-6)
     np.testing.assert_allclose(found.part.moments[2:], expected.part.moments[3:], atol=1e-9)
+
+
+LINKS = {"aside": (0.1, 0.15), "straight on": (0.4, 0.0), "back": (-0.3, 0.0), "as the next cut goes": (0.0, -0.3)}
+
+
+@pytest.mark.parametrize("link", LINKS)
+def test_a_link_is_a_run_of_its_own_however_it_goes(link):
+    """The tool is led aside between two cuts of many steps: all is met, and left, as where that way is a cut."""
+    at = np.array([5.0, 0.0, -2.0])
+    to = at + [*LINKS[link], 0.0]
+    before, after = np.linspace(at - [15.0, 0, 0], at, 6), np.linspace(0.0, -8.0, 6)[1:, None] * [0.0, 1.0, 0.0]
+    told, led = np.vstack([before, at, at + after]) * 1e-3, np.vstack([before, to, to + after]) * 1e-3
+    alone = np.vstack([before, to, to, to + after]) * 1e-3
+    cutting = np.arange(len(told)) > 0
+    march = March(STOCK, 2e-4, TOOLS["flat"], told, None, cutting, really=led)
+    np.testing.assert_array_equal(np.flatnonzero(march._begins), [0, 5, 6])
+    truth = March(STOCK, 2e-4, TOOLS["flat"], alone, None, np.arange(len(alone)) > 0)
+    found, expected = engage(march), engage(truth)
+    for name in ("phi_st", "phi_ex", "a_p", "a_e"):
+        np.testing.assert_allclose(getattr(found, name)[6:], getattr(expected, name)[7:], rtol=1e-6, err_msg=name)
+    np.testing.assert_allclose(found.part.moments[6:], expected.part.moments[7:], atol=1e-9)

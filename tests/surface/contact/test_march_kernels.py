@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import shapely
 
 from robomill.cutting.tool import Cutter
 from robomill.surface.contact.march_kernels import as_halves, cut_run, go_on, note_rim, take_out
@@ -367,3 +368,20 @@ def test_numbers_in_half_precision_are_the_nearest_that_there_are():
         off = np.abs(halves.astype(float) - singles)
         nearest = np.abs(singles.astype(np.float16).astype(float) - singles)
         np.testing.assert_array_equal(off, nearest)
+
+
+@pytest.mark.parametrize("turn", [100.0, 150.0, 178.0, 180.0, -165.0])
+@pytest.mark.parametrize("first", [0.0, 65.0, 180.0])
+def test_however_sharply_a_path_turns_back_its_corner_is_cut(first, turn):
+    """Two level runs on the middle of the block, whose corner stands 5 mm from where they begin and end."""
+    ways = np.radians([first, first + turn])
+    corner = np.array([12.0, 8.0, -2.0])
+    start, end = (corner + sense * 5.0 * np.array([np.cos(a), np.sin(a), 0.0]) for sense, a in zip((-1, 1), ways))
+    world = world_of(walk("flat", [start, corner, end]), cells=(61, 41))
+    for r in (1, 2):
+        cut_run(world, r, False)
+    places = np.stack(centres(world.dexels), axis=-1).reshape(-1, 2) / MM
+    away = shapely.distance(shapely.LineString([start[:2], corner[:2], end[:2]]), shapely.points(places))
+    sure = np.abs(away - FLAT.radius / MM) > 1e-6
+    expected = np.where(away < FLAT.radius / MM, -2 * MM, 0.0)
+    np.testing.assert_allclose(world.dexels.heights[..., 0].ravel()[sure], expected[sure], atol=1e-12)

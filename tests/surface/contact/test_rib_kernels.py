@@ -7,10 +7,28 @@ import math
 import numpy as np
 import pytest
 
+from robomill.arrays import FloatArray
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.surface.contact.engagement import engage
 from robomill.surface.contact.march import March
+from robomill.surface.contact.material_kernels import World
+from robomill.surface.contact.rib_kernels import (
+    COLUMNS,
+    HEIGHT,
+    PITCH,
+    RADIUS,
+    SEEN,
+    UNASKED,
+    WHOLE,
+    Walk,
+    fine_pitch,
+    first_change,
+    look_about,
+    pace,
+)
+from robomill.surface.contact.step_kernels import Step, step_at
+from robomill.surface.contact.turn_kernels import ANGLES, PHI
 from robomill.surface.stock import Stock
 from tests.cutting.brute_force import UPRIGHT, Cut, Floats, Move, axis, box, in_tool_axes
 from tests.simulation.cuts import AL7075, BALL, BULL, CHAMFER, FEED, FLAT, MM
@@ -94,3 +112,66 @@ def test_force_of_a_rib_on_a_nose_or_a_leaning_flank(mill: str, width: float, pl
 @pytest.mark.parametrize("mill", {"flat": (FLAT, UPRIGHT)} | ROUND | LEANING)
 def test_force_of_a_rib_that_is_thinner_than_a_cell(mill: str, place: str) -> None:
     assert once(({"flat": (FLAT, UPRIGHT)} | ROUND | LEANING)[mill], 0.1, PLACES[place], 0.5) < 0.06
+
+
+def looking(k: Floats, v: Floats, tip: Floats) -> tuple[World, Step, FloatArray]:
+    """An uncut block, a step in it and the rows of both half turns."""
+    p = np.array([[-50.0, 0.0, 0.0], [50.0, 0.0, 0.0]]) * MM
+    world, room = March(Stock(LOW, HIGH), 0.5 * MM, FLAT, p, k)._stepwise
+    return world, step_at(tip, k, v, np.zeros(3), (0.0, 1)), room.rows
+
+
+def walking(world: World, circle: tuple[float, float], plain: bool) -> Walk:
+    """A walk along one circle (radius, height) m."""
+    circles = np.zeros((1, COLUMNS))
+    circles[0, RADIUS], circles[0, HEIGHT] = circle
+    angle = PITCH * min(world.dexels.dx, world.dexels.dy) / circle[0]
+    return Walk(circles, 1, pace(angle), pace(fine_pitch(world) / circle[0]), plain, math.inf, circle[0])
+
+
+@pytest.mark.parametrize(("sense", "level"), [(1.0, 0.0), (-1.0, 0.0), (-1.0, -8.0)])
+def test_what_is_told_of_a_whole_gap_holds_at_every_angle_in_it(sense: float, level: float) -> None:
+    """A circle of a leaning tool whose highest or lowest point just passes the top or the bottom of a block."""
+    rng, told, share = np.random.default_rng(5), 0, np.linspace(0.0, 1.0, 101)
+    for _ in range(60):
+        k = axis(A=rng.uniform(-40, 40), B=rng.uniform(-40, 40))
+        v = np.cross(k, rng.normal(size=3))
+        world, step, rows = looking(k, v / np.linalg.norm(v), np.zeros(3))
+        r, t = rng.uniform(1.0, 4.0) * MM, rng.uniform(0.0, 1.0) * MM
+        furthest = sense * r * math.hypot(k[0], k[1]) + t * k[2]
+        step = step._replace(z=level * MM - furthest + sense * rng.uniform(-1.0, 4.0) * 5e-6)
+        walk = walking(world, (r, t), False)
+        look_about(world, step, walk, rows, 2)
+        for row in (n for n in range(1, 2 * ANGLES) if n != ANGLES and walk.circles[0, WHOLE + n] != UNASKED):
+            phi = rows[row - 1, PHI] + share * (rows[row, PHI] - rows[row - 1, PHI])
+            z = step.z + t * step.kz + r * (np.sin(phi) * step.fz + np.cos(phi) * step.lz)
+            assert ((z > LOW[2]) & (z < 0.0) == (walk.circles[0, WHOLE + row] > 0.5)).all()
+            told += 1
+    assert told > 1000
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_where_no_side_passes_a_change_is_looked_for_from_cell_to_cell(seed: int) -> None:
+    """Single columns that stand higher, somewhere under a circle: met at the first of the places a pitch apart."""
+    rng, circle = np.random.default_rng(seed), (3.7 * MM, 0.0)
+    world, step, _ = looking(UP, np.array([0.6, 0.8, 0.0]), np.array([1.1, -2.3, -3.0]) * MM)
+    tops = world.dexels.heights[..., 0]
+    tops[:] = np.where(rng.random(tops.shape) < 0.1, -1.0 * MM, -2.0 * MM)
+    walk = walking(world, circle, True)
+
+    def length(phi: float) -> float:
+        x, y, z = (step[n] + circle[0] * (math.sin(phi) * step[3 + n] + math.cos(phi) * step[6 + n]) for n in range(3))
+        i, j = (round((at - low) / 0.5e-3 - 0.5) for at, low in zip((x, y), LOW[:2]))
+        return float(tops[i, j]) - z
+
+    met = 0
+    for begin in np.arange(0.1, 6.0, 0.4):
+        rows = np.array([[phi, math.sin(phi), math.cos(phi)] for phi in (begin, begin + 1.3)])
+        ends = length(begin), length(begin + 1.3)
+        walk.circles[0, [SEEN, SEEN + 1]] = ends
+        places = np.arange(begin + walk.coarse[0], begin + 1.3, walk.coarse[0])
+        truth = [phi for phi in places if min(abs(length(phi) - end) for end in ends) > 0.5 * MM]
+        found = first_change(world, step, walk, 0, (rows[0], 0, 1, begin + 1.3, begin + 1.3))
+        assert found == pytest.approx(truth[0] if truth else begin + 1.3, abs=1e-9)
+        met += len(truth) > 0
+    assert met > 2
