@@ -196,7 +196,7 @@ LINKS = {"aside": (0.1, 0.15), "straight on": (0.4, 0.0), "back": (-0.3, 0.0), "
 def test_a_link_is_a_run_of_its_own_however_it_goes(link):
     """The tool is led aside between two cuts of many steps: all is met, and left, as where that way is a cut."""
     at = np.array([5.0, 0.0, -2.0])
-    to = at + [*LINKS[link], 0.0]
+    to = at + np.append(LINKS[link], 0.0)
     before, after = np.linspace(at - [15.0, 0, 0], at, 6), np.linspace(0.0, -8.0, 6)[1:, None] * [0.0, 1.0, 0.0]
     told, led = np.vstack([before, at, at + after]) * 1e-3, np.vstack([before, to, to + after]) * 1e-3
     alone = np.vstack([before, to, to, to + after]) * 1e-3

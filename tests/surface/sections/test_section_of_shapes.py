@@ -479,3 +479,15 @@ def test_no_section_of_rows_says_what_cannot_be(cutter, spacing):
         assert not abs(found.floor_tilt) > np.radians(1.0)
         for name in found.measures:
             assert np.isfinite(getattr(found, name)) or found.why.get(name), (found.kind, name)
+
+
+@pytest.mark.parametrize("depth", [0.03, 2.0])
+@pytest.mark.parametrize(("aside", "stepped"), [(-5.5, True), (5.5, True), (6.5, False)])
+def test_a_floor_has_a_lean_where_it_is_straight_half_a_radius_to_either_side(depth, aside, stepped):
+    """Another pass, 0.015 mm deeper, has cut from 4 mm beside its middle on; however shallow both are."""
+    found = section([slot(z=-depth), slot(y=aside, z=-depth - 0.015)], FLAT, moved=np.zeros(3))
+    if stepped:
+        assert np.isnan(found.floor_tilt)
+        assert "not straight" in found.why["floor_tilt"]
+    else:
+        assert found.floor_tilt == pytest.approx(0.0, abs=1e-9)
