@@ -176,14 +176,14 @@ def _closed(robot: Robot, arm: Decoupled, wish: Wish) -> Chosen:
         return _along_path(robot, arm, wish, wanted)
     choice = rules(robot, arm, wanted, wish.at_home, wish.free_spin)
     theta, index, fit = nearest(robot, arm, wish.T_MT, wish.goal, choice)
-    return Chosen(theta, index, fit[:, 1], fit[:, 2], fit[:, 0] if wish.free_spin else None)
+    return Chosen(theta, index, fit[:, 1], fit[:, 2], fit[:, 0] if choice.spins else None)
 
 
 def _along_path(robot: Robot, arm: Decoupled, wish: Wish, wanted: BoolArray) -> Chosen:
     """Each run of poses joined; with a free spin, one spin a run: most poses reached, then the least cost."""
     theta, index = np.empty((len(wish.T_MT), robot.n)), np.empty(len(wish.T_MT), dtype=np.int64)
-    turn = np.zeros(len(wish.T_MT)) if wish.free_spin else None
     held = wish.free_spin and arm.spindle_on_last_axis
+    turn = np.zeros(len(wish.T_MT)) if wish.free_spin and not held else None
 
     def joined(T_MT: FloatArray, angle: float) -> Joined:
         checkpoint()
@@ -195,7 +195,7 @@ def _along_path(robot: Robot, arm: Decoupled, wish: Wish, wanted: BoolArray) -> 
     for start in range(0, len(wish.T_MT), wish.length):
         run = slice(start, start + wish.length)
         best = 0.0
-        if wish.free_spin and not held:
+        if turn is not None:
             few = wish.T_MT[run][:: max(wish.length // THINNED, 1)]
             ranks = {angle: (way.missed, way.cost) for angle in spins().tolist() if (way := joined(few, angle))}
             best = min(ranks, key=ranks.__getitem__)

@@ -88,3 +88,50 @@ def test_free_joints_are_given_in_degrees_and_those_that_slide_in_millimetres():
     assert slides.joint_units == ("deg", "mm", "deg")
     assert arm.joint_units == ("deg",) * 3
     assert with_blocked(slides, 1, 0.1).joint_units == ("mm", "deg")
+
+
+def test_a_row_of_the_table_is_a_joint_in_the_units_that_it_names():
+    """Written out by hand: of the joint that slides mm and 1e-9 m/N, of the others degrees and 1e-7 rad/(N m)."""
+    robot = rm.Robot.from_dh(
+        alpha_deg=[90, 0, -30],
+        a_mm=[100, 0, 50],
+        d_mm=[400, 20, 0],
+        theta_offset_deg=[0, 15, 0],
+        sign=[1, 1, -1],
+        prismatic=[False, True, False],
+        limits_deg=[(-170, 160), None, (-90, 80)],
+        limits_mm=[None, (-50, 700), None],
+        C_theta=[2.5e-7, 3e-8, 4e-7],
+    )
+    table = with_blocked(robot, 3, 0.1).columns()
+    expected = {
+        "joint": [1, 2, 3],
+        "alpha_deg": [90, 0, -30],
+        "a_mm": [100, 0, 50],
+        "d_mm": [400, 20, 0],
+        "theta_offset_deg": [0, 15, 0],
+        "sign": [1, 1, -1],
+        "free": [True, True, False],
+        "lower": [-170, -50, -90],
+        "upper": [160, 700, 80],
+        "compliance": [2.5, 30, 4],
+    }
+    for name, values in expected.items():
+        np.testing.assert_allclose(table[name], values, rtol=1e-12, atol=1e-12, err_msg=name)
+    assert table["limit_unit"].tolist() == ["deg", "mm", "deg"]
+    assert table["compliance_unit"].tolist() == ["1e-7 rad/(N m)", "1e-9 m/N", "1e-7 rad/(N m)"]
+    said = [repr(rm.Robot.from_dh(a_mm=[500, 400])), repr(robot), repr(with_blocked(robot, 3, 0.1))]
+    assert "2 joints, standard D-H, compliances assumed" in said[0]
+    assert "3 joints, 1 sliding, standard" in said[1]
+    assert "3 joints, 1 sliding, 1 of them held, standard" in said[2]
+
+
+def test_compliances_of_a_set_come_with_it_and_one_number_is_for_all_free_joints():
+    paper = rm.load_robot("slavkovic_5r")
+    other = {**paper.compliance_sets, "mine": np.arange(1.0, 6.0) * 1e-7}
+    changed = paper.replace(compliance_sets=other, compliance_set="mine")
+    np.testing.assert_array_equal(changed.C_theta, np.arange(1.0, 6.0) * 1e-7)
+    np.testing.assert_array_equal(changed.replace(compliance_set="table_2").C_theta, paper.C_theta)
+    held = with_blocked(rm.load_robot("kuka_kr500"), 2, 0.0).replace(C_theta=5e-7)
+    np.testing.assert_array_equal(held.C_theta, [5e-7] * 5)
+    assert held.C_theta_all[1] == rm.load_robot("kuka_kr500").C_theta_all[1]

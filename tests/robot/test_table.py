@@ -164,3 +164,42 @@ def test_columns_and_limits_of_a_data_frame_are_numbers() -> None:
     table = pd.DataFrame({"a": [500, 400], "lower": [-170, -150], "upper": [170, 150]})
     robot = rm.Robot.from_dh(a_mm=table["a"], limits_deg=table[["lower", "upper"]])
     assert robot == rm.Robot.from_dh(a_mm=[500, 400], limits_deg=[(-170, 170), (-150, 150)])
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"alpha_deg": [1.57, 0], "a_mm": [500, 400]}, "largest twist is 1.57.?°, in radians that is 90.?°"),
+        ({"alpha_deg": [0, -3.14], "a_mm": [500, 400]}, "in radians that is 180.?°"),
+        ({"alpha_deg": [0.5 * np.pi * 1.0029, 0], "a_mm": [500, 400]}, "is 90.?°"),
+        ({"alpha_deg": [0.5 * np.pi * 1.0031, 0], "a_mm": [500, 400]}, None),
+        ({"alpha_deg": [4.7, 0], "a_mm": [500, 400]}, None),
+        ({"alpha_deg": [0.78, 0], "a_mm": [500, 400]}, None),
+        ({"a_mm": [20, 29.9]}, "a_mm: all links together are 49.9 mm long, expected at least 50"),
+        ({"a_mm": [20, -29.9], "d_mm": [0.05, 0.0]}, "a_mm and d_mm: all links together are 49.95 mm long"),
+        ({"a_mm": [20, 30.1]}, None),
+        ({"a_mm": [5, 4.9], "tool_xyz_mm": [0, 0, 60]}, "9.9 mm long, expected at least 10"),
+        ({"a_mm": [5, 5.1], "tool_xyz_mm": [0, 0, 60]}, None),
+        ({"a_mm": [5, 5.1], "tool_xyz_mm": [0, 0, 40]}, "expected at least 50"),
+        ({"a_mm": [5, 5.1], "prismatic": [1, 0], "limits_mm": [(0, 9), None]}, None),
+        ({"a": [0.005, 0.0051]}, None),
+        ({"a_mm": [500, 400], "limits_deg": [(-3.1, 3.1), (-2, 6.284)]}, "no joint could turn beyond 6.284.?°"),
+        ({"a_mm": [500, 400], "limits_deg": [(-3.1, 3.1), (-2, 6.285)]}, None),
+        ({"a_mm": [500, 400], "limits": [(-3, 3), None], "limits_deg": [(-90, 90), None]}, "joint 1: .* given twice"),
+        ({"a_mm": [500, 400], "limits": [(-3, 3), None], "limits_deg": [None, (-90, 90)]}, None),
+        ({"a_mm": [500, 400], "limits": (-10 * np.pi, 10 * np.pi)}, None),
+        ({"a_mm": [500, 400], "limits": (-31.5, 3)}, "found 31.5 rad, expected at most 31.4; was 31.5.?° meant"),
+        ({"a_mm": [500, 400], "limits_deg": "wide"}, "expected .lower, upper. for each of 2 joints"),
+        ({"a_mm": [500, 400], "limits_deg": [("a", "b"), None]}, "joint 1: limits: expected two numbers"),
+        ({"a_mm": [[500, 400]]}, "a: expected one number, or one a joint; found shape .1, 2."),
+        ({"a_mm": [500, 400], "C_theta": [1e-6, 1e-6, 1e-6]}, "differ in length .a_mm 2, C_theta 3."),
+        ({"a_mm": [500, 400], "tool_xyz_mm": [0, 100]}, "tool_xyz: expected three numbers, found 2"),
+    ],
+)
+def test_where_numbers_become_another_unit_s_and_where_they_do_not_yet(given, words) -> None:
+    """Right angles in radians, links in m and limits in radians among columns in degrees and mm, at their bounds."""
+    if words is None:
+        assert rm.Robot.from_dh(**given).n == 2
+    else:
+        with pytest.raises(RobotError, match=words):
+            rm.Robot.from_dh(**given)

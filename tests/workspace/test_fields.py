@@ -1,6 +1,7 @@
 """Maps: every quantity against the law at one configuration, NaN where unreachable, budgets, names."""
 
 import dataclasses
+import pickle
 
 import numpy as np
 import pytest
@@ -151,3 +152,58 @@ def test_a_grid_in_blocks_is_the_grid_at_once(monkeypatch, block):
         np.testing.assert_array_equal(getattr(parts, name), getattr(whole, name))
     np.testing.assert_array_equal(reach(robot, grid, [(0.1, -0.2), (0.0, 0.3)]), mask)
     assert 0 < mask.sum() < grid.cells
+
+
+def test_a_row_of_a_table_is_a_cell_and_says_what_holds_there():
+    """x slowest, z fastest; each number by the laws of the one pose, in the unit that its column names."""
+    robot = rm.load_robot("slavkovic_5r")
+    found = compliance_map(robot, Grid(x_mm=[-100, 0, 9000], y_mm=[-1300, -1200], z_mm=[0, 50]), 0.1, -0.2)
+    table, alone = found.columns(), found.field("C_yy").columns()
+    cells = [(x, y, z) for x in (-100, 0, 9000) for y in (-1300, -1200) for z in (0, 50)]
+    for columns in (table, alone):
+        np.testing.assert_allclose(np.transpose([columns[f"{axis}_mm"] for axis in "XYZ"]), cells)
+    assert list(alone) == ["X_mm", "Y_mm", "Z_mm", "C_yy_um/N"]
+    assert len(table) == 3 + len(map_quantities(robot))
+    for n, cell in enumerate(cells):
+        theta = rm.inverse_kinematics(robot, rm.pose_from_world([*np.array(cell) * 1e-3, 0.1, -0.2])).theta
+        C = rm.cartesian_compliance(robot, theta)
+        for columns in (table, alone):
+            assert columns["C_yy_um/N"][n] == pytest.approx(C[1, 1] * 1e6, rel=1e-6, nan_ok=True)
+        assert table["C_soft_um/N"][n] == pytest.approx(
+            np.linalg.eigvalsh(C)[2] * 1e6 if n < 8 else np.nan, rel=1e-6, nan_ok=True
+        )
+    assert np.isnan(alone["C_yy_um/N"]).sum() == 4
+
+
+def test_a_field_goes_through_pickle_and_into_xarray_with_its_places_and_unit():
+    xarray = pytest.importorskip("xarray")
+    found = compliance_map(rm.load_robot("slavkovic_5r"), box_grid([0.0, -1.3, -0.1], [0.2, -1.2, 0.0], 0.1), 0.1, 0.3)
+    field = found.field("C_yy")
+    again = pickle.loads(pickle.dumps(field))
+    assert again == field
+    assert again.quantity.law(found) is not None
+    np.testing.assert_array_equal(again.values, field.values)
+    cube = field.to_xarray()
+    assert cube.dims == ("x", "y", "z")
+    at = cube.sel(x=0.1, y=-1.3, z=-0.1, method="nearest")
+    here = rm.at_pose(
+        found.robot, rm.inverse_kinematics(found.robot, rm.pose_from_world([0.1, -1.3, -0.1, 0.1, 0.3])).theta
+    )
+    assert float(at) == pytest.approx(here.C[1, 1], rel=1e-9)
+    assert (float(at.x), float(at.y), float(at.z)) == pytest.approx((0.1, -1.3, -0.1))
+    assert (float(cube.A), float(cube.B), cube.attrs["units"]) == (0.1, 0.3, "m/N")
+    assert {name: cube[name].attrs["units"] for name in "xyzAB"} == {
+        **dict.fromkeys("xyz", "m"),
+        "A": "rad",
+        "B": "rad",
+    }
+    both = found.to_xarray(["C_yy", "reach"])
+    assert list(both) == ["C_yy", "reach"]
+    xarray.testing.assert_equal(both["C_yy"], cube)
+    assert set(found.to_xarray()) == set(map_quantities(found.robot))
+
+
+@pytest.mark.parametrize("tilt", [(np.nan, 0.0), (0.0, np.inf)])
+def test_a_tilt_that_is_no_angle_is_refused(tilt):
+    with pytest.raises(WorkspaceError, match="must be finite angles"):
+        compliance_map(rm.load_robot("slavkovic_5r"), box_grid([0.0, -1.3, 0.0], [0.1, -1.2, 0.0], 0.1), *tilt)
