@@ -34,8 +34,8 @@ class IKResult(Tabled):
     theta (..., n) rad (m where prismatic), NaN where not reached; reached (...,); residual (...,) m of the answer or of
     the best attempt; branch_index (...,) into branch_names, -1 where not reached; spin (...,) rad is the turn about the
     tool axis that was asked for or chosen, None where there is none to choose or it came about by itself (numerically,
-    or with axis 6 at home where that is the tool axis). ``branch`` gives the names and ``reason(index)`` says why a pose
-    is not reached.
+    or with axis 6 at home where that is the tool axis). ``branch`` gives the names, ``reason(index)`` says why a
+    pose is not reached.
 
     Examples
     --------

@@ -171,3 +171,102 @@ def test_gauges_that_nothing_read_have_no_columns():
     np.testing.assert_allclose(columns["reading1_mm"], 1e-3 * np.arange(6))
     np.testing.assert_allclose(columns["reading2_mm"], [np.nan, np.nan, *[4e-3] * 4])
     assert [columns[f"gauge2_{axis}"].tolist() for axis in "xyz"] == [[1.0] * 6, [0.0] * 6, [0.0] * 6]
+
+
+def test_the_columns_of_tests_are_the_tests_again():
+    """Read as the file that they make, and number by number where each unit is one of its own."""
+    wrench = np.column_stack([F, np.linspace(-3.0, 4.0, 18).reshape(6, 3)])
+    moved = np.column_stack([MOVED, 1e-4 * np.arange(18.0).reshape(6, 3)])
+    points = RNG.normal(size=(2, 6, 3)) * 0.1
+    tests = LoadTests(
+        wrench, moved, theta=THETA, force_point=points[0], measuring_point=points[1], noise=np.full(6, 3e-6)
+    )
+    table = tests.columns()
+    np.testing.assert_allclose(np.transpose([table[f"theta{j}_deg"] for j in range(1, 6)]), np.rad2deg(THETA))
+    for names, values in (
+        ("F{}_N", F),
+        ("M{}_Nm", wrench[:, 3:]),
+        ("d{}_mm", MOVED * 1e3),
+        ("r{}_mrad", moved[:, 3:] * 1e3),
+        ("FP{}_mm", points[0] * 1e3),
+        ("MP{}_mm", points[1] * 1e3),
+    ):
+        np.testing.assert_allclose(np.transpose([table[names.format(axis)] for axis in "xyz"]), values, err_msg=names)
+    np.testing.assert_allclose(table["noise_um"], 3.0)
+    text = "\n".join(
+        [
+            ",".join(table),
+            *(
+                ",".join("" if np.isnan(v) else repr(float(v)) for v in row)
+                for row in zip(*table.values(), strict=True)
+            ),
+        ]
+    )
+    again = rm.read_load_tests(text, ROBOT)
+    for name in ("wrench", "displacement", "theta", "force_point", "measuring_point", "noise"):
+        np.testing.assert_allclose(getattr(again, name), getattr(tests, name), rtol=1e-9, atol=1e-15, err_msg=name)
+    plain = LoadTests(F, MOVED, theta=THETA).columns()
+    assert list(plain) == [
+        *(f"theta{j}_deg" for j in range(1, 6)),
+        *(f"F{a}_N" for a in "xyz"),
+        *(f"d{a}_mm" for a in "xyz"),
+    ]
+
+
+def test_world_poses_and_pulleys_have_columns_of_their_own():
+    x_M = np.array([[0.1, -1.3, 0.05, 0.2, -0.1, 0.4], [0.0, -1.2, 0.0, 0.0, 0.1, 0.0]])
+    pulley = np.array([[2.0, 0.0, 1.0], [0.0, -3.0, 0.5]])
+    table = LoadTests(F[:2], MOVED[:2], x_M=x_M, pulley=pulley).columns()
+    np.testing.assert_allclose(np.transpose([table[f"{a}_mm"] for a in "XYZ"]), x_M[:, :3] * 1e3)
+    np.testing.assert_allclose(np.transpose([table[f"{a}_deg"] for a in "ABC"]), np.rad2deg(x_M[:, 3:]))
+    np.testing.assert_allclose(table["load_N"], np.sqrt((F[:2] ** 2).sum(axis=1)))
+    np.testing.assert_allclose(np.transpose([table[f"pulley_{a}_mm"] for a in "xyz"]), pulley * 1e3)
+    assert "Fx_N" not in table
+    mixed = LoadTests(F[:2], MOVED[:2], x_M=x_M, pulley=np.where(np.arange(2)[:, None] == 0, pulley, np.nan)).columns()
+    assert "pulley_x_mm" not in mixed
+    np.testing.assert_allclose(mixed["Fx_N"], F[:2, 0])
+
+
+@pytest.mark.parametrize("most", range(1, 9))
+def test_thinned_tests_are_evenly_chosen_and_no_more_than_asked(most):
+    rows = LoadTests(F, MOVED, theta=THETA).thinned(most).row
+    assert 0 < len(rows) <= most
+    assert rows[0] == 1
+    assert len(set(np.diff(rows))) <= 1
+    closer = np.diff(rows)[0] - 1 if len(rows) > 1 else 5
+    assert closer == 0 or len(range(0, 6, closer)) > most, "one taken closer together would be too many"
+
+
+def test_a_cable_pulls_from_the_force_point_to_its_pulley_however_the_point_is_moved():
+    pulley = np.tile([2.0, -2.0, 1.0], (6, 1))
+    tests = LoadTests(F, MOVED, theta=THETA, pulley=pulley, force_point=[0.0, 0.02, 0.1])
+    for shift in (np.zeros(3), np.array([0.05, -0.1, 0.02])):
+        moved = tests.moved(ROBOT, shift)
+        for n, T in enumerate(rm.tool_pose(ROBOT, THETA)):
+            way = pulley[n] - (T @ [*(np.array([0.0, 0.02, 0.1]) + shift), 1.0])[:3]
+            pull = moved.wrench[n, :3]
+            np.testing.assert_allclose(np.cross(pull, way), 0.0, atol=1e-9)
+            assert pull @ way > 0.0
+            assert np.linalg.norm(pull) == pytest.approx(np.linalg.norm(F[n]))
+
+
+def test_readings_of_three_gauges_make_the_vector_that_they_read():
+    gauges = np.linalg.qr(RNG.normal(size=(6, 3, 3)))[0] + 0.2 * RNG.normal(size=(6, 3, 3))
+    gauges /= np.linalg.norm(gauges, axis=2, keepdims=True)
+    gauges[4, 2] = gauges[4, 1]
+    read = np.einsum("mgi,mi->mg", gauges, MOVED)
+    read[2, 1] = np.nan
+    found = LoadTests(F, read, theta=THETA, gauges=gauges).vectors
+    np.testing.assert_allclose(found[[0, 1, 3, 5]], MOVED[[0, 1, 3, 5]], rtol=1e-9)
+    assert np.isnan(found[[2, 4]]).all()
+
+
+def test_columns_of_single_joints_are_torque_and_angle():
+    table = JointTests([1, 3], [300.0, -20.0], [2.1e-4, 3e-5], noise=2e-6).columns()
+    assert {name: np.round(values, 9).tolist() for name, values in table.items()} == {
+        "joint": [1, 3],
+        "torque_Nm": [300.0, -20.0],
+        "angle_mrad": [0.21, 0.03],
+        "noise_mrad": [0.002, 0.002],
+    }
+    assert "noise_mrad" not in JointTests([1], [300.0], [2.1e-4]).columns()

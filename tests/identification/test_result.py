@@ -126,3 +126,20 @@ def test_springs_found_take_the_place_of_others_and_of_what_was_found_earlier():
     assert real.provenance["compliance.identified"].kind == "computed"
     _, springs = found.adopted(ROBOT, "mine.csv", robot, given)  # once more, beside what was identified
     assert [*springs] == [by_hand[1], *found.springs(ROBOT)]
+
+
+def test_a_row_of_the_table_is_a_parameter_in_the_unit_that_it_names():
+    """1e-7 rad/(N m) of joints, and whatever else springs have; what is not seen is NaN with an infinite error."""
+    rich = rm.identify(ROBOT, TESTS, "joints+bending+tool")
+    blind = replace(rich, parameter_stderr=np.where(np.arange(11) == 2, np.inf, rich.parameter_stderr))
+    table = blind.columns()
+    assert len(table["parameter"]) == 11
+    factor = {"1e-7 rad/(N m)": 1e7, "um/N": 1e6, "1e-7 m/N": 1e7}
+    for n, (unit, value, error) in enumerate(zip(table["unit"], rich.parameters, blind.parameter_stderr, strict=True)):
+        shown = [table[name][n] for name in ("value", "stderr", "ci95_low", "ci95_high")]
+        true = np.array([value if n != 2 else np.nan, error, *rich.parameter_ci95[n]]) * factor[unit]
+        np.testing.assert_allclose(shown, true, rtol=1e-12)
+    np.testing.assert_allclose(table["share_percent"], 100.0 * rich.share)
+    assert table["unit"][:5].tolist() == ["1e-7 rad/(N m)"] * 5
+    assert "not seen" in repr(blind)
+    assert "not seen" not in repr(rich)
