@@ -181,6 +181,7 @@ def test_columns_and_limits_of_a_data_frame_are_numbers() -> None:
         ({"a_mm": [5, 4.9], "tool_xyz_mm": [0, 0, 60]}, "9.9 mm long, expected at least 10"),
         ({"a_mm": [5, 5.1], "tool_xyz_mm": [0, 0, 60]}, None),
         ({"a_mm": [5, 5.1], "tool_xyz_mm": [0, 0, 40]}, "expected at least 50"),
+        ({"a_mm": [20, 20], "tool_xyz_mm": [0, 0, 50]}, None),
         ({"a_mm": [5, 5.1], "prismatic": [1, 0], "limits_mm": [(0, 9), None]}, None),
         ({"a": [0.005, 0.0051]}, None),
         ({"a_mm": [500, 400], "limits_deg": [(-3.1, 3.1), (-2, 6.284)]}, "no joint could turn beyond 6.284.?°"),

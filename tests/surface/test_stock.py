@@ -184,3 +184,21 @@ def test_the_refusal_counts_cells_and_names_the_smallest_size_that_fits(length, 
     assert float(needed) == pytest.approx(round(length / cell) * round(width / cell) / 1e6, rel=1e-3)
     assert float(said) * 1e-3 == pytest.approx(fits * 1e-7, rel=1.5e-3)
     assert float(said) * 1e-3 >= fits * 1e-7 * (1 - 1e-3)
+
+
+def test_a_block_less_than_any_part_was_meant_in_metres_unless_it_is_of_a_mesh():
+    """Half a millimetre is asked about, with its size; two millimetres are only doubted."""
+    with pytest.raises(SurfaceError, match="was it meant in m"):
+        Stock(lower_mm=(0, 0, -0.02), upper_mm=(0.06, 0.04, 0.0))
+    assert Stock((0, 0, -2e-3), (2e-3, 1e-3, 0.0)).size.max() == 2e-3
+    corner = np.array([[[0.0, 0, 0], [6e-5, 0, 0], [0, 4e-5, 2e-5]]])
+    assert Stock((0, 0, 0), (6e-5, 4e-5, 2e-5), corner).triangles.shape == (1, 3, 3)
+
+
+def test_a_block_says_its_size_corner_and_triangles():
+    block = Stock((-0.01, 0.002, -0.02), (0.03, 0.02, 0.0))
+    said = repr(block).replace("−", "-")
+    assert re.search(r"40.00 x 18.00 x 20.00 mm.*-10.00, 2.00, -20.00 mm", said)
+    assert "triangle" not in said
+    mesh = Stock((0, 0, 0), (1, 1, 1), np.random.default_rng(0).uniform(0, 1, (12, 3, 3)))
+    assert "solid of 12 triangles" in repr(mesh)

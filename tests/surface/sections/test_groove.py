@@ -227,3 +227,35 @@ def test_sections_tell_how_many_of_them_are_made():
     stock, p, cutting, R = slot(0.0)
     shares = told(lambda: groove_sections(stock, FLAT, CutPath(p, p + R @ DELTA, cutting), np.linspace(0.01, 0.09, 5)))
     assert shares["Sections"] == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8])
+
+
+def test_a_row_of_the_table_is_a_section_in_millimetres_and_degrees():
+    """The paper's slot beside a place where nothing is cut: its numbers by hand, NaN there."""
+    stock, p, cutting, R = slot(0.0)
+    high = np.where(np.arange(len(p))[:, None] < 30, [0.0, 0.0, 0.005], 0.0)
+    sections = groove_sections(stock, FLAT, CutPath(p + high, p + high + R @ DELTA, cutting), [0.01, 0.08])
+    table = sections.columns()
+    assert [section.kind for section in sections] == table["kind"].tolist() == ["nothing", "groove"]
+    for name, number in (
+        ("station_mm", (10.0, 80.0)),
+        ("width_mm", (np.nan, 8.0)),
+        ("depth_mm", (np.nan, 2.1024)),
+        ("centre_offset_mm", (np.nan, 0.2295)),
+        ("floor_error_mm", (np.nan, -0.1024)),
+        ("wall_left_angle_deg", (np.nan, 90.0)),
+    ):
+        np.testing.assert_allclose(table[name], number, atol=1e-6, err_msg=name)
+    assert "2 sections: nothing, groove" in repr(sections)
+    told = repr(sections[1]).replace("−", "-")
+    assert "at 80.0 mm: groove: width 8.000 mm, depth 2.102 mm" in told
+    profile = sections[1].columns()
+    assert list(profile) == ["w_mm", "z_ideal_mm", "z_machined_mm"]
+    np.testing.assert_allclose(profile["z_ideal_mm"], np.where(np.abs(profile["w_mm"]) < 4.0, 0.0, 2.0), atol=1e-9)
+    shifted = np.abs(profile["w_mm"] - 0.2295) < 4.0
+    np.testing.assert_allclose(profile["z_machined_mm"], np.where(shifted, -0.1024, 2.0), atol=1e-9)
+
+
+def test_stations_are_one_list_of_lengths():
+    stock, p, cutting, R = slot(0.0)
+    with pytest.raises(SurfaceError, match=r"expected a list of lengths, found shape .1, 2."):
+        groove_sections(stock, FLAT, CutPath(p, p + R @ DELTA, cutting), [[0.01, 0.02]])
