@@ -161,3 +161,43 @@ def test_a_field_of_very_many_squares_has_larger_ones(monkeypatch):
         ends = np.array([[0.0, 0, 0, 1e-3, 0, 0], [*span, 0, span[0] + 1e-3, span[1], 0]])
         track = Outline(ends, ends, (FLAT,), np.zeros(2, dtype=int), 1e-3)._tracks[0]
         assert 30 <= np.prod(track.squares) <= 75
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.02, -0.02])
+@pytest.mark.parametrize("push", [(0.12e-3, 0.0), (-0.12e-3, 0.0), (0.05e-3, -0.08e-3), (-0.02e-3, 0.06e-3)])
+@pytest.mark.parametrize("cutter", [BALL, Cutter("chamfer", 10e-3, tip_angle=np.pi / 2), FLAT], ids=lambda c: c.kind)
+def test_walls_beside_the_middle_of_a_move_are_those_of_its_stamps_and_carried_with_it(cutter, push, rise):
+    """At a height, from above: discs as wide as the cutter is there, one at every place of the tip; pushed aside and
+    along the axis. It rises so little that the widest disc is that of the middle, to the thousandth of a millimetre."""
+    told = np.array([[-8e-3, 0.0, -8e-3 * rise, 8e-3, 0.0, 8e-3 * rise]])
+    outline = Outline(told, told + np.tile([0.0, *push], 2), (cutter,), np.zeros(1, dtype=int), 1e-3)
+    x, height, r = np.linspace(-8e-3, 8e-3, 40_001), 2.5e-3, np.linspace(0.0, cutter.radius, 20_001)
+
+    def wall(aside, up):
+        """Where the line across through the middle leaves the last disc."""
+        over = height - rise * x - up
+        radius = np.full(len(x), cutter.radius) if cutter.kind == "flat" else np.interp(over, cutter.profile(r), r)
+        inside = radius > np.abs(x)
+        return aside + np.sqrt(radius[inside] ** 2 - x[inside] ** 2).max()
+
+    own = wall(0.0, 0.0)
+    for side in (1.0, -1.0):
+        place = np.concatenate([np.zeros(3), UP, [0.0, side, 0.0]])[None]
+        found = outline.walls(place, np.array([height]), np.array([own]))
+        moved = wall(side * push[0], push[1]) - own
+        assert found.told[0] == pytest.approx(0.0, abs=2e-6)
+        assert found.left[0] == pytest.approx(moved, abs=2e-6)
+        assert found.one[0]
+        assert found.carried[0] == pytest.approx(moved, abs=2e-6)
+
+
+@pytest.mark.parametrize("rise", [1e-3, -1e-3])
+def test_a_move_is_a_wall_at_heights_above_its_middle(rise):
+    ends = np.array([[-5e-3, 0.0, -2e-3, 5e-3, 0.0, -2e-3 + rise]])
+    outline = Outline(ends, ends, (FLAT,), np.zeros(1, dtype=int), 1e-3)
+    for start in (ends[0, :3], ends[0, 3:]):
+        middle = -2e-3 + 0.5 * rise - start[2]
+        place = np.concatenate([start, UP, [0.0, 1.0, 0.0]])[None]
+        for above in (-1e-4, 1e-4):
+            found = outline.walls(place, np.array([middle + above]), np.array([4e-3])).told
+            np.testing.assert_allclose(found, 0.0 if above > 0.0 else np.nan, atol=1e-12)
