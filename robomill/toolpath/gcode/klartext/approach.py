@@ -116,7 +116,7 @@ class KlartextApproach(KlartextValues):
         if form in ("LT", "LN"):
             self._go(begin, line)
         else:
-            self._turn_to(begin, centre, turn, line)
+            self._turn_to(begin, centre, turn, line, whole=form == "CT")
         self.side, self.course, machine.motion = side, tangent, 10
         if machine.compensation is not None and radius > 0.0:
             machine.compensation.stand_beside(machine, goal)
@@ -170,7 +170,7 @@ class KlartextApproach(KlartextValues):
         else:
             turn, centre = self._circle(sizes, begin, normal, side)
             if form == "CT":
-                self._turn_to(_about(centre, begin, turn * math.radians(sizes["CCA"])), centre, turn, line)
+                self._turn_to(_about(centre, begin, turn * math.radians(sizes["CCA"])), centre, turn, line, whole=True)
             else:
                 end = self._goal_of(said.places, at, line)
                 self._turn_to(_touching(centre, sizes["R"], -turn, (end[0], end[1]), line), centre, turn, line)
@@ -216,10 +216,11 @@ class KlartextApproach(KlartextValues):
         machine.go(FEED, line, end)
         machine.p = end
 
-    def _turn_to(self, to: Point, centre: Point, turn: float, line: int) -> None:
+    def _turn_to(self, to: Point, centre: Point, turn: float, line: int, whole: bool = False) -> None:
+        """An arc to a point; back to where it begins it is a ``whole`` turn, or none."""
         machine = self.machine
         self._feed_known(line)
-        if math.dist(to, machine.p[:2]) < 1e-9:
+        if not whole and math.dist(to, machine.p[:2]) < 1e-9:
             return
         end = [*to, *machine.p[2:]]
         v_f = machine.feed * machine.factor / MINUTE

@@ -18,6 +18,8 @@ NUMBER = r"[-+]? ?(?:\d+(?:\.\d*)?|\.\d+|Q[LR]?\d+)"
 FIRST_Q = {"Q": 1000, "QL": 3000, "QR": 4000}
 MOST_Q = {"Q": 1999, "QL": 499, "QR": 499}
 MAX_PECKS = 10_000
+RAPID_OUT = 99_999.0
+"""Q208 from which on a tool leaves its hole at rapid; what MAX and FMAX stand for."""
 _Q = re.compile(r"(Q[LR]?)(\d+)")
 _SET = re.compile(r"(?:FN ?(\d+) ?: ?)?(Q[LR]?\d+) ?= ?(.+)")
 _JUMP = re.compile(
@@ -68,6 +70,7 @@ class KlartextValues(SinumerikProcs):
     """Reads what computes, shifts and drills; moves are those of ``klartext``."""
 
     drill: int = 0
+    says_out = False
     due = False
     raised = 0.0
     pole: tuple[int, float, float] | None = None
@@ -173,10 +176,11 @@ class KlartextValues(SinumerikProcs):
             raise GCodeError.at(line, f"{code[:30]} is not read; expected CYCL DEF and its number.")
         number, part, rest = int(found[1][:4]), found[2], found[3]
         if number in _DRILLS or number in _PATTERNS:
-            self.drill = number if number in _DRILLS else self.drill
+            if number in _DRILLS:
+                self.drill, self.says_out = number, "Q208" in rest
             for name, value in re.findall(r"(Q\d+) ?= ?(\S+)", rest):
                 if name == "Q208" and value in ("MAX", "FMAX"):
-                    self.set_q(name, 0.0, line)
+                    self.set_q(name, RAPID_OUT, line)
                     continue
                 if not re.fullmatch(NUMBER, value):
                     raise GCodeError.at(line, f"CYCL DEF {number} has {name}={value}, which is not read.")
@@ -293,8 +297,7 @@ class KlartextValues(SinumerikProcs):
             raise GCodeError.at(line, "CYCL CALL PAT calls at a pattern, which is not read; write CYCL CALL POS.")
         if rest.startswith("POS"):
             return self._cycle_at(rest.removeprefix("POS").strip(), line)
-        self.due = True
-        return " ".join(f"M{m}" for m in re.findall(r"\bM(\d+)", rest) if m in ("3", "4", "5", "8", "9")) or "G17"
+        return self._called(rest, line)
 
     def _cycle_at(self, rest: str, line: int) -> str | None:
         """CYCL CALL POS: in the plane first, where the tool is above; its Z shifts the cycle's heights."""
@@ -305,7 +308,10 @@ class KlartextValues(SinumerikProcs):
         machine = self.machine
         if self.drill and not machine.away[2] and machine.p[2] < (high := self._hole_of(line)).clear:
             self._to(TRAVERSE, line, high.retract)
-        rest = re.sub(rf"Z ?{NUMBER}", "", rest)
+        return self._called(re.sub(rf"Z ?{NUMBER}", "", rest), line)
+
+    def _called(self, rest: str, line: int) -> str:
+        """A line that does what stands behind CYCL CALL, and drills then."""
         text = self.straight(f"L {' '.join(rest.split())}".strip(), line) or "G17"
         self.due = True
         return text
@@ -336,8 +342,7 @@ class KlartextValues(SinumerikProcs):
         down, pitch = self.q(206) / slower, abs(self.q(239)) if number in (207, 209) else 0.0
         if number in (207, 209) and pitch == 0.0:
             raise GCodeError.at(line, f"CYCL DEF {number} needs Q239, its pitch.")
-        out = self.q(208) / slower if number in (201, 203) else 0.0
-        out = (out or down) if number in (201, 206) else min(out, 99999.0) if 0.0 < out < 99999.0 else 0.0
+        out = self._out_of(number, down, slower)
         bottom, step = surface + depth, abs(self.q(202)) if number in (200, 203, 205) else 0.0
         pecks: list[float] = []
         less = abs(self.q(212)) if number in (203, 205) else 0.0
@@ -349,7 +354,16 @@ class KlartextValues(SinumerikProcs):
             if len(pecks) > MAX_PECKS:
                 raise GCodeError.at(line, f"CYCL DEF {number} needs more than {MAX_PECKS} pecks; give a larger Q202.")
         top = surface + max(safety, self.q(204))
-        return Hole(top, surface + safety, bottom, max(self.q(211), 0.0), down, out, tuple(pecks), True, pitch)
+        wait, taps = max(self.q(211), 0.0), number == 206
+        return Hole(top, surface + safety, bottom, wait, down, out, tuple(pecks), True, pitch, taps)
+
+    def _out_of(self, number: int, down: float, slower: float) -> float:
+        """The feed out of a hole: Q208, and Q206 where that is 0; without a Q208 a rapid, but for tapping."""
+        if number == 206:
+            return down
+        if number not in (201, 203) and not (number == 205 and self.says_out):
+            return 0.0
+        return 0.0 if self.q(208) >= RAPID_OUT else self.q(208) / slower or down or math.inf
 
 
 def _written_out(text: str) -> str:

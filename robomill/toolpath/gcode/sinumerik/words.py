@@ -48,7 +48,8 @@ _COMPARES = (("==", " EQ "), ("<>", " NE "), (">=", " GE "), ("<=", " LE "), (">
 class Hole:
     """A drilling cycle: heights along Z in program units, dwell in s, feeds.
 
-    A ``feed`` of 0 is the one in force, so is an ``out`` of infinity; an ``out`` of 0 is a rapid.
+    A ``feed`` of 0 is the one in force, so is an ``out`` of infinity; an ``out`` of 0 is a rapid. A tap goes by its
+    ``pitch``, or ``taps`` by a feed, in a chuck that gives.
     """
 
     retract: float
@@ -60,6 +61,7 @@ class Hole:
     pecks: tuple[float, ...]
     to_clear: bool
     pitch: float
+    taps: bool = False
 
 
 class SinumerikWords(MacroCalls):
@@ -314,7 +316,7 @@ class SinumerikWords(MacroCalls):
             if machine.speed == 0.0:
                 raise block.refuse("CYCLE84 needs a spindle speed; give an S word first.")
             down = out = hole.pitch * machine.factor * machine.speed / MINUTE
-        before, machine.motion = machine.motion, 840 if hole.pitch else machine.motion
+        before, machine.motion = machine.motion, 840 if hole.pitch or hole.taps else machine.motion
         self._to(TRAVERSE, line, hole.clear)
         for depth in hole.pecks:
             self._to(FEED, line, depth, down)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 
 import numpy as np
@@ -77,6 +78,84 @@ def test_where_the_centre_goes(body: str, expected: list[tuple[str, float, float
     np.testing.assert_allclose([each[1:] for each in got], [each[1:] for each in expected], atol=1e-6)
 
 
+@pytest.mark.parametrize("side", ["0", "L", "R"])
+@pytest.mark.parametrize("size", [5, -5])
+@pytest.mark.parametrize("angle", [30, 90, 200, 360])
+@pytest.mark.parametrize("course", [0, 50, -130])
+def test_arcs_to_and_from_a_contour_touch_the_path_beside_it(side: str, size: int, angle: int, course: int) -> None:
+    """In complex numbers: the circle of CT lies on the tool's side (R0: on the right) and, by R below 0, on the other;
+    it is turned by CCA, a whole turn by 360."""
+    along = cmath.exp(1j * math.radians(course))
+    goal, length = 10 + 20j, 30.0
+    across = 1j * along if side == "L" else -1j * along
+    begin = goal + (2.0 * across if side != "0" else 0.0)
+    centre = begin + size * across
+    turn = (1.0 if side == "L" else -1.0) * (1.0 if size > 0 else -1.0)
+    swept = cmath.exp(1j * turn * math.radians(angle))
+    last = goal + length * along
+    body = f"APPR CT X+10 Y+20 CCA{angle} R{size:+d} R{side}\nL X{last.real:+.9f} Y{last.imag:+.9f}\n"
+    program = read(f"{body}DEP CT CCA{angle} R{size:+d}\n")
+    ends = program.end[1:, 0] * 1e3 + 1j * program.end[1:, 1] * 1e3
+    leave = last + (begin - goal)
+    away = leave + size * across
+    np.testing.assert_allclose(
+        ends, [centre + (begin - centre) / swept, begin, leave, away + (leave - away) * swept], atol=1e-6
+    )
+    arcs = program.kind == 2
+    assert arcs.tolist() == [False, False, True, False, True]
+    np.testing.assert_allclose(program.centre[arcs] @ [1e3, 1e3j, 0], [centre, away], atol=1e-6)
+    np.testing.assert_allclose(np.degrees(program.sweep[arcs]), turn * angle, atol=1e-5)
+
+
+@pytest.mark.parametrize("side", ["0", "L", "R"])
+@pytest.mark.parametrize("course", [0, 50, -130])
+@pytest.mark.parametrize("form", ["LT", "LN"])
+def test_lines_to_and_from_a_contour(side: str, course: int, form: str) -> None:
+    """LT along the tangent, LN square to it from the tool's side (R0: from the right), in complex numbers."""
+    along = cmath.exp(1j * math.radians(course))
+    across = 1j * along if side == "L" else -1j * along
+    begin = 10 + 20j + (2.0 * across if side != "0" else 0.0)
+    leave, step = begin + 30 * along, 7.0 * (along if form == "LT" else across)
+    last = 10 + 20j + 30 * along
+    body = f"APPR {form} X+10 Y+20 LEN7 R{side}\nL X{last.real:+.9f} Y{last.imag:+.9f}\nDEP {form} LEN7\n"
+    program = read(body)
+    expected = [begin - step if form == "LT" else begin + step, begin, leave, leave + step]
+    np.testing.assert_allclose(program.end[1:] @ [1e3, 1e3j, 0], expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("sense", ["+", "-"])
+@pytest.mark.parametrize("first", ["C X+{0} Y+{1} DR{2}", "CP PA+90 DR{2}", "CR X+{0} Y+{1} R+20 DR{2}"])
+def test_a_contour_that_begins_with_an_arc_begins_along_its_tangent(first: str, sense: str) -> None:
+    """A quarter about (30, 20) from its left or right to its top: the tangent is square to the spoke."""
+    goal = 10 if sense == "-" else 50
+    # remarks and empty lines between are no contour; nor is CC, which counts
+    body = f"APPR LT X+{goal} Y+20 LEN3 R0\n* - remark\n\nCC X+30 Y+20\n; more\n{first.format(30, 40, sense)}\n"
+    program = read(body)
+    np.testing.assert_allclose(program.end[1:3, :2] * 1e3, [[goal, 17], [goal, 20]], atol=1e-6)
+    assert math.degrees(program.sweep[-1]) == pytest.approx(90 if sense == "+" else -90)
+
+
+@pytest.mark.parametrize("end", ["", "\n\n", "* - remark\n;\n"])
+def test_a_program_that_ends_behind_its_approach_is_refused(end: str) -> None:
+    head = "BEGIN PGM A MM\nTOOL CALL 1 Z S99 F100\nL X+40 Y+10 Z+5 R0 FMAX M3\n"
+    with pytest.raises(GCodeError, match="Line 4: APPR needs the first element of its contour"):
+        interpret(f"{head}APPR LT X+10 Y+20 LEN15 RL\n{end}", tools=TOOL)
+
+
+def test_an_approach_cuts_by_its_own_feed_and_comes_at_rapid() -> None:
+    program = read("APPR LN X+10 Y+20 Z-1 LEN5 R0 F77\nL Y+50\nDEP LT LEN5 Z+9 F88 M5\n")
+    np.testing.assert_allclose(program.v_f[1:] * 6e4, [0, 77, 77, 77, 88, 88])
+    np.testing.assert_allclose(program.end[1:, 2] * 1e3, [5, -1, -1, -1, -1, 9])
+    for steps, depth in (("Z-1", -1), ("IZ-1", 4)):
+        sunk = read(f"APPR LN X+10 Y+20 {steps} LEN5 R0 F77\nL Y+50\n")
+        assert sunk.end[-1, 2] * 1e3 == pytest.approx(depth)
+    inch = interpret(
+        "BEGIN PGM A INCH\nTOOL CALL 1 Z S99 F100\nL X+4 Y+1 Z+5 R0 FMAX M3\n"
+        "APPR LN X+1 Y+2 LEN5 R0 F77\nL Y+5\nEND PGM A INCH\n"
+    )
+    np.testing.assert_allclose(inch.v_f[2:] * 60 / 25.4e-3, 7.7)
+
+
 def test_a_line_and_an_arc_meet_in_a_tangent() -> None:
     """LCT: the line from the start and the line to the end touch the arc, which touches the path beside the contour."""
     program = read("APPR LCT X+10 Y+20 R5 RL F200\nL Y+50\nDEP LCT X-20 Y+80 R6 F300\n")
@@ -118,6 +197,15 @@ def test_the_manuals_own_circle() -> None:
         ("APPR LT X+10 Y+20 LEN15 RL\nL Z-5\n", "Line 4: APPR needs the first element of its contour"),
         ("APPR LT X+10 Y+20 RL\nL Y+50\n", "Line 4: 'APPR LT .* needs LEN"),
         ("APPR CT X+10 Y+20 R5 RL\nL Y+50\n", "Line 4: .*APPR CT needs CCA and R"),
+        *(
+            (f"APPR CT X+10 Y+20 CCA{cca} R5 RL\nL Y+50\n", "Line 4: APPR CT needs CCA from 0 to 360")
+            for cca in (0, -90, 360.5)
+        ),
+        ("APPR LT X+10 Y+20 LEN0 RL\nL Y+50\n", "Line 4: .* is not read; APPR LT needs LEN"),
+        ("APPR CT X+10 Y+20 CCA90 R0.0 RL\nL Y+50\n", "Line 4: .* is not read; APPR CT needs CCA and R"),
+        ("APPR LT X+10 Y+20 LEN15 RL\nC X+5 DR\n", "Line 4: APPR needs the first element of its contour"),
+        ("APPR LT X+10 Y+20 LEN15 RL\nCR X+5 DR+\n", "Line 4: APPR needs the first element of its contour"),
+        ("DEP LT LEN5\nDEP LT LEN5\n", "Line 5: DEP goes on from a contour"),
         ("APPR LCT X+10 Y+20 R-5 RL\nL Y+50\n", "Line 4: .*LCT a radius above 0"),
         ("APPR LCT X+60 Y+10 R50 RL\nL Y+50\n", "Line 4: APPR LCT and DEP LCT need a point outside of their arc"),
         ("L X+9 RL\nAPPR LT X+10 Y+20 LEN15 RL\nL Y+50\n", "Line 5: APPR begins compensation, which is on already"),
