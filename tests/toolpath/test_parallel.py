@@ -49,6 +49,91 @@ def test_closed_lines_have_the_length_of_their_formula_and_leave_the_line_on_the
     assert turns_left(found) == left, "inside counter-clockwise, outside clockwise: climb milling"
 
 
+@pytest.mark.parametrize("side", ["inside", "outside", "left", "right"])
+def test_a_circle_stays_about_its_centre(side):
+    (found,) = beside_line(CIRCLE, side, R)
+    reach = {"inside": 6, "left": 6}.get(side, 14) * 1e-3
+    distance = np.linalg.norm(found.outline() - 10e-3, axis=1)
+    np.testing.assert_allclose(distance, reach, atol=CHORD_ERROR)
+    if found.shape == "circle":
+        np.testing.assert_allclose(found.points, [[10e-3, 10e-3], [10e-3 + reach, 10e-3]], atol=1e-15)
+    np.testing.assert_allclose(found.outline()[0], [10e-3 + reach, 10e-3], atol=1e-15)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("centre", [0, 30 - 7j])
+def test_an_arc_anywhere_is_moved_along_its_spokes(way, side, centre):
+    """In complex numbers: each of its points moves by the radius, towards the centre where the arc turns to its side."""
+    spokes = np.exp(1j * way * np.array([0.3, 1.1, 2.4]))
+    points = centre + 10 * spokes
+    (found,) = beside_line(contour("arc", np.column_stack([points.real, points.imag])), side, R)
+    new = centre + (10 - 4 if (way > 0) == (side == "left") else 10 + 4) * spokes
+    np.testing.assert_allclose(found.points @ [1e3, 1e3j], new, atol=1e-9)
+
+
+def test_an_arc_of_three_points_on_a_line_is_moved_as_one():
+    (found,) = beside_line(contour("arc", [(0, 0), (5, 0), (10, 0)]), "left", R)
+    np.testing.assert_allclose(found.points * 1e3, [[0, 4], [10, 4]], atol=1e-9)
+    assert found.shape == "line"
+
+
+def test_a_bend_of_two_lines_is_three_points_inside_and_rounded_outside():
+    bend = contour("polyline", [(0, 0), (20, 0), (20, 20)])
+    (inside,), (outside,) = beside_line(bend, "left", R), beside_line(bend, "right", R)
+    np.testing.assert_allclose(inside.points * 1e3, [[0, 4], [16, 4], [16, 20]], atol=1e-9)
+    assert inside.shape == outside.shape == "polyline"
+    assert outside.length == pytest.approx((40 + math.pi / 2 * 4) * 1e-3, rel=1e-4)
+    np.testing.assert_allclose(outside.points[[0, -1]] * 1e3, [[0, -4], [24, 20]], atol=1e-9)
+
+
+@pytest.mark.parametrize("radius", [1e-6, 1e-4, R, 0.3])
+def test_round_corners_are_as_fine_as_other_chords(radius):
+    """Every point of a chord about a corner is within the chord error of the radius, and there are at least 8 a quarter."""
+    (found,) = beside_line(SQUARE, "outside", radius)
+    middles = 0.5 * (found.outline()[1:] + found.outline()[:-1])
+    distance = shapely.distance(shapely.Polygon(SQUARE.points), shapely.points(middles))
+    assert distance.min() > radius - 1.01 * CHORD_ERROR
+    assert len(found.points) >= 4 * 8
+    assert len(found.points) <= 4 * max(8, 1 + math.pi / 4 / math.sqrt(2 * CHORD_ERROR / radius) * 1.5) + 8
+
+
+@pytest.mark.parametrize(("side", "outer", "inner"), [("outside", False, True), ("right", True, False)])
+def test_a_mouth_that_closes_leaves_a_line_in_the_cavity(side, outer, inner):
+    """Round a C whose mouth is narrower than the cutter: once about it, and once in it, the material on the same hand."""
+    c = [
+        (0, 0),
+        (60, 0),
+        (60, 27),
+        (50, 27),
+        (50, 10),
+        (10, 10),
+        (10, 50),
+        (50, 50),
+        (50, 33),
+        (60, 33),
+        (60, 60),
+        (0, 60),
+    ]
+    found = beside_line(contour("polygon", c), side, R)
+    sizes = {shapely.Polygon(each.points).area * 1e6: turns_left(each) for each in found}
+    assert len(sizes) == 2
+    assert sizes[max(sizes)] == outer
+    assert sizes[min(sizes)] == inner
+    bulge = 2 * (4 * 3 - (1.5 * math.sqrt(7) + 8 * math.asin(3 / 4)))  # into the mouth, about its two corners
+    assert min(sizes) == pytest.approx(32 * 32 + bulge, abs=0.02)
+
+
+@pytest.mark.parametrize("start", range(4))
+@pytest.mark.parametrize("side", ["inside", "outside"])
+def test_a_closed_line_begins_beside_where_the_drawn_one_does(start, side):
+    corners = [(0, 0), (40, 0), (40, 20), (0, 20)]
+    (found,) = beside_line(contour("polygon", corners[start:] + corners[:start]), side, R)
+    distance = np.linalg.norm(found.points * 1e3 - corners[start], axis=1)
+    assert distance[0] == pytest.approx(distance.min())
+    assert len({tuple(each) for each in np.round(found.points, 9).tolist()}) == len(found.points)
+
+
 @pytest.mark.parametrize(("side", "radius"), [("left", 6), ("right", 14)])
 def test_an_arc_keeps_its_centre(side, radius):
     (found,) = beside_line(ARC, side, R)

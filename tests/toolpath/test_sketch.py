@@ -9,7 +9,7 @@ import pytest
 
 from robomill.errors import ToolpathError
 from robomill.toolpath.gcode import CHORD_ERROR
-from robomill.toolpath.sketch import APPROACH, Element, Sketch
+from robomill.toolpath.sketch import APPROACH, Element, Sketch, centre_of
 
 
 def line(*points, depth=2e-3, v_f=0.03):
@@ -57,6 +57,20 @@ def test_lengths_of_shapes(shape, points, length):
     assert found == pytest.approx(length, rel=4 * CHORD_ERROR / 0.02)
     if element.shape in ("polygon", "rectangle", "circle"):
         np.testing.assert_allclose(path.p[cut[-1], :2], path.p[cut[0] - 1, :2], atol=1e-15)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1e-3, 1.0, 1e3])
+@pytest.mark.parametrize(
+    ("a", "b", "c"), [((1, 2), (3, 2), (1, 4)), ((0, 0), (1, 1e-6), (2, 0)), ((5, 1), (1, 5), (1, 1))]
+)
+def test_a_circle_has_its_centre_at_every_size(size, a, b, c):
+    """As far from one of its points as from the others; points on a line have none, however near or far they are."""
+    points = [np.array(each) * size for each in (a, b, c)]
+    centre = centre_of(*points)
+    radii = [math.dist(centre, each) for each in points]
+    assert radii == pytest.approx([radii[0]] * 3, rel=1e-9)
+    assert centre_of(*(np.array([k, 2.0 * k]) * size for k in (0.0, 1.0, 3.0))) is None
+    assert centre_of(*(np.array([k, 1e-11 * (k == 1)]) * size for k in (0.0, 1.0, 2.0))) is None
 
 
 @pytest.mark.parametrize("way", [[0.0, 0.02], [0.0, -0.02]])

@@ -123,6 +123,13 @@ def test_every_cut_is_led_aside_whatever_its_words(name: str, pieces: int) -> No
     back = np.broadcast_to(again.at_feed, len(again)) & (again.length > 1e-9)
     np.testing.assert_allclose(again.v_f[back], v_f, rtol=1e-4)
     assert again.ok
+    middles = [[p.centre for p in halves(program, j, SHIFT, pieces)] for j in feed if program.kind[j] == ARC]
+    round_again = again.kind == ARC
+    np.testing.assert_allclose(
+        (again.centre + again.lift)[round_again][:, :2],
+        np.array([c for each in middles for c in each]).reshape(-1, 3)[:, :2],
+        atol=5e-6,
+    )
 
 
 @pytest.mark.parametrize("name", UNROLLED)

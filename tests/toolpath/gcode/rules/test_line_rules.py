@@ -105,6 +105,10 @@ def test_plain_lines(line: str, words: dict[str, float]) -> None:
         "O1",
         "X\u00e9",
         "X1" + " " * line_rules.MAX_LINE,
+        *(
+            "(;)" + left
+            for left in ("#", "#1", "#1 X", "#1=", "#1=X", "#<a", "#<a>=1", "#5420=1", "#0=1", "#<_x>", "(b", "N")
+        ),
     ],
 )
 def test_lines_that_are_left_to_the_reader(line: str) -> None:
