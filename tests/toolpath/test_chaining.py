@@ -42,8 +42,11 @@ def test_two_lines_are_no_line_any_more_and_a_polyline_of_two_points_is_one() ->
 
 
 def test_where_three_lines_meet_none_are_joined() -> None:
-    found, _, _ = joined([line((0, 0), (10, 0)), line((10, 0), (20, 0)), line((10, 0), (10, 10))])
-    assert [each.shape for each in found] == ["line"] * 3
+    lines = [line((0, 0), (10, 0)), line((10, 0), (20, 0)), line((10, 0), (10, 10)), line((50, 0), (51, 0))]
+    found, _, _ = joined(lines)
+    assert [each.shape for each in found] == ["line"] * 4
+    for each, drawn in zip(found, lines, strict=True):
+        np.testing.assert_array_equal(each.points, drawn.points)
 
 
 def test_what_is_drawn_twice_or_has_no_length_is_left_out_and_counted() -> None:

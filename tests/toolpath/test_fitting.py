@@ -46,6 +46,8 @@ def test_a_point_that_runs_ahead_on_its_line_is_kept() -> None:
 
 
 def test_points_that_are_reached_at_one_share_are_measured_from_the_first_of_them() -> None:
+    late = np.array([0.0, 0.5, 0.5, 0.5]), np.array([[0, 50, 0], [0, 0, 0], [3, 0, 0], [9, 0, 0]]) * 1e-3
+    assert [each.end[0] * 1e3 for each in straight_pieces(*late, 2e-3)] == pytest.approx([0, 3, 9])
     f, q = np.array([0.5, 0.5, 0.5, 0.5]), np.array([[0, 0, 0], [3, 0, 0], [0, 0, 0], [9, 0, 0]]) * 1e-3
     assert [each.end[0] * 1e3 for each in straight_pieces(f, q, 2e-3)] == pytest.approx([3, 0, 9])
     assert [each.end[0] * 1e3 for each in straight_pieces(f, q, 4e-3)] == pytest.approx([9])

@@ -53,8 +53,9 @@ def test_closed_lines_have_the_length_of_their_formula_and_leave_the_line_on_the
 def test_a_circle_stays_about_its_centre(side):
     (found,) = beside_line(CIRCLE, side, R)
     reach = {"inside": 6, "left": 6}.get(side, 14) * 1e-3
-    distance = np.linalg.norm(found.outline() - 10e-3, axis=1)
-    np.testing.assert_allclose(distance, reach, atol=CHORD_ERROR)
+    corners = found.outline() - 10e-3
+    np.testing.assert_allclose(np.linalg.norm(corners, axis=1), reach, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(corners[1:] + corners[:-1], axis=1) / 2, reach, atol=1.01 * CHORD_ERROR)
     if found.shape == "circle":
         np.testing.assert_allclose(found.points, [[10e-3, 10e-3], [10e-3 + reach, 10e-3]], atol=1e-15)
     np.testing.assert_allclose(found.outline()[0], [10e-3 + reach, 10e-3], atol=1e-15)

@@ -135,6 +135,49 @@ def test_a_contour_that_begins_with_an_arc_begins_along_its_tangent(first: str, 
     assert math.degrees(program.sweep[-1]) == pytest.approx(90 if sense == "+" else -90)
 
 
+@pytest.mark.parametrize("sense", ["+", "-"])
+@pytest.mark.parametrize("angle", [20, 130, -75])
+def test_it_begins_along_the_tangent_of_an_arc_at_any_angle(angle: int, sense: str) -> None:
+    """In complex numbers: the tangent is the spoke of the contour's first point, turned by a quarter the way round."""
+    centre, spoke = 3 - 7j, 12 * cmath.exp(1j * math.radians(angle))
+    turn = 1j if sense == "+" else -1j
+    goal, end = centre + spoke, centre + spoke * turn
+    words = [f"X{z.real:+.9f} Y{z.imag:+.9f}" for z in (goal, end)]
+    firsts = (f"C {words[1]} DR{sense}", f"CP PA{math.degrees(cmath.phase(spoke * turn)):+.9f} DR{sense}")
+    for first in (*firsts, f"CR {words[1]} R+12 DR{sense}", f"CR {words[1]} R12 DR{sense} RL"):
+        program = read(f"CC X+3 Y-7\nAPPR LT {words[0]} LEN5 RL\n{first}\n")
+        begin = goal + 2j * turn * spoke / 12
+        np.testing.assert_allclose(program.end[1:3] @ [1e3, 1e3j, 0], [begin - 5 * turn * spoke / 12, begin], atol=1e-6)
+
+
+@pytest.mark.parametrize("far", [1.0001, 1.2, 1.45, 5.0])
+@pytest.mark.parametrize("side", ["L", "R", "0"])
+def test_lct_touches_its_arc_from_however_near_and_refuses_within(side: str, far: float) -> None:
+    """The touching point T: (T - centre) square to (T - start), by Thales; start at a multiple of R from the centre."""
+    begin = 10 + 20j + {"L": -2, "R": 2, "0": 0}[side]
+    centre = begin + (-5 if side == "L" else 5)
+    for within in (False, True):
+        away = 0.99 if within else far
+        start = centre + 5 * away * cmath.exp(-1j)
+        body = f"L X{start.real:+.9f} Y{start.imag:+.9f} FMAX\nAPPR LCT X+10 Y+20 R5 R{side}\nL Y+50\n"
+        if within:
+            with pytest.raises(GCodeError, match="need a point outside of their arc"):
+                read(body)
+            continue
+        touch = complex(*read(body).end[2, :2] * 1e3)
+        assert abs(touch - centre) == pytest.approx(5)
+        assert ((touch - centre).conjugate() * (touch - start)).real == pytest.approx(0, abs=1e-5)
+        cross = ((touch - centre).conjugate() * (touch - start)).imag
+        assert cross > 0 if side == "L" else cross < 0
+
+
+@pytest.mark.parametrize("line", ["APPR LT X+1 Y+2 LEN5 R0\nL Y+9\n", "L X+9 FMAX\nDEP LN LEN3\n"])
+def test_approaches_need_a_feed_and_say_so(line: str) -> None:
+    head = "BEGIN PGM A MM\nTOOL CALL 1 Z S99\nL X+40 Y+10 Z+5 R0 FMAX M3\n"
+    with pytest.raises(GCodeError, match="Line [45]: APPR and DEP cut, and there is no feed rate; give F"):
+        interpret(f"{head}{line}END PGM A MM\n", tools=TOOL)
+
+
 @pytest.mark.parametrize("end", ["", "\n\n", "* - remark\n;\n"])
 def test_a_program_that_ends_behind_its_approach_is_refused(end: str) -> None:
     head = "BEGIN PGM A MM\nTOOL CALL 1 Z S99 F100\nL X+40 Y+10 Z+5 R0 FMAX M3\n"

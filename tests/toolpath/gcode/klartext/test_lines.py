@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 import time
 
@@ -72,6 +73,22 @@ def test_inches_and_their_feed_in_tenths() -> None:
         ("CC X+0 Y+5\nC IX+5 IY+5 DR- F99\n", (0, 5), -270, (5, 5, 0)),
         ("CC X+0 Y+5\nCP IPA-900 IZ-3 DR- F99\n", (0, 5), -900, (0, 10, -3)),
         ("CC X+0 Y+5\nCP PA+0 DR+ F99\n", (0, 5), 90, (5, 5, 0)),
+        ("CC X+0 Y+5\nCC X+5\nCP IPA+90 DR+ F99\n", (5, 5), 90, (10, 0, 0)),
+        ("L X+5 Y+9 F99\nCC\nL X+9\nCP IPA+90 DR+\n", (5, 9), 90, (5, 13, 0)),
+        (
+            "CC X+0 Y+5\nCP IPA+0.5 DR+ F99\n",
+            (0, 5),
+            0.5,
+            (5 * math.sin(math.pi / 360), 5 - 5 * math.cos(math.pi / 360), 0),
+        ),
+        ("CC X+0 Y+5\nCP IPA+360 DR+ F99\n", (0, 5), 360, (0, 0, 0)),
+        (
+            "CC X+0 Y+5\nCP IPA+361 DR+ F99\n",
+            (0, 5),
+            361,
+            (5 * math.sin(math.pi / 180), 5 - 5 * math.cos(math.pi / 180), 0),
+        ),
+        ("CC X+0 Y+5\nCP IPA-720 DR- F99\n", (0, 5), -720, (0, 0, 0)),
         ("CR X+10 Y+0 R+5 DR- F99\n", (5, 0), -180, (10, 0, 0)),
         ("CR X+5 Y+5 R-5 DR+ R0 F99\n", (0, 5), 90, None),
         ("L X+10 F99\nCT X+20 Y+10\n", (10, 10), 90, (20, 10, 0)),
@@ -103,6 +120,41 @@ def test_circles_in_upright_planes(body: str, centre: tuple[float, ...], end: tu
     np.testing.assert_allclose(program.centre[-2] * 1e3, centre, atol=1e-9)
     np.testing.assert_allclose(program.end[-2] * 1e3, end, atol=1e-9)
     assert math.degrees(program.sweep[-2]) == pytest.approx(sweep)
+
+
+@pytest.mark.parametrize("course", [0, 35, -110, 170])
+@pytest.mark.parametrize("first", ["L", "LP", "C+", "C-", "CP+", "CP-", "CR+", "CR-"])
+def test_ct_goes_on_as_the_line_before_ended(first: str, course: int) -> None:
+    """In complex numbers: every place and course of the plan below is turned by ``course``; CT keeps on its course."""
+    turn = cmath.exp(1j * math.radians(course))
+
+    def place(z: complex) -> str:
+        z = 3 - 8j + z * turn
+        return f"X{z.real:+.9f} Y{z.imag:+.9f}"
+
+    sense = first[-1]
+    up = 1 if sense == "+" else -1
+    polar = f"PR+10 PA{course + 0:+d}", f"PA{course:+d} DR{sense}"
+    plan = {  # from 0 to 10, or from -10i round 0 to 10: what the line is, and its course at its end
+        "L": (f"L {place(10)} F9", 0j, 1 + 0j),
+        "LP": (f"LP {polar[0]} F9", 0j, 1 + 0j),
+        "C": (f"C {place(10)} DR{sense} F9", -10j * up, 1j * up),
+        "CP": (f"CP {polar[1]} F9", -10j * up, 1j * up),
+        "CR": (f"CR {place(10)} R+10 DR{sense} F9", -10j * up, 1j * up),
+    }
+    line, start, on = plan[first.rstrip("+-")]
+    ends = [10 + 6 * on + 4j * on, 10 + 9 * on + 17j * on]
+    program = read(f"L {place(start)} FMAX\nCC {place(0)}\n{line}\n" + "".join(f"CT {place(z)}\n" for z in ends))
+    kept = program.kind == 2
+    kept[:-2] = False
+    at, course_now = 10 + 0j, on
+    for k, end in zip(np.flatnonzero(kept), ends, strict=True):
+        centre = (complex(*program.centre[k, :2] * 1e3) - (3 - 8j)) / turn
+        sweep = float(program.sweep[k])
+        assert ((at - centre).conjugate() * course_now).real == pytest.approx(0, abs=1e-6)
+        assert ((at - centre).conjugate() * course_now).imag * sweep > 0
+        assert centre + (at - centre) * cmath.exp(1j * sweep) == pytest.approx(end, abs=1e-6)
+        at, course_now = end, course_now * cmath.exp(1j * sweep)
 
 
 def test_polar_lines() -> None:
@@ -173,6 +225,13 @@ def test_tool_axes_and_m_words() -> None:
         ("CALL LBL 9\n", "LBL 9 is called, but there is no such label"),
         ("TOOL CALL 2 X S100\n", "TOOL CALL 2 X S100 is not read"),
         ("TOOL CALL 2 Z S100 DL+0.5\n", r"DL\+0.5, which is not read"),
+        ("CC X+1\n", "CC needs two of X, Y and Z"),
+        ("CC X+1 Y+2 Z+3\n", "CC needs two of X, Y and Z"),
+        ("CC A+1 Y+2\n", "CC needs two of X, Y and Z"),
+        ("CC A+1\n", "CC needs two of X, Y and Z"),
+        ("CC X+1 Z+2\nCC Y+5\n", "CC needs two of X, Y and Z"),
+        ("L X+1 F9\nCR X+9 R+9 DR+\nRND R1\n", "RND is read between two straight cuts"),
+        ("CC X+0 Y+5\nCP IPA-0.5 DR+ F9\n", "IPA against its DR"),
         ("M136\n", "M136 counts feeds per turn"),
         ("L X+5 FMAX M140 MB MAX\n", "M140 beside a move"),
         ("LN X+1 TX+0 TY+0 TZ+0 F9\n", "TX TY TZ is 0"),
