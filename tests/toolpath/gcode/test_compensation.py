@@ -427,3 +427,111 @@ def test_g10_l12_and_l13_of_a_fanuc_are_a_radius_and_its_wear() -> None:
     text = "G21 G90 F9\n{}G0 X0 Y-20.\nG1 G41 D1 X0 Y0\nY50.\nG40 X-20.\nM30\n"
     for words, x in (("G10 L12 P1 R5.\n", -5), ("G10 L12 P1 R5.\nG10 L13 P1 R-.5\n", -4.5)):
         assert interpret(text.format(words), dialect="fanuc").end[1, 0] * 1e3 == pytest.approx(x)
+
+
+@pytest.mark.parametrize("code", ["G41.1", "G42.1"])
+@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize("by_radius", [False, True])
+@pytest.mark.parametrize("seed", range(4))
+def test_an_entry_by_an_arc_ends_tangentially_beside_the_end_of_the_programmed_one(code, turn, by_radius, seed):
+    """LinuxCNC: from where the tool is, about a centre on the spoke of the programmed end, one radius beside that."""
+    rng = np.random.default_rng(seed)
+    centre = complex(*rng.uniform(-30, 30, 2))
+    start = centre + 9.0 * np.exp(1j * rng.uniform(-math.pi, math.pi))
+    end = centre + (start - centre) * np.exp(1j * turn * rng.uniform(0.5, 2.8))
+    how = "R9" if by_radius else f"I{(centre - start).real:.12f} J{(centre - start).imag:.12f}"
+    spoke = (end - centre) / abs(end - centre)
+    beyond = end + 8.0 * turn * 1j * spoke
+    text = (
+        f"G21 G90 G17 F600\nG0 {xy(start)}\n{code} D{2 * R}\nG{3 if turn > 0 else 2} {xy(end)} {how}\nG1 {xy(beyond)}\n"
+    )
+    program = interpret(f"{text}G40\nG1 X90 Y90\nM2\n")
+    inside = (turn > 0) == (code == "G41.1")
+    beside = end + (-R if inside else R) * spoke
+    found, about = (places[1, :2] @ [1e3, 1e3j] for places in (program.end, program.centre))
+    assert found == pytest.approx(beside, abs=1e-8)
+    assert program.start[1, :2] @ [1e3, 1e3j] == pytest.approx(start, abs=1e-9)
+    assert abs(about - start) == pytest.approx(abs(about - beside), abs=1e-8)
+    assert ((about - beside) / spoke).imag == pytest.approx(0.0, abs=1e-8)
+    assert ((about - beside) / spoke).real < 0.0
+    assert about + (start - about) * np.exp(1j * program.sweep[1]) == pytest.approx(beside, abs=1e-8)
+    assert program.sweep[1] * turn > 0.0
+    assert program.end[2, :2] @ [1e3, 1e3j] == pytest.approx(beside + (beyond - end), abs=1e-8)
+
+
+@pytest.mark.parametrize("code", ["G41.1", "G42.1"])
+@pytest.mark.parametrize("course", [0.3, 2.0, -2.5])
+@pytest.mark.parametrize("first", ["G1", "G2"])
+def test_an_entry_leads_farther_than_the_cutters_radius(code, course, first):
+    """From a place far from the origin; a straight one ends square beside its own end."""
+    side = 1j if code == "G41.1" else -1j
+    for length in (0.99 * R, 1.01 * R, 7.0):
+        end = 30 + 40j + length * np.exp(1j * course)
+        how = "" if first == "G1" else " R50"
+        text = f"G21 G90 G17 F600\nG0 X30 Y40\n{code} D{2 * R}\n{first} {xy(end)}{how}\nG40\nG1 X99\nM2\n"
+        if length < R:
+            with pytest.raises(GCodeError, match="^Line 4: the first (move|arc) with cutter compensation"):
+                interpret(text)
+        elif first == "G1":
+            beside = end + R * side * np.exp(1j * course)
+            assert interpret(text).end[1, :2] @ [1e3, 1e3j] == pytest.approx(beside, abs=1e-9)
+        else:
+            interpret(text)
+
+
+@pytest.mark.parametrize("code", ["G41.1", "G42.1"])
+@pytest.mark.parametrize("heading", np.linspace(-math.pi, math.pi, 11)[1:])
+def test_lines_meet_arcs_at_every_heading(code, heading):
+    for turn in (1.2, -1.2):
+        for bend in (1.2, -1.2):
+            for kinds in ("la", "aa"):
+                outline = Outline((1.0, 2.0), heading)
+                for kind in kinds:
+                    outline.line(10.0) if kind == "l" else outline.arc(6.0, bend)
+                    outline.heading += turn
+                outline.line(10.0)
+                check(outline, code)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_path_in_another_plane_is_the_same_path(seed):
+    """Z for X, X for Y and the height along Y, as G18 (ZX) has them."""
+    outline = random_outline(seed, math.radians(80.0))
+    text = outline.program("G42.1").replace(" Z0", "")
+    lines = [f"{line} Z{-k}" if line[:2] in ("G1", "G2", "G3") else line for k, line in enumerate(text.splitlines())]
+    other = [line.translate(str.maketrans("XYZIJ", "ZXYKI")).replace("G17", "G18") for line in lines]
+    flat, upright = (interpret("\n".join(each) + "\n") for each in (lines, other))
+    np.testing.assert_allclose(upright.end[:, [2, 0, 1]], flat.end, atol=1e-12)
+    np.testing.assert_allclose(upright.sweep, flat.sweep, atol=1e-9)
+    arcs = flat.kind == 2
+    np.testing.assert_allclose(upright.centre[arcs][:, [2, 0]], flat.centre[arcs][:, :2], atol=1e-12)
+
+
+@pytest.mark.parametrize("code", ["G41.1", "G42.1"])
+@pytest.mark.parametrize(("angle", "arcs"), [(0.045, 0), (0.055, 1)])
+def test_a_bend_of_a_twentieth_of_a_radian_is_a_corner(code, angle, arcs):
+    """As LinuxCNC has it (TOLERANCE_CONCAVE_CORNER)."""
+    outline = Outline((1.0, 2.0), 0.4)
+    outline.line(10.0)
+    outline.heading += angle * (-1 if code == "G41.1" else 1)
+    outline.line(10.0)
+    assert (interpret(outline.program(code)).kind == 2).sum() == arcs
+
+
+def test_an_arc_right_behind_g40_is_refused() -> None:
+    text = "G21 G90 G17 F600\nG0 X-8 Y0\nG41.1 D2\nG1 X0 Y0\nX20\nG40\n{}\nM2\n"
+    with pytest.raises(GCodeError, match="^Line 7: "):
+        interpret(text.format("G2 X30 Y-10 J-10"))
+    assert len(interpret(text.format("G1 X20 Y0\nG2 X30 Y-10 J-10")))
+
+
+@pytest.mark.parametrize("corner", [",R2.54", ",C2.54"])
+def test_a_change_of_units_behind_a_corner_that_waits_for_its_second_cut_changes_nothing(corner: str) -> None:
+    text = "G21 G90 F254.\nG0 X0 Y-20. Z0 A0\nG41 D1 G1 X0 Y0\nY50.8 A7. {corner}\n{unit}X{x}\nG40 X{far}\nM30\n"
+    tools = {1: Tool(1, 10e-3)}
+    plain = interpret(text.format(corner=corner, unit="", x="50.8", far="101.6"), dialect="fanuc", tools=tools)
+    inch = interpret(text.format(corner=corner, unit="G20\n", x="2.", far="4."), dialect="fanuc", tools=tools)
+    np.testing.assert_allclose(inch.end, plain.end, atol=1e-9)
+    np.testing.assert_allclose(inch.rotary, plain.rotary, atol=1e-12)
+    np.testing.assert_allclose(inch.v_f, plain.v_f)
+    np.testing.assert_allclose(inch.sweep, plain.sweep)
