@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -90,7 +91,7 @@ def test_a_figure_cut_up_and_mixed_is_found_again(seed: int) -> None:
     closed, count = seed % 2 == 0, 9
     angles = [2 * math.pi * k / count * (1.0 if closed else 0.8) for k in range(count)]
     corners = [(round(r.uniform(5, 20) * math.cos(t), 3), round(r.uniform(5, 20) * math.sin(t), 3)) for t in angles]
-    pairs = [*zip(corners, corners[1:]), *([(corners[-1], corners[0])] if closed else [])]
+    pairs = [*pairwise(corners), *([(corners[-1], corners[0])] if closed else [])]
     pieces = [line(*(pair if r.random() < 0.5 else pair[::-1])) for pair in pairs]
     r.shuffle(pieces)
     (found,), twice, dots = joined(pieces)

@@ -65,7 +65,7 @@ def test_a_circle_stays_about_its_centre(side):
 @pytest.mark.parametrize("side", ["left", "right"])
 @pytest.mark.parametrize("centre", [0, 30 - 7j])
 def test_an_arc_anywhere_is_moved_along_its_spokes(way, side, centre):
-    """In complex numbers: each of its points moves by the radius, towards the centre where the arc turns to its side."""
+    """In complex numbers: each point moves by the radius, towards the centre where the arc turns to its side."""
     spokes = np.exp(1j * way * np.array([0.3, 1.1, 2.4]))
     points = centre + 10 * spokes
     (found,) = beside_line(contour("arc", np.column_stack([points.real, points.imag])), side, R)
@@ -90,7 +90,7 @@ def test_a_bend_of_two_lines_is_three_points_inside_and_rounded_outside():
 
 @pytest.mark.parametrize("radius", [1e-6, 1e-4, R, 0.3])
 def test_round_corners_are_as_fine_as_other_chords(radius):
-    """Every point of a chord about a corner is within the chord error of the radius, and there are at least 8 a quarter."""
+    """Chords about a corner are within the chord error of its radius; there are at least 8 a quarter."""
     (found,) = beside_line(SQUARE, "outside", radius)
     middles = 0.5 * (found.outline()[1:] + found.outline()[:-1])
     distance = shapely.distance(shapely.Polygon(SQUARE.points), shapely.points(middles))
@@ -101,7 +101,7 @@ def test_round_corners_are_as_fine_as_other_chords(radius):
 
 @pytest.mark.parametrize(("side", "outer", "inner"), [("outside", False, True), ("right", True, False)])
 def test_a_mouth_that_closes_leaves_a_line_in_the_cavity(side, outer, inner):
-    """Round a C whose mouth is narrower than the cutter: once about it, and once in it, the material on the same hand."""
+    """Round a C whose mouth is narrower than the cutter: about it and in it, the material on the same hand."""
     c = [
         (0, 0),
         (60, 0),

@@ -35,6 +35,7 @@ SHAPES = (*CORNERS, "CR=", "AR=", "TURN=", "ANG=")
 PLACES = AXES + ROTARY + CENTRES + "R"
 CALLS = {"M97", "M98", "M99", "M198", "M17", "G65", "G66", "G67"}
 _CYCLE_CALL = re.compile(r"\s*(N\d+\s*)?(?:CYCLE\d+|HOLES\d+|MCALL\b.*)\s*(?:\(.*\))?\s*(;.*)?$", re.IGNORECASE)
+_REMARK, _PARAMETER = re.compile(r"\([^()]*\)|;.*"), (re.compile("#"), re.compile(r"#|\bR\d"))
 _MODAL_CALL = re.compile(r"\s*(N\d+\s*)?MCALL\b", re.IGNORECASE)
 
 
@@ -95,13 +96,16 @@ class Rewriter:
     def _as_run(self, text_lines: list[str], executed: list[Executed]) -> None:
         numbered: set[int] = set()
         before: Modes | None = None
-        for text in text_lines[: executed[0].index if executed else 0]:
-            self.lines.append(text)
+        self.lines += text_lines[: executed[0].index if executed else 0]
         for each in executed:
             text = each.text if each.index not in numbered else re.sub(r"^(\s*/?\s*)N\d+\s*", r"\1", each.text)
             numbered.add(each.index)
             moves = range(each.first, each.last)
             if len(moves) or self._kept(text, before, each.modes):
+                if not len(moves) and _PARAMETER[self.dialect == "sinumerik"].search(_REMARK.sub("", text)):
+                    raise GCodeError.at(
+                        each.index + 1, f"{text.strip()[:40]!r} is computed, and cannot be written back."
+                    )
                 self._line(text, moves, each.modes, each.index + 1)
             before = each.modes
 
@@ -128,9 +132,8 @@ class Rewriter:
         if tokens is None:
             call = _CYCLE_CALL.match(text)
             if call is None:
-                raise GCodeError.at(
-                    number, f"{text.strip()[:40]!r} moves the tool in a way that cannot be written back."
-                )
+                what = f"{text.strip()[:40]!r} moves the tool in a way that cannot be written back."
+                raise GCodeError.at(number, what)
             tokens = scan(f"{call[1] or ''}{call[2] or ''}") or []
             self.unrolled["canned cycles"] = None
         legs = [leg for j in moves for leg in self._legs(j)]
@@ -243,11 +246,8 @@ class Rewriter:
         if tokens and self._as_before(leg, start, 0.5 * 10.0**-digits * modes.factor):
             return dict.fromkeys((*CENTRES, "R"), AS_BEFORE)
         if "R" in tokens and abs(leg.piece.sweep) < BY_RADIUS:
-            return {
-                "R": self._number(
-                    math.hypot(middle[first] - begin[first], middle[second] - begin[second]), digits, tokens
-                )
-            }
+            size = math.hypot(middle[first] - begin[first], middle[second] - begin[second])
+            return {"R": self._number(size, digits, tokens)}
         value = middle if modes.arc_absolute else middle - begin
         return {CENTRES[i]: self._number(value[i], digits, tokens) for i in sorted((first, second))}
 

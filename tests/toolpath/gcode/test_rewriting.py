@@ -166,3 +166,146 @@ def test_fanuc_numbers_keep_their_point() -> None:
 def test_a_line_that_computes_what_is_no_place_is_refused_by_its_line() -> None:
     with pytest.raises(GCodeError, match=r"Line 5: 'S#1' is computed"):
         rewritten("G21 G90\n#1=500\nG0 X0 Y0 Z5\nG1 Z-2 F500\nG1 X#1 S#1\nM2\n", "auto", SHIFT)
+
+
+def grown(program: Program, j: int) -> list[Piece]:
+    """Move ``j`` in one piece, twice a thousandth farther from the origin: arcs change their size."""
+    scale = np.array([1.002, 1.002, 1.002])
+    centre = None if program.kind[j] != ARC else (program.centre[j] + program.lift[j]) * scale
+    return [Piece(0.0, 1.0, (program.end[j] + program.lift[j]) * scale, centre, program.sweep[j])]
+
+
+def chorded(program: Program, j: int) -> list[Piece]:
+    """Move ``j`` in two straight pieces, whatever it was."""
+    pieces = list(halves(program, j, SHIFT, 2))
+    return [Piece(each.f0, each.f1, each.end) for each in pieces]
+
+
+@pytest.mark.parametrize("name", PLAIN)
+@pytest.mark.parametrize("lead", [grown, chorded])
+def test_cuts_that_change_their_form_are_told_in_full(name: str, lead) -> None:
+    """Ends, kinds, centres and turnings as they were asked for, read again; feeds too, but for inverse time."""
+    dialect = "fanuc" if name == "G68" else "auto"
+    program, executed, known = trace(PLAIN[name], dialect, TOOLS)
+    feed = np.flatnonzero(np.broadcast_to(program.at_feed, len(program)))
+    made = {int(j): lead(program, int(j)) for j in feed}
+    ends = (program.end + program.lift) * (1.002 if lead is grown else 1.0)
+    if name == "home":
+        ends = program.end + program.lift
+    found = Rewriter(program, known, made, ends).write(split_lines(PLAIN[name]), executed)
+    again = interpret(found.text.encode(), dialect=dialect, tools=TOOLS)
+    pieces = [piece for j in feed if program.length[j] > 1e-9 for piece in made[int(j)]]
+    kept = np.broadcast_to(again.at_feed, len(again)) & (again.length > 1e-9)
+    np.testing.assert_allclose((again.end + again.lift)[kept], [each.end for each in pieces], atol=0.3e-6)
+    assert (again.kind[kept] == ARC).tolist() == [each.centre is not None for each in pieces]
+    round_again, asked = kept & (again.kind == ARC), [each for each in pieces if each.centre is not None]
+    if asked:
+        np.testing.assert_allclose(again.sweep[round_again], [each.sweep for each in asked], atol=2e-4)
+        third = 19 - again.plane[round_again]
+        off = (again.centre + again.lift)[round_again] - [each.centre for each in asked]
+        off[np.arange(len(off)), third] = 0.0  # along the axis of the arc it says nothing
+        np.testing.assert_allclose(off, 0.0, atol=6e-6)
+    if lead is grown:
+        before, after = (
+            [k for k, line in enumerate(text.splitlines()) if "R" in line] for text in (PLAIN[name], found.text)
+        )
+        wide = [k - 1 for k in program.line[np.abs(program.sweep) > np.radians(170.0)]]
+        assert after == [k for k in before if k not in wide], "but for those of about half a turn or more"
+
+
+@pytest.mark.parametrize("code", [73, 81, 82, 83, 85, 86, 89])
+@pytest.mark.parametrize("back", ["G98", "G99"])
+def test_every_cycle_is_written_out_as_its_moves(code: int, back: str) -> None:
+    more = {73: " Q2", 82: " P.5", 83: " Q2", 89: " P.5", 86: " P.5"}.get(code, "")
+    text = f"G21 G90 S900 M3\nG0 X0 Y0 Z10\n{back} G{code} X10 Y10 Z-6 R2{more} F100 (holes)\nX20\nG80\nG0 X0\nM2\n"
+    found, program = rewritten(text, "auto", SHIFT)
+    again = interpret(found.text.encode(), tools=TOOLS)
+    np.testing.assert_allclose(cuts(again), cuts(program) + SHIFT, atol=0.3e-6)
+    np.testing.assert_allclose(again.dwell_time, program.dwell_time)
+    np.testing.assert_allclose(again.v_f[again.kind == 1], 0.1 / 60)
+    assert found.unrolled == ("canned cycles",)
+    assert f"G{code}" not in found.text
+    assert found.text.count("(holes)") == 1
+    goes = program.length > 1e-9
+    np.testing.assert_allclose(again.end[again.kind == 0][-1], program.end[goes & (program.kind == 0)][-1], atol=0.3e-6)
+
+
+LOOPED = {
+    "frames": (
+        "sinumerik",
+        "G71 G90 G17\nG0 X0 Y0 Z5\nFOR R1=1 TO 3\nATRANS X10 Y2\nG1 X1 Y0 Z-1 F300\nG1 Y9\n"
+        "G0 Z5\nENDFOR\n"
+        "TRANS\nG1 X0 Y0\nM30\n",
+    ),
+    "origins": (
+        "auto",
+        "G21 G90\nG0 X0 Y0 Z5\nG1 X2 F300\no1 repeat [3]\nG10 L2 P2 X30 Y5 R10\nG55\n"
+        "G1 X1 Y2 Z-1 F300\nG91\nG1 X2\nG90\nG54\no1 endrepeat\nG1 X9\nM2\n",
+    ),
+    "dwells": ("auto", "G21 G90\nG0 X0 Y0 Z5\no1 repeat [3]\nG91 G1 X1 F300\nG90 G4 P[1/2]\no1 endrepeat\nM2\n"),
+    "units": (
+        "auto",
+        "G21 G90 F300\no1 sub\nG20\nG1 X1 Y.5\nG21\nG1 X1 Y9\no1 endsub\nG0 Z5\no1 call\nG1 X50\no1 call\nM2\n",
+    ),
+    "planes": (
+        "auto",
+        "G21 G90 F300\nG0 X0 Y0 Z0\no1 sub\nG1 X1\nG18\n"
+        "G2 X11 Z0 R6\nG17\nG3 X1 Y0 R6\no1 endsub\no1 call\nG1 X0\no1 call\nM2\n",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LOOPED)
+def test_loops_keep_what_says_how_their_words_count(name: str) -> None:
+    dialect, text = LOOPED[name]
+    found, program = rewritten(text, dialect, SHIFT)
+    again = interpret(found.text.encode(), dialect=dialect, tools=TOOLS)
+    np.testing.assert_allclose(cuts(again), cuts(program) + SHIFT, atol=0.3e-6)
+    assert again.dwell_time == pytest.approx(program.dwell_time)
+    assert found.unrolled[0] == "loops and subprograms"
+
+
+@pytest.mark.parametrize("length", [0.0, 30e-3])
+def test_what_only_the_machine_knows_is_kept_where_nothing_is_led_aside_and_else_refused(length: float) -> None:
+    """G53 and G28 lead where they led, with a tool length on too; a cut by G53 that is to be led aside is refused."""
+    tools = {1: Tool(1, 8e-3, (0.0, 0.0, length))}
+    text = "G21 G90\nT1 M6\nG43 H1\nG0 X0 Y0 Z5\nG1 X20 Z-2 F300\nG53 G0 Z90\nG0 X30\nG1 Z-3\n{}G1 X40\nM2\n"
+    for line, refused in (("", False), ("", True), ("G91 G28 Z0\nG90\n", False)):
+        program, executed, name = trace(text.format(line), "auto", tools)
+        feed = np.flatnonzero(np.broadcast_to(program.at_feed, len(program)))
+        made = {int(j): list(halves(program, int(j), SHIFT, 1)) for j in feed}
+        ends = program.end + program.lift + (SHIFT if refused else 0.0)
+        writer = Rewriter(program, name, made, ends)
+        if refused:
+            with pytest.raises(GCodeError, match=r"^Line 6: 'G53 G0 Z90' cannot be led elsewhere; write its moves"):
+                writer.write(split_lines(text.format(line)), executed)
+            continue
+        found = writer.write(split_lines(text.format(line)), executed)
+        again = interpret(found.text.encode(), tools=tools)
+        np.testing.assert_allclose(cuts(again), cuts(program) + SHIFT, atol=0.3e-6)
+        assert "G53 G0 Z90" in found.text.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("dialect", "line"),
+    [
+        ("auto", "G4 P[#1/2]"),
+        ("auto", "G4 P#1"),
+        ("auto", "G10 L2 P1 X[#1*30]"),
+        ("fanuc", "G4 P#1"),
+        ("sinumerik", "ATRANS X=R1*30"),
+    ],
+)
+def test_a_kept_line_of_a_loop_that_counts_by_a_parameter_is_refused(dialect: str, line: str) -> None:
+    """What sets the parameter is run, not written: the line would count by 0, or by what nobody has set."""
+    loops = {
+        "auto": ("#1=0\no1 while [#1 LT 3]\n#1=[#1+1]", "o1 endwhile"),
+        "fanuc": ("#1=0\nWHILE[#1LT3]DO1\n#1=#1+1", "END1"),
+        "sinumerik": ("R1=0\nWHILE R1<3\nR1=R1+1", "ENDWHILE"),
+    }
+    begin, end = loops[dialect]
+    first = {"auto": "G21 G90", "fanuc": "O1\nG21 G90", "sinumerik": "G71 G90"}[dialect]
+    text = f"{first}\nG0 X0 Y0 Z5\nG1 Z-2 F300\n{begin}\nG91 G1 X1\n{line}\n{end}\nM30\n"
+    number = text.splitlines().index(line) + 1
+    with pytest.raises(GCodeError, match=rf"^Line {number}: .* is computed, and cannot be written back"):
+        rewritten(text, dialect, SHIFT)

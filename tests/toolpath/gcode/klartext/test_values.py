@@ -219,7 +219,7 @@ def test_a_drill_that_leaves_at_rapid_says_so_by_max() -> None:
 
 RAPID = 0.0
 TABLE = {
-    # what is said beside the common words: plunges to these depths below the surface, feed down and out, whether it taps
+    # what is said beside the common words: depths of the plunges below the surface, feed down and out, whether it taps
     "200 Q202=3": ([3, 6], 120, RAPID, False),
     "200 Q202=4": ([4], 120, RAPID, False),
     "200 Q202=8": ([], 120, RAPID, False),
