@@ -9,6 +9,7 @@ import robomill as rm
 from robomill.errors import ToolpathError
 from robomill.toolpath.contour import Contour
 from robomill.toolpath.drawing import Drawing, LayerCut
+from robomill.toolpath.sketch import Sketch
 
 SQUARE = Contour("slots", "polygon", np.array([[10, 10], [50, 10], [50, 30], [10, 30]]) * 1e-3)
 LINE = Contour("marks", "line", np.array([[0, 0], [30, 0]]) * 1e-3)
@@ -85,3 +86,38 @@ def test_the_simulated_groove_beside_a_line_is_where_the_offset_says() -> None:
 def test_refusals_say_what_to_do(cuts, more, said) -> None:
     with pytest.raises(ToolpathError, match=said.replace("(", r"\(")):
         DRAWING.sketch(cuts, **more)
+
+
+@pytest.mark.parametrize(
+    ("step", "passes"),
+    [(5, [3]), (3, [3]), (2.9999, [1.5, 3]), (1, [1, 2, 3]), (0.75, [0.75, 1.5, 2.25, 3]), (None, [3])],
+)
+def test_a_step_down_is_the_most_of_a_pass(step: float | None, passes: list[float]) -> None:
+    np.testing.assert_allclose(cut(step_down_mm=step).depths() * 1e3, passes)
+
+
+def test_every_other_pass_of_an_open_line_goes_back_and_closed_ones_all_go_on() -> None:
+    found = DRAWING.sketch([cut("marks", step_down_mm=1), cut(step_down_mm=1.5)]).elements
+    ways = [each.points[0].tolist() for each in found[:3]]
+    assert ways == [LINE.points[0].tolist(), LINE.points[1].tolist(), LINE.points[0].tolist()]
+    np.testing.assert_allclose([each.depth for each in found], [1e-3, 2e-3, 3e-3, 1.5e-3, 3e-3])
+    for each in found[3:]:
+        np.testing.assert_array_equal(each.points, SQUARE.points)
+    assert {each.v_f for each in found} == {0.01}
+
+
+def test_a_drawing_says_what_it_holds_and_knows_no_other_origin_or_layer() -> None:
+    assert repr(DRAWING) == "<Drawing part.dxf: 2 contours on slots, marks, 50.00 x 30.00 mm>"
+    assert DRAWING.layers == ("slots", "marks")
+    assert DRAWING.of_layer("marks") == (LINE,)
+    with pytest.raises(ToolpathError, match="Origin: found 'middle', expected one of drawing, corner, centre"):
+        DRAWING.moved("middle")
+    said = "<LayerCut slots, inside: depth 3 mm, feed 600 mm/min, step down 1 mm>"
+    assert repr(cut(side="inside", step_down_mm=1)) == said
+
+
+def test_a_sketch_that_is_given_keeps_its_settings() -> None:
+    kept = Sketch(v_plunge=4e-3, clearance=7e-3, n_s=120.0)
+    found = DRAWING.sketch([cut("marks")], sketch=kept)
+    assert (found.v_plunge, found.clearance, found.n_s) == (4e-3, 7e-3, 120.0)
+    assert len(found.elements) == 1

@@ -23,6 +23,20 @@ def test_lines_that_do_not_touch_are_joined_by_a_rapid() -> None:
     assert path.t[-1] == pytest.approx(0.02 / 0.03)
 
 
+def test_a_path_begins_without_a_feed_and_says_how_large_it_is() -> None:
+    path = two_lines()
+    np.testing.assert_array_equal(path.v_f, [0, 0.03, 0, 0.03])
+    assert repr(path) == "<Toolpath 4 points, 20.0 mm at feed within 10.0 x 20.0 x 0.0 mm>"
+    table = path.columns()
+    assert table["row"].tolist() == [1, 1, 2, 2]
+    np.testing.assert_allclose(table["X_mm"], [0, 10, 0, 10], atol=1e-9)
+    np.testing.assert_allclose(table["Y_mm"], [0, 0, 20, 20], atol=1e-9)
+    np.testing.assert_allclose(table["station_mm"], [0, 10, 10, 20])
+    np.testing.assert_allclose(table["k_z"], 1)
+    np.testing.assert_allclose(table["feed_mm_min"], [0, 1800, 0, 1800])
+    np.testing.assert_allclose(table["spindle_1_min"], 12000)
+
+
 def test_lines_that_touch_are_not() -> None:
     path = toolpath_from_lines([[0, 0, 0], [0.01, 0, 0]], [[0.01, 0, 0], [0.01, 0.01, 0]], 0.03)
     assert path.cutting.tolist() == [False, True, True]

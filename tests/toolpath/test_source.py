@@ -6,10 +6,20 @@ import numpy as np
 import pytest
 
 from robomill.errors import ToolpathError
+from robomill.toolpath.corrected import key_of, marked
 from robomill.toolpath.gcode import Tool
+from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.sketch_presets import PRESETS, preset
-from robomill.toolpath.source import MAX_KEPT, GCodeSource, LinesSource, SketchSource
+from robomill.toolpath.source import (
+    MAX_KEPT,
+    GCodeSource,
+    LinesSource,
+    PointsSource,
+    SketchSource,
+    meant_by,
+    wanted_of,
+)
 from robomill.toolpath.tools import Tools
 
 TEXT = "G21 G90 S600 M3\nT1 M6\nG0 X0 Y0 Z5\nG43 H1\nG1 Z-1 F600\nX10\nG0 Z5\nM2\n"
@@ -96,3 +106,68 @@ def test_a_program_that_says_its_speed_keeps_it() -> None:
 def test_a_speed_is_no_less_than_nothing() -> None:
     with pytest.raises(ToolpathError, match="Spindle speed: found −60"):
         GCodeSource(TEXT, n_s=-1.0)
+
+
+LEANING = "G21 G90 S600 M3\nG0 X0 Y0 Z5 A0\nG1 Z-1 F600\nX10 A120\nG0 Z5\nM2\n"
+
+
+def test_a_rotary_axis_that_nobody_has_explained_is_asked_for_until_it_is() -> None:
+    """It turns the part, or it leans the tool: then the path is that of the bare program, and nothing is asked."""
+    bare, tool, part = (GCodeSource(LEANING, table=name).read() for name in ("", "tool", "A"))
+    assert [f.code for f in bare.findings].count("rotary-asked") == 1
+    assert [f.code for f in tool.findings] == [f.code for f in bare.findings if f.code != "rotary-asked"]
+    np.testing.assert_array_equal(tool.k, bare.k)
+    np.testing.assert_array_equal(tool.p, bare.p)
+    assert "rotary-asked" not in [f.code for f in part.findings]
+    assert not np.allclose(part.p[-1], bare.p[-1])
+    with pytest.raises(ToolpathError, match="rotary axis 'D'; expected one of A, -A, B, -B, C, -C, tool"):
+        GCodeSource(LEANING, table="D")
+
+
+def test_what_was_meant_is_a_path_or_its_source() -> None:
+    path = GCodeSource(TEXT).read()
+    source = GCodeSource(TEXT, wanted=PointsSource(path))
+    assert GCodeSource(TEXT, wanted=path).wanted == source.wanted
+    assert wanted_of(source) == PointsSource(path)
+    assert wanted_of(GCodeSource(TEXT)) is None
+    assert wanted_of(PointsSource(path)) is None
+    with pytest.raises(ToolpathError, match="Program, wanted: found 7; expected the path that was meant"):
+        GCodeSource(TEXT, wanted=7)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("dialect", ["auto", "sinumerik"])
+def test_a_corrected_program_finds_what_it_was_corrected_for(dialect: str) -> None:
+    """By the lines of that, or of what that was corrected for in its turn; anything else stays as it is."""
+    meant, other = GCodeSource(TEXT, "meant.nc"), GCodeSource(TEXT.replace("X10", "X11"), "meant.nc")
+    head = marked(TEXT.replace("X10", "X10.1").splitlines(), "meant.nc", key_of(meant.block_texts()), dialect)
+    corrected = GCodeSource("\n".join(head), "new.nc", dialect)
+    again = GCodeSource("\n".join(head).replace("X10.1", "X10.2"), "newer.nc", dialect)
+    assert corrected.mark is not None
+    assert wanted_of(meant_by(corrected, meant)) == meant
+    assert wanted_of(meant_by(again, meant_by(corrected, meant))) == meant
+    assert meant_by(corrected, other) is corrected
+    assert meant_by(other, meant) is other
+    known = meant_by(corrected, meant)
+    assert meant_by(known, other) is known
+    points = PointsSource(meant.read())
+    assert meant_by(points, meant) is points
+
+
+def test_points_are_told_by_their_last_move() -> None:
+    path = Toolpath.from_points(p_mm=[[0, 0, 5], [0, 0, -2], [50, 0.25, -2]], feed_mm_min=1800)
+    source = PointsSource(path)
+    assert (source.kind, source.block_name, source.read()) == ("points", "point", path)
+    texts = source.block_texts()
+    assert len(texts) == path.block.max()
+    assert texts[-1] == "(50, 0.25, −2)  1800 mm/min"
+    program = GCodeSource("G20 G90 S600 M3\nG0 X0 Y0 Z1\n\nG1 X1 F10\nM2\n").read()
+    assert program.units == "in"
+    lines = PointsSource(program)
+    assert lines.path.units == "mm"
+    assert lines.block_texts() == ["", "(0, 0, 25.4)  rapid", "", "(25.4, 0, 25.4)  254 mm/min"]
+
+
+def test_sources_say_what_they_are() -> None:
+    assert repr(GCodeSource(TEXT, "a.nc")) == "<GCodeSource a.nc, 8 lines>"
+    assert repr(LinesSource([[0, 0, 0]], [[0.01, 0, 0]], [0.01])) == "<LinesSource table of lines, 1 row>"
+    assert repr(SketchSource(Sketch())) == "<SketchSource sketch, 0 shapes>"
