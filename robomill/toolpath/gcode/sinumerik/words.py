@@ -17,7 +17,7 @@ from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.fanuc.macro_calls import MacroCalls
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
-from robomill.toolpath.gcode.rules.motion_rules import MINUTE, dwell
+from robomill.toolpath.gcode.rules.motion_rules import MINUTE, dwell, feed_speed
 from robomill.toolpath.gcode.words import Block, normalise
 from robomill.toolpath.plane import turned
 
@@ -49,7 +49,7 @@ class Hole:
     """A drilling cycle: heights along Z in program units, dwell in s, feeds.
 
     A ``feed`` of 0 is the one in force, so is an ``out`` of infinity; an ``out`` of 0 is a rapid. A tap goes by its
-    ``pitch``, or ``taps`` by a feed, in a chuck that gives.
+    ``pitch``, or ``taps`` by a feed, in a chuck that gives. ``first`` is by how much the first depth is gone to slower.
     """
 
     retract: float
@@ -62,6 +62,7 @@ class Hole:
     to_clear: bool
     pitch: float
     taps: bool = False
+    first: float = 1.0
 
 
 class SinumerikWords(MacroCalls):
@@ -282,7 +283,8 @@ class SinumerikWords(MacroCalls):
         feeds[1] = math.inf if kind == "89" else feeds[1]
         to_clear = kind == "83" and given[11] == 1.0
         seconds = 0.0 if math.isnan(wait) else max(wait, 0.0)
-        return Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], pecks, to_clear, pitch)
+        first = given[10] if kind == "83" and 0.0 < given[10] < 1.0 else 1.0
+        return Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], pecks, to_clear, pitch, first=first)
 
     def _pecks(self, given: list[float], reference: float, bottom: float, line: int) -> tuple[float, ...]:
         """Depths of CYCLE83 before the last: FDEP or FDPR first, then less by DAM each time, DAM at least."""
@@ -318,12 +320,13 @@ class SinumerikWords(MacroCalls):
             down = out = hole.pitch * machine.factor * machine.speed / MINUTE
         before, machine.motion = machine.motion, 840 if hole.pitch or hole.taps else machine.motion
         self._to(TRAVERSE, line, hole.clear)
-        for depth in hole.pecks:
-            self._to(FEED, line, depth, down)
+        begin = down if hole.first == 1.0 else hole.first * (feed_speed(machine) if down is None else down)
+        for n, depth in enumerate(hole.pecks):
+            self._to(FEED, line, depth, down if n else begin)
             if hole.to_clear:
                 self._to(TRAVERSE, line, hole.clear)
                 self._to(TRAVERSE, line, depth)
-        self._to(FEED, line, hole.bottom, down)
+        self._to(FEED, line, hole.bottom, down if hole.pecks else begin)
         if hole.dwell:
             dwell(machine, hole.dwell)
         if hole.out or hole.pitch:

@@ -39,6 +39,9 @@ def test_a_row_begins_at_the_end_that_is_nearer_and_a_circle_at_its_angle() -> N
     drill = "MCALL CYCLE81(20,0,2,-10)\n"
     assert holes(f"{drill}HOLES1(100,0,90,5,10,3)\nMCALL\n") == [[100, 5], [100, 15], [100, 25]]
     assert holes(f"G0 Y99\n{drill}HOLES1(100,0,90,5,10,3)\nMCALL\n") == [[100, 25], [100, 15], [100, 5]]
+    assert holes(f"{drill}HOLES1(7,8,33,0,10,1)\nMCALL\n") == [[7, 8]]
+    assert holes(f"{drill}HOLES1(1,2,180,-5,-10,2)\nMCALL\n") == [[-4, 2], [-14, 2]]
+    assert holes(f"{drill}HOLES2(1,2,10,90,0,1)\nMCALL\n") == [[1, 12]]
     assert holes(f"{drill}HOLES2(1,2,10,90,0,4)\nMCALL\n") == [[1, 12], [-9, 2], [1, -8], [11, 2]]
     assert holes(f"{drill}R1=2\nHOLES2(0,0,10,,30,R1)\nMCALL\n") == [[10, 0], [8.660254, 5]]
     assert holes(f"TRANS X100\n{drill}AMIRROR X0\nHOLES2(0,0,10,,30,2)\nMCALL\n") == [[90, 0], [91.339746, 5]]
@@ -96,6 +99,45 @@ def test_arcs_turn_the_other_way_in_a_mirror() -> None:
     np.testing.assert_allclose(np.degrees(program.sweep[2:]), [-90, -180, -90])
 
 
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("turn", ["", "ROT RPL=40\n", "TRANS X3 Y-4\nAROT RPL=-75\n", "MIRROR Y0\n", "SCALE X2 Y2\n"])
+@pytest.mark.parametrize("by", ["G90", "G91"])
+def test_bent_moves_follow_their_circles_in_every_frame(seed: int, turn: str, by: str) -> None:
+    """CIP through a point of a circle, then CT on to another place along the tangent, in complex numbers."""
+    rng = np.random.default_rng(seed)
+    centre, radius = complex(*rng.uniform(-9, 9, 2)), rng.uniform(3, 9)
+    way = 1 if seed % 2 else -1
+    start, middle, end = (centre + radius * np.exp(1j * way * (seed + t)) for t in (0.0, 0.9, 2.5))
+    course = 1j * way * (end - centre)
+    further = end + course * (0.8 + 0.9j)
+
+    def words(z: complex, base: complex, x: str = "X", y: str = "Y") -> str:
+        z -= base if by == "G91" else 0
+        eq = "=" if x != "X" else ""
+        return f"{x}{eq}{z.real:.9f} {y}{eq}{z.imag:.9f}"
+
+    body = f"{turn}G0 X{start.real:.9f} Y{start.imag:.9f}\n{by}\n"
+    body += f"CIP {words(end, start)} {words(middle, start, 'I1', 'J1')}\nCT {words(further, end)}\nG90\n"
+    program = read(body)
+    angle = {"ROT": 40, "TRA": -75}.get(turn[:3], 0)
+    origin = 3 - 4j if "TRANS" in turn else 0
+
+    def seen(z: complex) -> complex:
+        z = np.conj(z) if "MIRROR" in turn else 2 * z if "SCALE" in turn else z
+        return complex(origin + z * np.exp(1j * np.radians(angle)))
+
+    found, about = (places[-2:] @ [1e3, 1e3j, 0] for places in (program.end, program.centre))
+    np.testing.assert_allclose(found, [seen(end), seen(further)], atol=1e-6)
+    assert about[0] == pytest.approx(seen(centre), abs=1e-5)
+    flip = -1 if "MIRROR" in turn else 1
+    assert program.sweep[-2] == pytest.approx(way * flip * 2.5, abs=1e-6)
+    there = seen(end + 1e-3 * course) - seen(end)
+    assert ((found[0] - about[1]) / there).real == pytest.approx(0, abs=1e-2 * abs(found[0] - about[1]) / abs(there))
+    turned_on = about[1] + (found[0] - about[1]) * np.exp(1j * program.sweep[-1])
+    assert turned_on == pytest.approx(found[1], abs=1e-5)
+    assert (there / ((found[0] - about[1]) * 1j * np.sign(program.sweep[-1]))).real > 0
+
+
 @pytest.mark.parametrize(("value", "places"), [(8, [[1, 0], [2, 0], [3, 0]]), (9, [[2, 0], [3, 0]]), (7, [[3, 0]])])
 def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
     lines = "CASE(R1-1) OF 8 GOTOF L_A 9 GOTOF L_B DEFAULT GOTOF L_C\nL_A: G0 X1\nL_B: G0 X2\nL_C: G0 X3\n"
@@ -107,6 +149,17 @@ def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
     [
         ("HOLES1(0,0,0,5,10,3)\n", "HOLES1 has nothing to repeat; give MCALL"),
         ("MCALL CYCLE81(20,0,2,-10)\nHOLES2(0,0,10,0,0,0)\n", "HOLES2 has 0 holes; expected 1 to"),
+        ('MCALL CYCLE81(20,0,2,-10)\nHOLES1(0,0,0,5,10,3,,,"2")\n', "HOLES1 leaves holes out"),
+        ('MCALL CYCLE81(20,0,2,-10)\nHOLES2(0,0,10,0,0,3,,,"2")\n', "HOLES2 leaves holes out"),
+        ("MCALL CYCLE81(20,0,2,-10)\nHOLES1(0,0,0,5,10,10001)\n", "HOLES1 has 10001 holes; expected 1 to 10000"),
+        ("MCALL CYCLE81(20,0,2,-10)\nHOLES1(0,0,0,5,10,-1)\n", "HOLES1 has -1 holes"),
+        ("MCALL CYCLE81(20,0,2,-10)\nHOLES2(0,0,0,0,0,3)\n", "HOLES2 has 3 holes; expected 1 to 10000, and a radius"),
+        ("MCALL CYCLE81(20,0,2,-10)\nHOLES2(0,0,-5,0,0,3)\n", "HOLES2 has 3 holes"),
+        ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,101,100)\n", "CYCLE801 has 101 by 100 holes"),
+        ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,3,3,2)\n", "CYCLE801 has a slanting grid"),
+        ("SCALE X1001\n", "SCALE X1001 is not read"),
+        ("SCALE Z2\n", "SCALE Z2 is not read"),
+        ("AMIRROR\n", "AMIRROR  is not read"),
         ("CYCLE801(0,0,0,1,1,2,2)\n", "CYCLE801 has nothing to repeat"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,0,2)\n", "CYCLE801 has 0 by 2 holes"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,2,2,0,0,5)\n", "CYCLE801 has a slanting grid"),

@@ -112,6 +112,62 @@ def test_cycles_have_feeds_and_dwells_of_their_own() -> None:
     assert tapped.thread.tolist() == [False, False, True, True, False]
 
 
+CYCLES = {  # RTP 50, RFP 1, SDIS 2, DP -10: each move's height, feed and dwell, as the manual's sequence of operations
+    "CYCLE81(50,1,2,-10)": [(3, 0, 0), (-10, 100, 0), (50, 0, 0)],
+    "CYCLE81(50,1,2,-10,,,0)": [(3, 0, 0), (-10, 100, 0), (50, 0, 0)],
+    "CYCLE81(50,1,-2,,-11)": [(3, 0, 0), (-10, 100, 0), (50, 0, 0)],
+    "CYCLE81(50,1,,-10)": [(1, 0, 0), (-10, 100, 0), (50, 0, 0)],
+    "CYCLE82(50,1,2,-10,,0.5)": [(3, 0, 0), (-10, 100, 0), (50, 0, 0.5)],
+    "CYCLE83(50,1,2,-10,,-4,,0,0.5,0,1,0)": [(3, 0, 0), (-4, 100, 0), (-9, 100, 0), (-10, 100, 0), (50, 0, 0.5)],
+    "CYCLE83(50,1,2,-10,,-4,,0,0,0,0.25,0)": [(3, 0, 0), (-4, 25, 0), (-9, 100, 0), (-10, 100, 0), (50, 0, 0)],
+    "CYCLE83(50,1,2,-10,,,20,0,0,0,0.25,0)": [(3, 0, 0), (-10, 25, 0), (50, 0, 0)],
+    "CYCLE83(50,1,2,-10,,-6,,0,0,0,0,1)": [(3, 0, 0), (-6, 100, 0), (3, 0, 0), (-6, 0, 0), (-10, 100, 0), (50, 0, 0)],
+    "CYCLE83(50,1,2,-10,,-6,,0,0,0,0.5,1)": [(3, 0, 0), (-6, 50, 0), (3, 0, 0), (-6, 0, 0), (-10, 100, 0), (50, 0, 0)],
+    "CYCLE84(50,1,2,-10,,0.5,5,,-1.5)": [(3, 0, 0), (-10, 750, 0), (3, 750, 0.5), (50, 0, 0)],
+    "CYCLE85(50,1,2,-10,,0.5,60,120)": [(3, 0, 0), (-10, 60, 0), (3, 120, 0.5), (50, 0, 0)],
+    "CYCLE86(50,1,2,-10,,0.5,3)": [(3, 0, 0), (-10, 100, 0), (50, 0, 0.5)],
+    "CYCLE89(50,1,2,-10,,0.5)": [(3, 0, 0), (-10, 100, 0), (3, 100, 0.5), (50, 0, 0)],
+}
+
+
+@pytest.mark.parametrize("call", CYCLES)
+@pytest.mark.parametrize("feed", ["F100", "G95 F0.2"])
+def test_cycles_move_as_the_manual_says(call: str, feed: str) -> None:
+    """840D sl, Programming cycles externally. FRF of CYCLE83 slows the way to the first depth alone (0 is 1)."""
+    head = HEAD.replace("F100", feed)
+    program = interpret(f"{head}{ABOVE}{call}\nM30\n", dialect="sinumerik")
+    heights, feeds, waits = np.transpose(CYCLES[call])
+    np.testing.assert_allclose(program.end[1:, 2] * 1e3, heights, atol=1e-9)
+    np.testing.assert_allclose(program.v_f[1:] * 6e4, feeds)
+    np.testing.assert_allclose(program.dwell[1:], waits)
+
+
+@pytest.mark.parametrize(
+    ("at", "way", "to", "turned"),
+    [
+        (10, "DC", 350, -20),
+        (10, "DC", 190, 180),
+        (10, "DC", 191, -179),
+        (350, "DC", 10, 20),
+        (10, "DC", 10, 0),
+        (10, "ACP", 350, 340),
+        (10, "ACP", 10, 0),
+        (350, "ACP", 10, 20),
+        (-30, "ACP", 10, 40),
+        (10, "ACN", 350, -20),
+        (10, "ACN", 10, 0),
+        (350, "ACN", 10, -340),
+        (400, "ACN", 10, -30),
+        (400, "DC", 10, -30),
+    ],
+)
+def test_axes_turn_the_short_way_up_or_down(at: float, way: str, to: float, turned: float) -> None:
+    program = interpret(f"{HEAD}G1 A{at}\nA={way}({to})\nM30\n", dialect="sinumerik")
+    assert np.degrees(program.rotary[-1, 0] - program.rotary[-2, 0]) == pytest.approx(turned, abs=1e-9)
+    with pytest.raises(GCodeError, match=f"Line 2: X={way}. . is for axes that turn"):
+        interpret(f"{HEAD}G1 X={way}(5)\nM30\n", dialect="sinumerik")
+
+
 def test_mcall_drills_behind_every_line_that_moves_in_the_plane_until_it_ends() -> None:
     found = places(f"{ABOVE}MCALL CYCLE81(50,0,2,-10)\nX10\nY10\nZ60\nX20 Y20\nMCALL\nX30\n")
     assert [p[:2] for p in found if p[2] == -10] == [(10, 0), (10, 10), (20, 20)]
