@@ -37,7 +37,7 @@ def scales(machine: Machine, block: Block, code: int) -> bool:
         machine.scale = None
         return True
     given = {letter: words.pop(letter) for letter in "xyzijkp" if letter in words}
-    if not machine.absolute:
+    if not _is_absolute(machine, block):
         raise block.refuse(f"{_CODES[code]} is read in G90 alone.")
     centre = tuple(given.get(letter, at) for letter, at in zip("xyz", machine.p))
     if code in (511, 1010):
@@ -55,6 +55,11 @@ def scales(machine: Machine, block: Block, code: int) -> bool:
         raise block.refuse("G51 needs P, or I, J and K: how many times larger everything is.")
     machine.scale = Scale(factors, centre)  # type: ignore[arg-type]
     return True
+
+
+def _is_absolute(machine: Machine, block: Block) -> bool:
+    """Whether the words of a line are places, not steps."""
+    return bool(block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 900)
 
 
 def _factor(machine: Machine, block: Block, value: float) -> float:
@@ -83,7 +88,7 @@ def scale_words(machine: Machine, block: Block) -> None:
         raise block.refuse(f"{g_name(motion)} while coordinates are scaled (G51) is not read; end that first (G50).")
     if cycle and (scale.factors[2] < 0.0 or machine.plane != 17):
         raise block.refuse("a cycle is read in G17, and not mirrored along Z; end G51 first (G50).")
-    absolute = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 900
+    absolute = _is_absolute(machine, block)
     for axis, letter in enumerate("xyz"):
         if letter in words:
             words[letter] = scale.place(axis, words[letter]) if absolute else scale.factors[axis] * words[letter]

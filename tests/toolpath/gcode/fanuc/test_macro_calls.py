@@ -101,3 +101,75 @@ def test_a_variable_that_nobody_has_set_is_said() -> None:
 def test_what_cannot_be_called_is_refused(call: str, says: str) -> None:
     with pytest.raises(GCodeError, match=f"Line 4: {says}"):
         read(f"{call}\nM30\nO9\nM99\n")
+
+
+#: Custom Macro B, argument specification I and II, as the manual prints the two tables.
+FIRST = "A#1 B#2 C#3 I#4 J#5 K#6 D#7 E#8 F#9 H#11 M#13 Q#17 R#18 S#19 T#20 U#21 V#22 W#23 X#24 Y#25 Z#26"
+SECOND = [f"{letter}#{4 + 3 * n + k}" for n in range(10) for k, letter in enumerate("IJK")]
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_letters_are_the_variables_of_the_manuals_table(order: int) -> None:
+    """Each with a value of its own, in any order of the letters; all other variables are empty."""
+    table = [each.split("#") for each in FIRST.split()]
+    said = {letter: 100 + int(number) for letter, number in table}
+    words = [f"{letter}{value}." for letter, value in said.items()]
+    if order < 0:  # but I, J, K in theirs: another order makes a second set
+        words = [*reversed([each for each in words if each[0] not in "IJK"]), "I104.", "J105.", "K106."]
+    sets = "".join(f"IF [#{k} EQ #0] GOTO {k}\nX#{k}\nN{k}\n" for k in range(1, 34))
+    found = [x for x, *_ in places(f"G65 P9 (values) {' '.join(words)} (end)\nM30\nO9\n{sets}M99\n")]
+    assert found == sorted(float(value) for value in said.values())
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 10, 11])
+def test_sets_of_i_j_and_k_fill_the_manuals_second_table(count: int) -> None:
+    words = " ".join(f"I{3 * n + 1}. J{3 * n + 2}. K{3 * n + 3}." for n in range(count))
+    body = f"G65 P9 {words}\nM30\nO9\n" + "".join(f"X#{each.split('#')[1]}\n" for each in SECOND[: 3 * count])
+    if count > 10:
+        with pytest.raises(GCodeError, match="Line 4: I, J and K are given more than 10 times"):
+            read(f"{body}M99\n")
+    else:
+        assert [x for x, *_ in places(f"{body}M99\n")] == list(range(1, 3 * count + 1))
+
+
+@pytest.mark.parametrize(
+    ("words", "variables"),
+    [
+        ("I1. K2. J3.", {4: 1, 6: 2, 8: 3}),
+        ("J1. I2. K3.", {5: 1, 7: 2, 9: 3}),
+        ("K1. K2. K3.", {6: 1, 9: 2, 12: 3}),
+        ("I1. D2. I3.", {4: 1, 7: 3}),  # the later of two words for one variable counts
+        ("I1. I3. D2.", {4: 1, 7: 2}),
+    ],
+)
+def test_i_j_or_k_left_out_goes_on_to_the_next_set(words: str, variables: dict[int, float]) -> None:
+    body = f"G65 P9 {words}\nM30\nO9\n" + "".join(f"X#{number}\n" for number in variables)
+    assert [x for x, *_ in places(f"{body}M99\n")] == list(variables.values())
+
+
+@pytest.mark.parametrize("number", [1, 33, 100, 199, 500, 999])
+def test_a_variable_is_empty_until_it_is_set(number: int) -> None:
+    assert places(f"X9 Y#{number}\n#{number}=4\nX8 Y#{number}\n#{number}=#0\nX7 Y#{number}\nM30\n") == [
+        (9, 0, 5),
+        (8, 4, 5),
+        (7, 4, 5),
+    ]
+
+
+def test_what_the_control_says_of_itself() -> None:
+    """Groups 01, 02, 03 and 06, F, S and T, and the place in the coordinates in force, each as a step along X."""
+    head = "G10 L2 P2 X100. Y50.\nT7 M6\nG55 G18 G91 G1 F250. S900 M3\nG90 X1. Y2. Z3.\n"
+    asked = {4001: 1, 4002: 18, 4003: 90, 4006: 21, 4109: 250, 4119: 900, 4120: 7, 5041: 1, 5042: 2, 5043: 3, 5001: 1}
+    kept = "".join(f"#{100 + k}=#{number}\n" for k, number in enumerate(asked))
+    body = head + kept + "".join(f"X#{100 + k}\n" for k in range(len(asked)))
+    assert [x - 100 for x, *_ in places(f"{body}M30\n")[-len(asked) :]] == list(asked.values())
+    assert places("G20 X1.\n#100=#4006\nG21 X#100\nG91\n#101=#4003\nG90 G0 X#101\n#102=#4001\nX#102\nM30\n")[1:] == [
+        (20, 0, 5),
+        (91, 0, 5),
+        (0, 0, 5),
+    ]
+
+
+def test_g67_ends_a_modal_macro_that_is_not_called_from_within_itself() -> None:
+    body = "G66 P9 X3. L2\nG0 Y1\nM8\nG67\nY5\nM30\nO9\nG91 X#24\nG90\nM99\n"
+    assert places(body) == [(0, 1, 5), (3, 1, 5), (6, 1, 5), (6, 5, 5)]

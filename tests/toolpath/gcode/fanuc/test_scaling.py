@@ -71,3 +71,58 @@ def test_haas_mirrors_about_part_zero_by_g101_until_g100() -> None:
 
 def test_units_may_change_while_coordinates_are_scaled() -> None:
     assert ends("G51 X10 Y0 Z0 P2.\nG20\nG1 X1\n") == [[pytest.approx(10 + 2 * 15.4), 0, 0]]
+
+
+@pytest.mark.parametrize("plane", [17, 18, 19])
+@pytest.mark.parametrize("centre", ["", "G90.1 "])
+@pytest.mark.parametrize("factors", [(2, 2, 2), (-1, 1, 1), (1, -1, 1), (1, 1, -1), (-2, 2, -2)])
+def test_an_arc_of_any_plane_is_the_scaled_arc(plane: int, centre: str, factors: tuple[int, ...]) -> None:
+    """Point by point: C + s (p - C) of the arc without scaling, along the whole of it."""
+    first, second, _ = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}[plane]
+    middle, begin = np.zeros(3), np.zeros(3)
+    middle[first], middle[second], begin[first], begin[second] = 3.0, -4.0, 9.0, -4.0
+    end = begin.copy()
+    end[first], end[second] = 3.0, 2.0
+    i = middle if centre else middle - begin
+    turn = f"G{plane} {centre}G3 X{end[0]} Y{end[1]} Z{end[2]} {'IJK'[first]}{i[first]} {'IJK'[second]}{i[second]}\n"
+    about = np.array([1.0, 2.0, -3.0])
+    scaled = f"G51 X1. Y2. Z-3. I{factors[0]}. J{factors[1]}. K{factors[2]}.\n"
+    start = "G0 X{} Y{} Z{}\n".format(*begin)
+    plain, found = (interpret(f"G21 G90 F100\n{more}{start}{turn}M30\n", dialect="fanuc") for more in ("", scaled))
+    share = np.linspace(0.0, 1.0, 9)
+    points = plain.arcs_of(np.array([1])).at(np.zeros(9, dtype=int), share) * 1e3
+    again = found.arcs_of(np.array([1])).at(np.zeros(9, dtype=int), share) * 1e3
+    np.testing.assert_allclose(again, about + np.array(factors) * (points - about), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("G51 P1001.5\n", "Line 2: G51 has a scale of 1001.5; expected 0.000001 to 1000"),
+        ("G51 X0 Y0 P2.\nG50 X5\n", "Line 3: G50 with axis words sets a coordinate system"),
+        ("G51 X0 Y0 P2.\nG5 X5 I1 J1 P1 Q1\n", "Line 3: G5 "),
+        ("G51 X0 Y0 Z0 I1. J1. K-1.\nG81 X1 Z-3 R1\n", "Line 3: a cycle is read in G17, and not mirrored along Z"),
+        ("G51 X0 Y0 P2.\nG18\nG81 X1 Y-3 R1\n", "Line 4: a cycle is read in G17"),
+        ("G16\nG51 P2.\n", "Line 3: G51 inside of G68 or G16"),
+        ("G90\nG91 G51 P2.\n", "Line 3: G51 is read in G90 alone"),
+        ("G101\n", "Line 2: G101 needs the axes that it mirrors"),
+    ],
+)
+def test_more_that_cannot_be_scaled_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=says):
+        read(body)
+
+
+@pytest.mark.parametrize(
+    ("said", "factor"), [("P100", 0.1), ("P99", 99), ("P99.5", 99.5), ("P500", 0.5), ("I1500 J1500 K1500", 1.5)]
+)
+def test_large_whole_factors_count_in_thousandths(said: str, factor: float) -> None:
+    assert ends(f"G51 X0 Y0 Z0 {said}\nG1 X2.\n")[-1][0] == pytest.approx(2 * factor)
+
+
+def test_home_and_machine_places_are_not_scaled_and_mirrors_add_up() -> None:
+    assert ends("G51 X0 Y0 Z0 P2.\nG1 X3.\nG28 X4.\n")[0] == [6, 0, 0]
+    assert ends("G51.1 X0\nG51.1 Y0\nG1 X3. Y4.\nG50.1 X0\nX3. Y4.\n") == [[-3, -4, 0], [3, 4, 0]]
+    assert ends("G51 X0 Y0 Z0 P2.\nG91 G1 X3. Y-5. Z.5\n") == [[6, -10, 1]]
+    assert ends("G51.1 X0\nG1 X3. Y4. Z5.\n") == [[-3, 4, 5]]
+    assert ends("G91 G1 X1.\nG90 G51 P2.\nX2.\n")[-1] == [3, 0, 0]  # about where the tool is
