@@ -69,7 +69,7 @@ class _State:
 
     unit: str = "mm"
     unit_said: str = ""
-    feed: float = 0.0
+    rate: tuple[float, str, str] = (0.0, "PERMIN", "mm")  # as FEDRAT said it: how much, by what, in which unit
     speed: float = 0.0
     ccw: bool = False
     waited: float = 0.0
@@ -85,6 +85,11 @@ class _State:
     points: dict[str, list[str]] = field(default_factory=dict)
     drilling: Drilling | None = None
     rows: list[tuple[float, ...]] = field(default_factory=list)
+
+    @property
+    def feed(self) -> float:
+        """m/s; one per turn follows the spindle, whichever of the two is said first."""
+        return feed_of(*self.rate, self.speed)
 
 
 _NAMES = re.compile(r"[A-Z]\w*\s*=.*")
@@ -318,7 +323,9 @@ def _go(state: _State, numbers: list[float], line: int, is_start: bool = False) 
         return
     cutting = bool(state.rows) and not state.rapid and not is_start
     if cutting and state.feed <= 0:
-        raise GCodeError.at(line, "a cut needs a feed; FEDRAT comes first.")
+        turns = state.rate[0] > 0.0
+        lacks = "its feed counts per turn, and the spindle stands; SPINDL" if turns else "a cut needs a feed; FEDRAT"
+        raise GCodeError.at(line, f"{lacks} comes first.")
     feed = state.feed if cutting else 0.0
     points = [point]
     if arc is not None and before and not is_start:
@@ -354,7 +361,7 @@ def _feed(state: _State, values: list[str], line: int) -> None:
             line, f"FEDRAT counts by {other}, which is not read; write the feed per minute (MMPM, IPM)."
         )
     unit = next((w for w in ("IPR", "MMPR", "PERREV", "IPM", "MMPM") if w in words), "PERMIN")
-    state.feed = feed_of(float(numbers[0]), unit, state.unit, state.speed)
+    state.rate = float(numbers[0]), unit, state.unit
 
 
 def _spindle(state: _State, values: list[str], line: int) -> None:

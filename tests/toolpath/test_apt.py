@@ -99,6 +99,44 @@ def test_feeds_per_minute_and_per_turn(units: str, feed: str, speed_mm_s: float)
     assert path.v_f[-1] * 1e3 == pytest.approx(speed_mm_s)
 
 
+@pytest.mark.parametrize("unit", ["MMPR", "PERREV", "IPR"])
+def test_a_feed_per_turn_follows_the_spindle_whichever_is_said_first(unit: str) -> None:
+    """0.5 a turn at 10 turns a second is 5 a second; at 20, 10; CATIA writes FEDRAT before SPINDL."""
+    size = 25.4e-3 if unit == "IPR" else 1e-3
+    feed, moves = f"FEDRAT/0.5,{unit}\n", "FROM/0,0,0\nGOTO/1,0,0\nSPINDL/1200,CLW\nGOTO/2,0,0\n"
+    for head in (f"{feed}SPINDL/600,RPM,CLW\n", f"SPINDL/600,RPM,CLW\n{feed}"):
+        path = read_apt(f"UNITS/MM\n{head}{moves}FEDRAT/60\nGOTO/3,0,0\nSPINDL/OFF\nGOTO/4,0,0\nFINI\n")
+        np.testing.assert_allclose(path.v_f, [0, 5 * size, 10 * size, 1e-3, 1e-3])
+    with pytest.raises(
+        GCodeError, match="Line 4: its feed counts per turn, and the spindle stands; SPINDL comes first"
+    ):
+        read_apt(f"UNITS/MM\n{feed}FROM/0,0,0\nGOTO/1,0,0\nFINI\n")
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("turn", [1, -1])
+def test_an_arc_of_catia_is_the_circle_through_its_start_along_its_tangent(seed: int, turn: int) -> None:
+    """In complex numbers; every chord within a hundredth of a millimetre of the circle, and the whole as long as it."""
+    rng = np.random.default_rng(seed)
+    centre, radius = complex(*rng.uniform(-40, 40, 2)), rng.uniform(5, 30)
+    begin, sweep = rng.uniform(-3, 3), rng.uniform(0.3, 6.0)
+    start, end = (centre + radius * np.exp(1j * (begin + turn * t)) for t in (0.0, sweep))
+    along = 1j * turn * np.exp(1j * begin)
+    text = (
+        f"UNITS/MM\nFEDRAT/100,MMPM\nFROM/{start.real:.9f},{start.imag:.9f},5\n"
+        f"INDIRV/{along.real:.9f},{along.imag:.9f},0\n"
+        f"TLON,GOFWD/(CIRCLE/{centre.real:.9f},{centre.imag:.9f},5,{radius:.9f}),ON,"
+        f"(LINE/{centre.real:.9f},{centre.imag:.9f},5,{end.real:.9f},{end.imag:.9f},5)\nFINI\n"
+    )
+    points = read_apt(text).p @ [1e3, 1e3j, 0]
+    np.testing.assert_allclose(points[[0, -1]], [start, end], atol=1e-6)
+    np.testing.assert_allclose(abs(points - centre), radius, atol=1e-6)
+    turned = np.angle((points[1:] - centre) / (points[:-1] - centre))
+    assert (turned * turn > 0).all()
+    assert abs(turned).sum() == pytest.approx(sweep, abs=1e-6)
+    assert (radius * (1 - np.cos(turned / 2))).max() < 0.01
+
+
 def test_a_rapid_counts_for_one_point() -> None:
     path = read_apt("PARTNO/X\nUNITS/MM\nFEDRAT/600\nFROM/0,0,9\nFEDRAT/RAPID\nGOTO/1,0,0\nGOTO/2,0,0\nFINI\n")
     assert path.cutting.tolist() == [False, False, True]
