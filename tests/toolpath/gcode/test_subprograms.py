@@ -21,6 +21,13 @@ RUN = [
     # Fanuc, M99 P: back to that line of the caller
     (HEAD + "M98 P7\nX5.\nN20 X6.\nM30\nO7\nX2.\nM99 P20\n%\n", [1, 2, 6]),
     (HEAD + "M198 P7\nX5.\nM30\nO7\nX2.\nM99\n%\n", [1, 2, 5]),
+    # M99 P in the main program goes on at that line; the one behind, where two have the number
+    (HEAD + "M99 P20\nX5.\nN20 X6.\nM30\n%\n", [1, 6]),
+    (HEAD + "N20 X7.\nM99 P20\nX5.\nN20 X6.\nM30\n%\n", [1, 7, 6]),
+    (HEAD + "X3.\nM99\nX5.\nM30\n%\n", [1, 3]),
+    # a macro's #1 to #33 are its own, and its caller's are there again behind it; #34 and on do not exist there
+    (HEAD + "#33=8\n#100=2\nG65 P7 A4.\nX#33\nX#100\nM30\nO7\nX#1\n#33=5\n#100=3\nX#33\nM99\n%\n", [1, 4, 5, 8, 3]),
+    (HEAD + "#33=8\nM98 P7\nX#33\nM30\nO7\n#33=5\nM99\n%\n", [1, 5]),
     # a program of five digits (Haas) is no repeat of one of four
     (HEAD + "M98 P20007\nX5.\nM30\nO20007\nX3.\nM99\n%\n", [1, 3, 5]),
     (HEAD + "M98 P20007\nX5.\nM30\nO0007\nX3.\nG91 X1.\nG90\nM99\n%\n", [1, 3, 4, 3, 4, 5]),
@@ -52,6 +59,8 @@ def test_calls_by_name_are_followed_on_a_sinumerik(text: str, places: list[float
 
 REFUSED = [
     (HEAD + "M97 P1000\nM30\n%\n", "fanuc", "Line 4: M97 calls line N1000, but no line has that number"),
+    (HEAD + "M98 P7 Q3\nM30\nO7\nM99\n%\n", "fanuc", "Line 4: M98 has Q3, which is a line on some controls"),
+    (HEAD + "M98\nM30\n%\n", "fanuc", "Line 4: M98 needs P, the number of the program to call"),
     (HEAD + "M97\nM30\n%\n", "fanuc", "Line 4: M97 needs P, the line to call"),
     (HEAD + "M198 P55\nM30\n%\n", "fanuc", "Line 4: M198 calls O55, but there is no O55 in the program; paste it in"),
     (HEAD + "M98 P2\nM30\n%\nO0002\nX9.\nM99\n", "fanuc", "Line 4: M98 calls O2, which stands behind the % that ends"),
