@@ -61,16 +61,30 @@ def focus_is_seen(page: Any) -> bool:
     return ImageChops.difference(with_it, without).getbbox() is not None
 
 
+def chosen(page: Any) -> Any:
+    """The chooser of files that the upload opens. A picture that comes late may draw the page anew in between: again
+    then."""
+    from playwright.sync_api import TimeoutError as NoneCame
+
+    for patience in (15_000, 15_000, 60_000):
+        tab_to(page, "BUTTON upload Upload")
+        try:
+            with page.expect_file_chooser(timeout=patience) as asked:
+                page.keyboard.press("Enter")
+        except NoneCame:
+            idle(page)
+        else:
+            return asked.value
+    raise AssertionError("the upload opens no chooser of files")
+
+
 def test_a_program_is_checked_by_keyboard_alone(page: Any, tmp_path: Path) -> None:
     part = tmp_path / "PART.NC"
     part.write_text(PROGRAM)
     page.set_default_timeout(60_000)
     page.get_by_text("0.23 mm off in Y").first.wait_for()
     idle(page)
-    tab_to(page, "BUTTON upload Upload")
-    with page.expect_file_chooser() as asked:
-        page.keyboard.press("Enter")
-    asked.value.set_files(str(part))
+    chosen(page).set_files(str(part))
     page.wait_for_selector(".rm-kicker:has-text('Toolpath')")
     page.get_by_text("What is it cutting?").wait_for()
     idle(page)

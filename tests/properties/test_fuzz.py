@@ -96,16 +96,16 @@ def run(count: int, seed: int) -> tuple[int, float]:
 
 @pytest.fixture
 def small_budgets(monkeypatch: pytest.MonkeyPatch) -> None:
-    base = "robomill.toolpath.gcode."
-    import_module(base + "rules.kernels")
+    base = "robomill.toolpath."
+    import_module(base + "gcode.rules.kernels")
     interpret("G0 X1\n" * 400)  # compiled before a clock runs
     for name, value in (
-        ("interpreter.MAX_STEPS", 3000),
-        ("program.MAX_MOVES", 20_000),
-        ("program.FLUSH", 512),
+        ("gcode.interpreter.MAX_STEPS", 3000),
+        ("gcode.program.MAX_MOVES", 20_000),
+        ("gcode.program.FLUSH", 512),
         ("arcs.MAX_POINTS", 200_000),
-        ("rules.cycle_rules.MAX_PECKS", 500),
-        ("threads.MAX_PASSES", 300),
+        ("gcode.rules.cycle_rules.MAX_PECKS", 500),
+        ("gcode.threads.MAX_PASSES", 300),
     ):
         monkeypatch.setattr(base + name, value)
 
