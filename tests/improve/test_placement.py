@@ -107,7 +107,8 @@ def test_a_full_turn_more_changes_nothing() -> None:
     one, other = (place(slot(), yaw_deg=yaw, **box) for yaw in ((-30, 60), (330, 420)))
     assert one.best.share == pytest.approx(other.best.share, abs=1e-9)
     assert other.best.yaw == pytest.approx(one.best.yaw + 2 * np.pi, abs=1e-6)
-    assert (one.now.yaw, other.now.yaw) == pytest.approx((0.0, 2 * np.pi), abs=1e-9)
+    beside = place(slot(), yaw_deg=(20, 60), **box)  # which 0 is no yaw of, however it is counted
+    assert (one.now.yaw, other.now.yaw, beside.now.yaw) == pytest.approx((0.0, 2 * np.pi, 0.0), abs=1e-9)
     np.testing.assert_allclose(one.share, other.share, rtol=1e-9)
 
 
