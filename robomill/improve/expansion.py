@@ -237,5 +237,5 @@ def _missed(unsure: Unsure, result: SimulationResult, looking: Screen) -> FloatA
     known, at = unsure.known, looking.at
     if known is None or known.error is None:
         return np.zeros(len(at))
-    load = np.linalg.norm(result.F[at], axis=1)
+    load = result.force_size[at]
     return np.where(load > 0.0, np.sqrt(known.error.variance(result.deviation[at], load)), 0.0)

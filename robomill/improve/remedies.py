@@ -89,8 +89,8 @@ def saves(share: float, now: float) -> bool:
 
 def decides(result: SimulationResult) -> tuple[str, float]:
     """The name of what decides a verdict, and its size, m."""
-    rests = result.verdict.deciding
-    return ("tip", result.max_deviation) if rests is None else (rests[0], abs(rests[1].value))
+    kind, size, _ = result.decided
+    return kind.code, size
 
 
 def error_at(place: Place) -> tuple[str, float]:

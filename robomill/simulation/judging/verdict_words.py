@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 
 from robomill.arguments import made_by
+from robomill.arrays import with_article
 from robomill.provenance import named
 from robomill.simulation.judging.seen import Run
 from robomill.units import format_beside, format_count, format_percent, format_share
@@ -68,7 +69,7 @@ class ReadingKind:
     @property
     def an_error(self) -> str:
         """With its article: "a wall error"."""
-        return f"{'an' if self.error[0] in 'aeiou' else 'a'} {self.error}"
+        return with_article(self.error)
 
 
 WALL = ReadingKind("wall", "Wall error", "wall error", "wall", 1, ("to the left", "to the right"))

@@ -18,6 +18,7 @@ from robomill.ui.judged.verdict import WORDS, previous
 from robomill.ui.work import cached
 from robomill.units import format_percent, format_share, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
+from robomill.wording import listed
 
 LEAST = 0.005  # of the tolerance; what saves less is not offered
 
@@ -161,8 +162,7 @@ def remedies(ranked: Stiffening, joints: tuple[int, ...], unit: str) -> None:
 
 def _all(numbers: list[int]) -> str:
     """``Joint 2``, ``Joints 1, 2 and 4``: each of them."""
-    *first, last = map(str, sorted(numbers))
-    return f"Joints {', '.join(first)} and {last}" if first else f"Joint {last}"
+    return f"Joint{'s' * (len(numbers) > 1)} {listed(map(str, sorted(numbers)))}"
 
 
 def _verdict(then: Verdict) -> str:
