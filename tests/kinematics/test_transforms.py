@@ -88,6 +88,19 @@ def test_a_matrix_that_is_no_pose_is_refused(T) -> None:
             call(T)
 
 
+@pytest.mark.parametrize("place", [(r, c) for r in range(4) for c in range(4) if (r, c) != (3, 3) and not c == 3 > r])
+@pytest.mark.parametrize("off", [1e-3, -1e-3])
+def test_a_pose_is_refused_by_any_entry_of_its_rotation_or_last_row(place: tuple[int, int], off: float) -> None:
+    """One pose of a batch, one entry; as much beside the place in a row, or a millionth of it, is none's business."""
+    T = transform(Rotation.from_euler("xyz", RNG.uniform(-3, 3, (3, 3))).as_matrix(), np.ones(3))
+    np.testing.assert_allclose(world_from_pose(T)[:, :3], 1.0)
+    T[1][place] += 1e-4 * off
+    world_from_pose(T)
+    T[1][place] += off
+    with pytest.raises(rm.RobomillError, match="this is no pose"):
+        world_from_pose(T)
+
+
 @pytest.mark.parametrize("angle", [2, -3.0, 4, 5, -6, 2.5])
 def test_tilts_in_degrees_are_refused_where_nobody_means_radians(angle: float) -> None:
     """Beyond a quarter turn B has no values, and A none that anybody states in whole or half radians."""
