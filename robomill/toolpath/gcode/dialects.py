@@ -292,15 +292,18 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
         if wanted not in NAMES:
             raise GCodeError(f"Dialect {wanted!r} is not known; expected auto, {', '.join(NAMES)}.")
         return Dialect(wanted, guessed=False)
-    lines = "\n".join(line[:LONGEST] for line in text.lower().split("\n"))
-    text = f"\n{lines}\n"
+    lines = text.lower().split("\n")
+    if max(map(len, lines)) > LONGEST:
+        lines = [line[:LONGEST] for line in lines]
+    text = "\n".join(["", *lines, ""])
     if _shows(text[: 20 * LONGEST], _HEIDENHAIN):
         return Dialect("heidenhain")
     if _shows(text, _LINUXCNC):
         return Dialect("linuxcnc")
     if _shows(text, _SINUMERIK_TEXT):
         return Dialect("sinumerik")
-    text = _COMMENT.sub("", text)
+    if "(" in text or ";" in text:
+        text = _COMMENT.sub("", text)
     for name, signs in (("grbl", _GRBL), ("sinumerik", _SINUMERIK), ("fanuc", _FANUC)):
         if _shows(text, signs):
             return Dialect(name)

@@ -22,7 +22,14 @@ LARGE = 1000
 """A whole number without a point, beside numbers that have one, is doubted from here on however many there are."""
 SAMPLE = 2_000_000
 """Bytes at the start of a program in which that is looked for."""
-_COORDINATE = re.compile(rb"(?<![A-Za-z_#\[(<\"=])[XYZIJxyzij](-?\d{1,9}(?:\.\d*)?)(?![\w.\[])")
+
+
+def _coordinate(number: bytes) -> re.Pattern[bytes]:
+    """What finds coordinates and centres by their numbers: the letter first, which is quickly looked for."""
+    return re.compile(rb"[XYZIJxyzij](?<![A-Za-z_#\[(<\"=].)-?" + number + rb"(?![\d_.\[]|[Ee][-+\d])")
+
+
+_POINTED, _WHOLE = _coordinate(rb"\d{1,9}+\.\d*+"), _coordinate(rb"0*+([1-9]\d{0,8}+)(\.0*+)?+")
 _COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
 QUARTER = 90.0 + 1e-6
 """degrees that a tool which leans is led through, or stands from upright, without a doubt."""
@@ -30,19 +37,25 @@ LONG_DWELL = 60.0
 """s, on average over a program: so long none waits, so the number is in another unit."""
 
 
+def _without_comments(data: bytes) -> bytes:
+    """A program with a blank for each comment: its lines stay."""
+    return _COMMENT.sub(b" ", data) if b"(" in data or b";" in data else data
+
+
 def doubt_points(findings: Findings, data: bytes) -> None:
     """Note whole numbers without a point where others have one (X10.): many controls count them in thousandths."""
-    sample = _COMMENT.sub(b"", data[:SAMPLE])
-    numbers = _COORDINATE.findall(sample)
-    words = [number for number in numbers if not float(number) % 1.0 and float(number)]
-    whole = sum(b"." not in number for number in words)
-    rare = len(words) - whole >= FEW and whole <= max(RARE * len(words), 1.0)
-    large = any(b"." in number for number in numbers)
-    if not whole or not (rare or large):
+    sample = _without_comments(data[:SAMPLE])
+    whole = _WHOLE.findall(sample)
+    pointless = [int(number) for number, point in whole if not point]
+    if not pointless:
         return
-    data = _COMMENT.sub(lambda comment: b" " * len(comment[0]), data)
-    for found in _COORDINATE.finditer(data):
-        if b"." not in found[1] and abs(int(found[1])) >= (1 if rare else LARGE):
+    rare = len(whole) - len(pointless) >= FEW and len(pointless) <= max(RARE * len(whole), 1.0)
+    least = 1 if rare else LARGE
+    if not (rare or _POINTED.search(sample)) or (max(pointless) < least and len(data) <= SAMPLE):
+        return
+    data = _without_comments(data)
+    for found in _WHOLE.finditer(data):
+        if not found[2] and int(found[1]) >= least:
             line = data.count(b"\n", 0, found.start()) + 1
             text = (
                 f"{found[0].decode('ascii', 'replace')} has no decimal point where other whole numbers have one: it is "
@@ -54,9 +67,9 @@ def doubt_points(findings: Findings, data: bytes) -> None:
 
 def doubt_all_points(findings: Findings, data: bytes, program: Program) -> None:
     """Say of a Fanuc program without any point how its numbers are read: aloud where no machine is so large."""
-    numbers = _COORDINATE.findall(_COMMENT.sub(b"", data[:SAMPLE]))
-    largest = max((abs(int(number)) for number in numbers if b"." not in number), default=0)
-    if program.extents is None or largest == 0 or any(b"." in number for number in numbers):
+    sample = _without_comments(data[:SAMPLE])
+    largest = max((int(number) for number, point in _WHOLE.findall(sample) if not point), default=0)
+    if program.extents is None or largest == 0 or _POINTED.search(sample):
         return
     size = float(np.subtract(*program.extents[::-1]).max())
     level: Level = "suspicious" if size > LIKELY[1] else "info"
@@ -88,7 +101,7 @@ def doubt(machine: Machine, program: Program) -> None:
 def turned_far(program: Program) -> list[tuple[str, float, int]]:
     """Axes that cuts turn through more than a quarter: A, B or C, by how many degrees, and from which line on."""
     cuts = np.flatnonzero(program.at_feed)
-    if not len(cuts):
+    if not len(cuts) or not (program.rotary.any() or program.rotary0.any()):
         return []
     angles = np.vstack([program.rotary0[cuts], program.rotary[cuts]])
     with np.errstate(over="ignore"):

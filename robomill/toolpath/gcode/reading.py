@@ -100,8 +100,9 @@ def interpret(
             f'this is APT (cutter locations), no G-code; rm.read_program("{shown}").read() gives its path.'
         )
     lines = Lines(data)
-    chosen = choose_dialect(data[:SAMPLE].decode("utf-8", "replace"), dialect)
-    if chosen.guessed and (foreign := language_of(data[:SAMPLE].decode("utf-8", "replace"))):
+    sample = data[:SAMPLE].decode("utf-8", "replace")
+    chosen = choose_dialect(sample, dialect)
+    if chosen.guessed and (foreign := language_of(sample)):
         raise GCodeError.at(*foreign)
     machine = _machine(tools, chosen, len(lines))
     is_file = isinstance(source, Path) or (isinstance(source, str) and name != "program")
