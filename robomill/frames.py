@@ -12,10 +12,8 @@ from numpy.typing import NDArray
 from robomill.extras import needed
 
 if TYPE_CHECKING:
-    from pandas import DataFrame as DataFrame
-    from pandas import Series as Series
-    from xarray import DataArray as DataArray
-    from xarray import Dataset as Dataset
+    from pandas import DataFrame as DataFrame, Series as Series
+    from xarray import DataArray as DataArray, Dataset as Dataset
 
 Columns = dict[str, NDArray[Any]]
 """Columns of one length by name, which ends in the unit: numbers, flags or texts."""

@@ -19,8 +19,7 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
-from robomill.arguments import asked as telling
-from robomill.arguments import named, refuse_unknown
+from robomill.arguments import asked as telling, named, refuse_unknown
 from robomill.arrays import NO_NUMBERS, brief, is_unreal, no_number
 from robomill.errors import ArgumentError, RobomillError
 from robomill.kinds import kinds_told

@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats
 from robomill.cutting.tool import Cutter
 from robomill.errors import RobotError
-from robomill.provenance import TYPED as TYPED
-from robomill.provenance import Provenance
+from robomill.provenance import TYPED as TYPED, Provenance
 from robomill.quantities import settle
 from robomill.values import Said
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.simulation.judging.gauge import Gauge, Readings
-from robomill.simulation.judging.gauge import gauge as gauge_at
+from robomill.simulation.judging.gauge import Gauge, Readings, gauge as gauge_at
 from robomill.simulation.judging.verdict import judge
 from robomill.simulation.judging.verdict_words import Level
 from robomill.simulation.result import SimulationResult

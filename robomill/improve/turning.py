@@ -17,8 +17,7 @@ from robomill.improve.judged import refuse_corrected
 from robomill.improve.placed import Place, place_of
 from robomill.improve.screening import ASKED, MOST_SAMPLES, Asked, Screen, screen, spin_matters, uncoupled
 from robomill.improve.spin_course import best_course
-from robomill.kinematics.choice import every, overshoot, spun
-from robomill.kinematics.choice import turn as within
+from robomill.kinematics.choice import every, overshoot, spun, turn as within
 from robomill.kinematics.decoupled import LIMIT_SLACK, decoupled
 from robomill.kinematics.dexterity import NEAR, determinant, largest_determinant
 from robomill.kinematics.inverse import inverse_kinematics

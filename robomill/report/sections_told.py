@@ -9,11 +9,18 @@ from robomill.report.plain import reading_share, reading_value
 from robomill.report.remedies_told import Told
 from robomill.report.tags import Html, joined, table, tag
 from robomill.simulation.judging.strays import WORDS
-from robomill.simulation.judging.verdict_words import END, FEED, FLOOR, TIP, TITLES, WALL, gauge_end
-from robomill.simulation.judging.verdict_words import WORDS as WORDS_OF_GRADE
+from robomill.simulation.judging.verdict_words import (
+    END,
+    FEED,
+    FLOOR,
+    TIP,
+    TITLES,
+    WALL,
+    WORDS as WORDS_OF_GRADE,
+    gauge_end,
+)
 from robomill.surface.sections.measures import MEASURED
-from robomill.surface.sections.section_law import MEASURES
-from robomill.surface.sections.section_law import TITLES as TITLES_OF_KIND
+from robomill.surface.sections.section_law import MEASURES, TITLES as TITLES_OF_KIND
 from robomill.units import format_count, format_percent, format_share, format_value
 
 READINGS = (WALL, FLOOR, END, FEED)

@@ -27,8 +27,7 @@ from robomill.io.setups.projects import OF_THE_APP, load_setup, open_project, se
 from robomill.io.tables import Table, parse_toml, shown
 from robomill.io.texts import read_text
 from robomill.paper import BOX
-from robomill.quantities import choice, quantities, settle, switch
-from robomill.quantities import quantity as number
+from robomill.quantities import choice, quantities, quantity as number, settle, switch
 from robomill.robot.model import Robot
 from robomill.robot.stiffness import COMPLIANCE, JOINT_UNITS
 from robomill.simulation.setup import SimulationSetup

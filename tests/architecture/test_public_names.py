@@ -1,4 +1,4 @@
-"""Every public name is there twice, for the reader and for the type checker, and loads what it says."""
+"""Every public name loads what it says, for the reader and for the type checker alike."""
 
 from __future__ import annotations
 
@@ -14,26 +14,15 @@ import robomill as rm
 from robomill.lazy import cached_property
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCE = ast.parse((ROOT / "robomill" / "__init__.py").read_text())
+STUB = ast.parse((ROOT / "robomill" / "__init__.pyi").read_text())
 # Classes whose constructor is written down for type checkers, beside the one that the dataclass makes.
 IN_UNITS = [found for name in rm.__all__ if hasattr(found := getattr(rm, name), "door") and found is not rm.Robot]
 
 
-def static_names() -> dict[str, str]:
-    """Names and modules of what only type checkers import."""
-    (block,) = (node for node in SOURCE.body if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING")
-    found = {}
-    for node in block.body:
-        assert isinstance(node, ast.ImportFrom)
-        assert node.module is not None
-        for alias in node.names:
+def test_type_checkers_pass_every_name_on() -> None:
+    for node in ast.walk(STUB):
+        for alias in node.names if isinstance(node, ast.ImportFrom) else ():
             assert alias.asname == alias.name, f"{alias.name}: only 'import x as x' is passed on to users"
-            found[alias.name] = node.module
-    return found
-
-
-def test_type_checkers_and_readers_see_the_same_names() -> None:
-    assert static_names() == rm._PUBLIC
 
 
 @pytest.mark.parametrize("name", rm.__all__)
@@ -51,7 +40,7 @@ def test_completion_offers_every_name() -> None:
 
 
 def test_a_name_that_is_none_is_no_attribute() -> None:
-    with pytest.raises(AttributeError, match="no attribute 'compensat'"):
+    with pytest.raises(AttributeError, match="attribute compensat"):
         rm.compensat  # noqa: B018
 
 

@@ -15,8 +15,7 @@ import argcomplete
 import pytest
 
 from robomill.cli import main, serve
-from robomill.cli.parser import VERBS as RECORDS
-from robomill.cli.parser import make_parser
+from robomill.cli.parser import VERBS as RECORDS, make_parser
 from robomill.cli.verb_options import SHELLS
 from robomill.console import speak_plainly
 from robomill.io.samples import sample_names

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.course import Course
-from robomill.cutting.course import force_over_pitch as over_pitch
+from robomill.cutting.course import Course, force_over_pitch as over_pitch
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import EngagedPart
 from robomill.cutting.forces.mechanistic import MechanisticForce

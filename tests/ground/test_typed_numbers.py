@@ -6,8 +6,7 @@ import math
 import re
 
 import pytest
-from hypothesis import example, given
-from hypothesis import strategies as st
+from hypothesis import example, given, strategies as st
 
 from robomill.errors import NumberError
 from robomill.typed_numbers import read_number, write_number

@@ -9,8 +9,7 @@ from decimal import Decimal
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from robomill.typed_numbers import read_number
 from robomill.unit_words import measure

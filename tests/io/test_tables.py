@@ -7,8 +7,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from robomill.errors import LoadTestError, ProjectError
 from robomill.io.tables import Table, exactly, parse_toml, shown, toml_value

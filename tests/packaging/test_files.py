@@ -60,4 +60,4 @@ def test_the_core_says_from_which_version_on_and_not_up_to_which(line: str) -> N
 
 def test_the_core_is_what_it_says() -> None:
     core = {re.split("[>=]", line)[0] for line in PROJECT["dependencies"]}
-    assert core == {"numpy", "scipy", "numba", "trimesh", "tomli-w", "argcomplete", "clarabel"}
+    assert core == {"numpy", "scipy", "numba", "trimesh", "tomli-w", "argcomplete", "clarabel", "lazy-loader"}

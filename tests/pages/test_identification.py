@@ -34,8 +34,7 @@ from robomill.ui.identification.inputs import adopted
 from robomill.ui.identification.laboratory import KEY, Exercise, Trial
 from robomill.ui.judged import uncertainty
 from robomill.ui.project import Project, project_from_toml, project_to_toml
-from robomill.ui.session import KEY as PROJECT
-from robomill.ui.session import Store
+from robomill.ui.session import KEY as PROJECT, Store
 from tests.identification.cables import Arm, Rig, as_csv, make
 from tests.identification.synthetic import simulated_tests
 

@@ -22,9 +22,7 @@ from robomill.cutting.process import ProcessForce
 from robomill.errors import CuttingError, RobotError
 from robomill.io.materials import load_material
 from robomill.toolpath.source import GCodeSource
-from robomill.ui.milling import materials as material_panel
-from robomill.ui.milling import metrology as metrology_panel
-from robomill.ui.milling import springs as springs_panel
+from robomill.ui.milling import materials as material_panel, metrology as metrology_panel, springs as springs_panel
 from robomill.ui.milling.body import QUESTION
 from robomill.ui.milling.force import FILE as FORCE_FILE
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from random_arms import any_arm, configurations, five_axis_arm, spherical_wrist_arm
 
 import robomill as rm

@@ -1,8 +1,7 @@
 """Properties that hold for any path: material only goes, order and mirror do not matter."""
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from robomill.cutting.tool import Cutter
 from robomill.surface.stock import Stock

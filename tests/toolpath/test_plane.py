@@ -4,8 +4,7 @@ import cmath
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from robomill.toolpath.plane import axes, centre_by_radius, doubled_area, from_plane, polar, swept, through, turned
 

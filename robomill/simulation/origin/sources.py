@@ -14,8 +14,7 @@ from robomill.errors import SetupError
 from robomill.provenance import GIVEN, Provenance, stated_blocks
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
-from robomill.robot.sources import BLOCKS as ROBOT_BLOCKS
-from robomill.robot.sources import changed_blocks, is_of_robot
+from robomill.robot.sources import BLOCKS as ROBOT_BLOCKS, changed_blocks, is_of_robot
 
 BLOCKS = {
     "source": "path",

@@ -196,8 +196,7 @@ class March:
         return World(dexels, runs, bounds, facets, relief), self._room()
 
     def _room(self) -> Any:
-        from robomill.surface.contact import division_kernels as division
-        from robomill.surface.contact import engagement_kernels as kernels
+        from robomill.surface.contact import division_kernels as division, engagement_kernels as kernels
         from robomill.surface.contact.rib_kernels import CIRCLES, COLUMNS
         from robomill.surface.contact.turn_kernels import ANGLES, half_turn
 

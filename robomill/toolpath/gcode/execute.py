@@ -3,8 +3,7 @@
 import math
 from typing import Any
 
-from robomill.toolpath.gcode import codes as modal
-from robomill.toolpath.gcode import moves, offsets, splines, threads
+from robomill.toolpath.gcode import codes as modal, moves, offsets, splines, threads
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.program import PROBE

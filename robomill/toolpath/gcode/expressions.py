@@ -7,8 +7,7 @@ from collections.abc import Callable
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.foreign import said_of
 from robomill.toolpath.gcode.parameters import COUNT, Parameters
-from robomill.toolpath.gcode.rules import operator_rules as rules
-from robomill.toolpath.gcode.rules import value_rules
+from robomill.toolpath.gcode.rules import operator_rules as rules, value_rules
 from robomill.toolpath.gcode.rules.value_rules import MAX_DEPTH
 
 SENTENCES = {

@@ -4,8 +4,7 @@ from time import thread_time
 
 from robomill.errors import GCodeError
 from robomill.progress import checkpoint
-from robomill.toolpath.gcode import check
-from robomill.toolpath.gcode import codes as modal
+from robomill.toolpath.gcode import check, codes as modal
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader

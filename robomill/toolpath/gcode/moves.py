@@ -6,8 +6,7 @@ from robomill.toolpath.gcode import compensated_corners
 from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, NON_MODAL, WIDTH, Q, g_name
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.program import FEED, TAP, TRAVERSE, Move, Rows
-from robomill.toolpath.gcode.rules import cycle_rules as cycles
-from robomill.toolpath.gcode.rules import motion_rules as rules
+from robomill.toolpath.gcode.rules import cycle_rules as cycles, motion_rules as rules
 from robomill.toolpath.gcode.words import Block
 from robomill.units import format_si
 

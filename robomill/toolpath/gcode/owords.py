@@ -13,8 +13,7 @@ from robomill.toolpath.gcode.flow import Calls, OWord, Structure, scan
 from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.parameters import ARGUMENTS, LEVELS
-from robomill.toolpath.gcode.rules import flow_rules as rules
-from robomill.toolpath.gcode.rules import value_rules
+from robomill.toolpath.gcode.rules import flow_rules as rules, value_rules
 from robomill.toolpath.gcode.rules.records import Flow
 from robomill.toolpath.gcode.words import Block
 

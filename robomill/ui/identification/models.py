@@ -10,8 +10,7 @@ from robomill.identification.fit.comparison import OVERFIT, Comparison
 from robomill.identification.fit.models import MODELS
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
-from robomill.robot.stiffness import of_joint
-from robomill.robot.stiffness import shown as shown_in
+from robomill.robot.stiffness import of_joint, shown as shown_in
 from robomill.ui import pieces
 from robomill.ui.bench import Bench
 from robomill.ui.entry import inputs

@@ -12,19 +12,22 @@ from robomill.simulation.origin.spread import AlloySpread, alloy_spread, peak_fo
 from robomill.simulation.result import SimulationResult
 from robomill.ui import pieces, session
 from robomill.ui.comparing import other
-from robomill.ui.entry import inputs
-from robomill.ui.entry import tools as tools_panel
+from robomill.ui.entry import inputs, tools as tools_panel
 from robomill.ui.judged import evidence as evidence_panel
 from robomill.ui.judged.verdict import NOT_COUNTED, tiles_of_b, verdict_tiles
 from robomill.ui.judged.worked import mathematics
-from robomill.ui.milling import cut as cut_panel
-from robomill.ui.milling import film, force_view, live_cut
-from robomill.ui.milling import force as force_panel
-from robomill.ui.milling import metrology as metrology_panel
-from robomill.ui.milling import pictures as picture_panel
-from robomill.ui.milling import scrubber as linked
-from robomill.ui.milling import springs as springs_panel
-from robomill.ui.milling import station as station_views
+from robomill.ui.milling import (
+    cut as cut_panel,
+    film,
+    force as force_panel,
+    force_view,
+    live_cut,
+    metrology as metrology_panel,
+    pictures as picture_panel,
+    scrubber as linked,
+    springs as springs_panel,
+    station as station_views,
+)
 from robomill.ui.pieces import Tile
 from robomill.ui.posed.arm import arm_at
 from robomill.ui.work import cached, running

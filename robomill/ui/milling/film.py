@@ -10,8 +10,7 @@ from robomill.progress import checkpoint
 from robomill.simulation.result import SimulationResult
 from robomill.ui import pieces, rendered, session
 from robomill.ui.entry import inputs
-from robomill.ui.work import cached
-from robomill.ui.work import job as jobs
+from robomill.ui.work import cached, job as jobs
 from robomill.ui.work.job import Job
 from robomill.units import format_bytes, format_times
 from robomill.viz.rendered.animation import FRAMES, Kind, absent, encode, film_frame, film_samples

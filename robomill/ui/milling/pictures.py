@@ -13,8 +13,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.surface.zmap import ZMap
 from robomill.ui import pieces, rendered, session
 from robomill.ui.entry import inputs
-from robomill.ui.milling import live_cut
-from robomill.ui.milling import scrubber as linked
+from robomill.ui.milling import live_cut, scrubber as linked
 from robomill.ui.work import cached
 from robomill.units import format_si
 from robomill.viz.rendered import worker

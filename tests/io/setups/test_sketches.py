@@ -7,8 +7,7 @@ import tomllib
 import numpy as np
 import pytest
 import tomli_w
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from robomill.errors import ProjectError
 from robomill.io.samples import samples_dir

@@ -11,8 +11,7 @@ from robomill.cutting.edge import MOMENTS
 from robomill.cutting.engaged import PANELS, end_of, full_slot, sector_edges, sinks
 from robomill.cutting.profile_kernels import END, FLANK, NOSE, on_profile, stretch_ends
 from robomill.cutting.tool import DISH, PRESSED, Cutter
-from robomill.surface.contact import division_kernels as division
-from robomill.surface.contact import engagement_kernels as kernels
+from robomill.surface.contact import division_kernels as division, engagement_kernels as kernels
 from robomill.surface.contact.division_kernels import (
     GAPS,
     HALVINGS,

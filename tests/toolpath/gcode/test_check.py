@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import codes as modal
-from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode import codes as modal, interpret
 from robomill.toolpath.gcode.check import check_words, choose_motion
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.machine import Machine

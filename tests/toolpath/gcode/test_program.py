@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import interpret
-from robomill.toolpath.gcode import program as programs
+from robomill.toolpath.gcode import interpret, program as programs
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.program import Move, Recorder, Rows
 

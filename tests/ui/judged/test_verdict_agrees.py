@@ -11,8 +11,7 @@ import robomill as rm
 from robomill.io.samples import samples_dir
 from robomill.report.plain import simulation_lines
 from robomill.report.simulation_record import simulation_record
-from robomill.simulation.judging.verdict_words import KINDS
-from robomill.simulation.judging.verdict_words import WORDS as JUDGED
+from robomill.simulation.judging.verdict_words import KINDS, WORDS as JUDGED
 from robomill.simulation.result import SimulationResult
 from robomill.toolpath.source import GCodeSource
 from robomill.ui.judged import verdict
