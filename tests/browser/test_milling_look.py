@@ -7,6 +7,7 @@ import time
 from typing import Any
 
 import pytest
+from screenshots import page_paths
 
 pytestmark = pytest.mark.browser
 
@@ -144,6 +145,18 @@ def test_the_picture_is_on_the_first_screen_and_nothing_jumps(page: Any, url: st
         print(f"{width}: picture at {stage['y']:.0f} px, shift {moved:.3f}, {taken:.1f} s")
         assert stage["y"] < 44 + 200 if width == 1440 else stage["y"] + 200 < height
         assert stage["width"] > 600
+
+
+def test_no_page_jumps_as_it_comes(page: Any, url: str) -> None:
+    page.add_init_script(f"({SHIFT})()")
+    moved = {}
+    for name, path in page_paths().items():
+        page.goto(url + path)
+        idle(page)
+        page.wait_for_timeout(1500)
+        moved[name] = round(page.evaluate("() => window.moved"), 3)
+    print(f"shift: {moved}")
+    assert max(moved.values()) < 0.2, "0.1 is the aim on a quiet machine"
 
 
 def test_without_webgl_a_sentence_and_the_rendered_picture_stand_there(page: Any, url: str) -> None:
