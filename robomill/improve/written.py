@@ -91,7 +91,7 @@ class _OfProgram(Writing):
     def _check(self, text: str, made: dict[int, Any]) -> None:
         """Read the text again: it must make the pieces that were written, and nothing else."""
         program = self.program
-        told = [(j, piece.end) for j in range(len(program)) for _, piece in _made(program, made, j)]
+        told = [(j, end) for j in range(len(program)) for end in _ends(program, made, j)]
         owner, ends = np.array([j for j, _ in told]), np.array([end for _, end in told])
         try:
             again = interpret(text.encode("utf-8", "surrogateescape"), dialect=self.source.dialect, tools=self.tools)
@@ -114,8 +114,9 @@ def _marked(text: str, source: PathSource, dialect: str) -> str:
     return "\n".join(marked(text.split("\n"), source.name, key_of(source.block_texts()), dialect))
 
 
-def _made(program: Program, made: dict[int, Any], j: int) -> list[tuple[FloatArray, Any]]:
-    return made.get(j, [(program.start[j] + program.lift[j], Piece(0.0, 1.0, program.end[j] + program.lift[j]))])
+def _ends(program: Program, made: dict[int, Any], j: int) -> list[FloatArray]:
+    """Where the pieces of a move end; one that was not made anew ends as it did."""
+    return [piece.end for _, piece in made[j]] if j in made else [program.end[j] + program.lift[j]]
 
 
 def _moving(ends: FloatArray, start: FloatArray, rotary: FloatArray) -> Any:

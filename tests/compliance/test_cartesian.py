@@ -79,6 +79,8 @@ def test_the_softest_direction_is_the_last():
     np.testing.assert_allclose(values, np.sort(np.roots(np.poly(C))), atol=1e-9)
     assert values[2] == values.max()
     np.testing.assert_allclose(C @ axes, axes * values, atol=1e-9)
+    for each in soft_direction([C + 0.1 * skew, C.T - skew])[0]:
+        np.testing.assert_allclose(each, values, atol=1e-8)
 
 
 @pytest.mark.parametrize(

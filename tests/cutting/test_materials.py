@@ -55,6 +55,14 @@ def test_alternatives_share_alloy_and_kind():
     assert alternatives(row, [kienzle, other, row, row.replace(name="d", alloy="steel")]) == (other,)
 
 
+def test_a_coefficient_that_is_changed_is_given_in_code_and_one_that_is_not_keeps_its_source():
+    row = MechanisticRow(**ROW)
+    assert row.replace(Ktc=8e8).provenance.kind == "user"
+    assert row.replace(Ktc=8e8, Kte=row.Kte).provenance.kind == "user"
+    assert row.replace(Ktc=row.Ktc, title="Ours").provenance == row.provenance
+    assert row.replace(Ktc=8e8, provenance=row.provenance).provenance == row.provenance
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.improve.springs import springs
+from robomill.improve.springs import _beside, springs
 
 SLOT = rm.load_setup("paper_flute")
 CUT = SLOT.replace(force=rm.process_force("al7075_t6_carbide_ref190", SLOT.cutter), engagement=True)
@@ -31,3 +31,20 @@ def test_a_cut_that_is_entered_from_the_side_springs_at_no_touch() -> None:
     run = led("G0 X-70\nG0 Z-2\nG1 X-40 F300\n")
     assert np.linalg.norm(run.F, axis=1).max() > 50.0
     assert springs(run) == ()
+
+
+def test_how_far_a_tip_is_beside_two_lines_that_meet() -> None:
+    """From a corner at (10, 0) back along x to 0 and on along y to 10: by Pythagoras from the nearest of both."""
+    path = rm.Toolpath.from_points(p_mm=[[0, 0, 0], [10, 0, 0], [10, 10, 0]], feed_mm_min=600)
+    at = int(np.flatnonzero(np.linalg.norm(path.p - [0.01, 0.0, 0.0], axis=1) < 1e-9)[0])
+    for tip, off in (
+        ((4, -3, 0), 3),
+        ((13, 6, 0), 3),
+        ((-3, 4, 0), 5),
+        ((13, -4, 0), 5),
+        ((10, 13, 4), 5),
+        ((10, 0, 0), 0),
+    ):
+        tips = path.p.copy()
+        tips[at] = np.array(tip) * 1e-3
+        assert _beside(tips, path, np.array([at]))[0] == pytest.approx(off * 1e-3, abs=1e-12)
