@@ -17,12 +17,12 @@ from robomill.ui.comparing import other
 from robomill.ui.entry import inputs
 from robomill.ui.judged import verdict
 from robomill.ui.pieces import Tile
+from robomill.ui.serving.menu import file_of
 from robomill.ui.work import job, running
 from robomill.ui.work.job import Underway
 from robomill.units import format_beside, format_limit, format_share, format_si
 
 ROOM_FOR_ZERO = 35.0  # % of the track: where the tolerance lies nearer, its number stands alone
-MILLING = "pages/6_Milling.py"
 
 
 def show() -> None:
@@ -87,7 +87,7 @@ def _to_worst(result: SimulationResult) -> None:
         on_click=stand_at,
         args=(result, worst),
     ):
-        st.switch_page(MILLING)
+        st.switch_page(file_of("Milling"))
 
 
 def stand_at(result: SimulationResult, i: int) -> None:

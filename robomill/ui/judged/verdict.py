@@ -18,6 +18,7 @@ from robomill.ui.judged import uncertainty
 from robomill.ui.pieces import Tile
 from robomill.ui.posed.push import by_axis
 from robomill.ui.project import Project
+from robomill.ui.serving.menu import file_of
 from robomill.ui.work import cached
 from robomill.units import format_beside, format_count, format_limit, format_many, format_share, format_si
 
@@ -146,9 +147,9 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
 def open_question(result: SimulationResult) -> None:
     """The way to where it is said what the project's program cuts, or with how many flutes, while nobody has."""
     if result.verdict.premise and not result.setup.carried_from:
-        st.page_link("pages/6_Milling.py", label="Say it on the Milling page", icon=":material/help:")
+        st.page_link(file_of("Milling"), label="Say it on the Milling page", icon=":material/help:")
     elif result.setup.carried_from:
-        st.page_link("pages/5_Toolpath.py", label="Say what it cuts", icon=":material/help:")
+        st.page_link(file_of("Toolpath"), label="Say what it cuts", icon=":material/help:")
 
 
 def previous(result: SimulationResult) -> SimulationResult | None:

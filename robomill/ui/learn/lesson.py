@@ -24,6 +24,7 @@ from robomill.ui.posed import fields, push
 from robomill.ui.posed.arm import arm
 from robomill.ui.posed.point import InHand, default_point, in_hand, place
 from robomill.ui.project import Project
+from robomill.ui.serving.menu import file_of
 from robomill.ui.work import running
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, displacement_scale
@@ -142,7 +143,7 @@ def question(found: InHand) -> None:
             "Measure it in the virtual laboratory", key="learn.laboratory", icon=":material/science:", type="tertiary"
         ):
             session.keep("identification.section", "laboratory")
-            st.switch_page("pages/4_Identification.py")
+            st.switch_page(file_of("Identification"))
     with left, st.container(border=True):
         _push(found.pose, push, now.revealed)
 

@@ -30,6 +30,7 @@ from robomill.ui.milling import (
 )
 from robomill.ui.pieces import Tile
 from robomill.ui.posed.arm import arm_at
+from robomill.ui.serving.menu import file_of
 from robomill.ui.work import cached, running
 from robomill.units import format_count, format_limit, format_many, format_si
 
@@ -153,7 +154,7 @@ def _numbers(result: SimulationResult, i: int, spread: AlloySpread | None) -> No
     other.tiles(tiles(result, verdict_tiles(result, session.project().view.length)), tiles_of_b)
     mathematics(lambda: of_the_run(result, result.decided.sample), "milling")
     if result.worst >= 0:
-        st.page_link("pages/7_Improve.py", label="What would fix it?", icon=":material/build:")
+        st.page_link(file_of("Improve"), label="What would fix it?", icon=":material/build:")
 
 
 @st.fragment

@@ -14,6 +14,7 @@ from robomill.ui import pieces, session
 from robomill.ui.entry import grid, inputs
 from robomill.ui.project import Project
 from robomill.ui.robot import files, frames, joints, tables
+from robomill.ui.serving.menu import file_of
 from robomill.units import unit_label
 
 EDITED = "edited"
@@ -96,7 +97,7 @@ def _whence(robot: Robot) -> None:
         pieces.note(pieces.sourced(found))
     if mine and found is not None and found.kind == "assumed":
         pieces.said("info", "Type what your joints give, or identify it from load tests.", "edit")
-        st.page_link("pages/4_Identification.py", label="Identify from load tests", icon=":material/science:")
+        st.page_link(file_of("Identification"), label="Identify from load tests", icon=":material/science:")
 
 
 def _geometry(robot: Robot, length: str) -> None:

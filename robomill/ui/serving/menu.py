@@ -21,6 +21,14 @@ GROUPS = {
     "Teach": ("Learn",),
 }
 
+PAGES = ("Robot", "Workspace", "Compliance", "Identification", "Toolpath", "Milling", "Improve", "Learn")
+"""In the order of their files."""
+
+
+def file_of(title: str) -> str:
+    """The file of a page, as links and changes of page want it."""
+    return f"pages/{PAGES.index(title) + 1}_{title}.py"
+
 
 def grouped(pages: Sequence[StreamlitPage]) -> Mapping[str, list[StreamlitPage]]:
     """The pages in their groups, the first one named; a page of no group comes last, under no heading."""

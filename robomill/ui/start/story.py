@@ -21,6 +21,7 @@ from robomill.ui.judged.verdict import verdict_sentence
 from robomill.ui.markup import unparted
 from robomill.ui.posed.push import decided
 from robomill.ui.project import Project, View
+from robomill.ui.serving.menu import file_of
 from robomill.ui.work import cached
 from robomill.units import format_beside, format_count, format_si, format_times
 from robomill.viz.rendered.picture import SurfacePicture
@@ -30,8 +31,8 @@ from robomill.viz.views import surface_picture
 
 PURPOSE = "robomill predicts how far a milling robot is pushed off its path by the cutting force, and why."
 DOORS = (
-    ("I design robots", "Which joint is worth stiffening?", "pages/7_Improve.py", "Stiffen a joint"),
-    ("I teach", "Why does a robot bend sideways?", "pages/8_Learn.py", "Start the lesson"),
+    ("I design robots", "Which joint is worth stiffening?", file_of("Improve"), "Stiffen a joint"),
+    ("I teach", "Why does a robot bend sideways?", file_of("Learn"), "Start the lesson"),
 )
 CHECKED = "start.checked"
 KINDS = {"paper": "published", "user": "of your own"}  # as one counts them; the others are their own word
@@ -158,4 +159,4 @@ def _then(take: Callable[[bytes, str], None]) -> Callable[[bytes, str], None]:
 def onward() -> None:
     """To the toolpath, where a program that was just dropped is asked what it cuts."""
     if session.drop(CHECKED):
-        st.switch_page("pages/5_Toolpath.py")
+        st.switch_page(file_of("Toolpath"))
