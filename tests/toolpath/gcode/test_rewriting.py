@@ -309,3 +309,19 @@ def test_a_kept_line_of_a_loop_that_counts_by_a_parameter_is_refused(dialect: st
     number = text.splitlines().index(line) + 1
     with pytest.raises(GCodeError, match=rf"^Line {number}: .* is computed, and cannot be written back"):
         rewritten(text, dialect, SHIFT)
+
+
+@pytest.mark.parametrize(("axis", "kept"), [(0, True), (1, True), (2, False)])
+def test_a_line_that_goes_home_is_kept_where_nothing_is_corrected_that_it_moves(axis: int, kept: bool) -> None:
+    """G28 Z0 leads along z alone: from a corrected x or y it goes home all the same."""
+    program, executed, name = trace(PLAIN["home"], "auto", TOOLS)
+    ends = program.end + program.lift
+    home = np.flatnonzero(program.line == split_lines(PLAIN["home"]).index("G91 G28 Z0") + 1)
+    assert len(home)
+    ends[home, axis] += 1e-4
+    lines = split_lines(PLAIN["home"])
+    if kept:
+        assert "G91 G28 Z0" in Rewriter(program, name, {}, ends).write(lines, executed).text
+    else:
+        with pytest.raises(GCodeError, match="cannot be led elsewhere"):
+            Rewriter(program, name, {}, ends).write(lines, executed)
