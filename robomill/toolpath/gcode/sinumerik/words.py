@@ -189,11 +189,7 @@ class SinumerikWords(MacroCalls):
                 continue
             end = value_end(code, found.end())
             value = code[found.end() : end]
-            if (
-                "R" in value
-                or any(name in self.variables for name in _IDENTIFIER.findall(value))
-                or any(sign in value.strip()[1:] for sign in "+-*/(")
-            ):
+            if self._computed(value):
                 out += [code[at : found.end()], f"{self.value(value, line):.12f} "]
                 at = end
         return "".join([*out, code[at:]])
