@@ -319,9 +319,7 @@ class _Search:
 
     def _written(self, at: FloatArray) -> FloatArray:
         """A place (4,) within the area, rounded where its bounds allow it."""
-        free = self.area.upper > self.area.lower
-        rounded = np.where(free, np.round(at / WRITTEN) * WRITTEN, at)
-        return np.clip(rounded, self.area.lower, self.area.upper)
+        return np.clip(np.round(at / WRITTEN) * WRITTEN, self.area.lower, self.area.upper)
 
     def _compared(self, places: FloatArray, share: FloatArray, why: IntArray) -> tuple[Place, Place]:
         """The median and the worst of the places that are allowed, in full; places that turn out not to be reached
