@@ -1,11 +1,13 @@
 """Where the samples of a corrected program were meant to be, against paths offset by hand."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import robomill as rm
 from robomill.errors import ToolpathError
-from robomill.simulation.meant import meant
+from robomill.simulation.meant import linked, meant
 from robomill.toolpath.sampling import resample
 
 STEP = 1e-3
@@ -100,3 +102,37 @@ def test_a_plunge_at_feed_belongs_to_the_one_that_was_meant_at_the_same_height_a
     assert plunge.sum() > 2
     np.testing.assert_allclose(found.p[plunge, :2], 0.0, atol=1e-9)
     np.testing.assert_allclose(found.p[plunge, 2], np.minimum(path.p[plunge, 2] + 0.05e-3, 1e-3), atol=1e-9)
+
+
+def steps(points: list[tuple[float, float]], cutting: list[int]) -> rm.Toolpath:
+    """A path through points (x, y) mm as ``linked`` sees one."""
+    p = np.array([(x, y, 0.0) for x, y in points]) * 1e-3
+    length = np.linalg.norm(np.diff(p, axis=0, prepend=p[:1]), axis=1)
+    return SimpleNamespace(p=p, step_length=length, cutting=np.array(cutting, dtype=bool))  # type: ignore[return-value]
+
+
+WANTED = [(0, 0), (10, 0), (10, 0), (10, 0), (10, 0), (10, 10)]
+
+
+@pytest.mark.parametrize(
+    ("told", "cutting", "inside"),
+    [
+        ([(0, 0), (10, 0), (10.1, 0), (10.1, 0.1), (10, 0), (10, 10)], [1, 1, 1, 1, 1, 1], [2, 3]),
+        (
+            [(0, 0), (10, 0), (10.005, 0), (10.005, 0.005), (10, 0), (10, 10)],
+            [1, 1, 1, 1, 1, 1],
+            [],
+        ),  # shorter than a link
+        (
+            [(0, 0), (10, 0), (10.1, 0), (10.1, 0.1), (10, 0), (10, 10)],
+            [1, 1, 0, 1, 1, 1],
+            [],
+        ),  # a rapid, and behind it
+        ([(0, 0), (10, 0), (10.1, 0), (10.1, 0.1), (10, 0), (10, 10)], [1, 1, 1, 0, 1, 1], [2]),
+    ],
+)
+def test_links_are_what_stands_between_two_cuts_at_one_place(
+    told: list[tuple[float, float]], cutting: list[int], inside: list[int]
+) -> None:
+    found = linked(steps(told, cutting), steps(WANTED, cutting))
+    assert np.flatnonzero(found).tolist() == inside

@@ -92,3 +92,27 @@ def test_about_a_way_no_longer_than_the_margin_allows():
     assert told(relief, middle, -8.1 * MM, -7 * MM) == UNKNOWN
     assert tops_about(relief, 16 * MM, 0.0) == (-np.inf, np.inf)
     assert tops_about(relief, 0.0, 10 * MM) == pytest.approx((0.0, 0.0), abs=1e-15)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7, 2.5])
+@pytest.mark.parametrize("ends", [(-7.0, -1.0), (-1.0, -7.0), (-4.0, -4.0)])
+@pytest.mark.parametrize("cutter", MILLS[:2])
+def test_on_a_ramp_the_bounds_hold_where_the_floor_is_the_lowest_of_all_places_of_the_tool(cutter, ends, turn):
+    """Along the ramp and up to the radius beside it, by looking at 20 001 places of the tool one by one."""
+    way = np.array([np.cos(turn), np.sin(turn)])
+    p = np.array([[*(-10 * way), ends[0]], [*(10 * way), ends[1]]]) * MM
+    march = March(Stock(LOW, HIGH), 0.25 * MM, cutter, p)
+    march.cut(1, p[0], p[1])
+    relief = march._stepwise[0].relief
+    at = np.linspace(0.0, 1.0, 20_001)[:, None]
+    tips = p[0] + at * (p[1] - p[0])
+    bounds = []
+    for along, aside in np.random.default_rng(3).uniform((-5, -3), (5, 3), (150, 2)) * MM:
+        x, y = along * way + aside * np.array([-way[1], way[0]])
+        away = np.hypot(x - tips[:, 0], y - tips[:, 1])
+        over = away <= cutter.radius
+        floor = (tips[over, 2] + cutter.profile(away[over])).min()
+        low, high = tops_about(relief, x, y)
+        assert low <= floor + 1e-7 <= high + 1e-6
+        bounds.append(high - low)
+    assert np.median(bounds) < 3 * MM
