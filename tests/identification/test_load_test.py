@@ -88,6 +88,10 @@ def test_selecting_joining_and_leaving_out():
     with pytest.raises(LoadTestError, match="with_joints"):
         world.tool_poses(ROBOT)
     np.testing.assert_allclose(tests.tool_poses(ROBOT), rm.tool_pose(ROBOT, THETA))
+    turned = LoadTests(F, MOVED, x_M=np.tile([0, -1.3, 0, 0, 0, 0.2], (6, 1)))
+    for some, told in ((tests, {}), (world, {}), (turned, {"frame": "tool", "angles": "robomill"})):
+        assert {name: some.to_dataframe().attrs[name] for name in told} == told
+        assert ("frame" in some.to_dataframe().attrs) == bool(told)
 
 
 def test_poses_are_counted_as_by_comparing_each_with_each():

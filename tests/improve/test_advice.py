@@ -1,5 +1,7 @@
 """Other ways to cut, against runs made by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,14 @@ def test_the_largest_feed_keeps_the_tolerance_and_a_hundredth_more_does_not(advi
         assert (run.verdict.share <= 1.0) == kept
     assert found.seconds == pytest.approx(way(advice, "now").seconds / found.factor)
     assert {each.factor for each in advice.ways if each.name != "feed"} == {1.0}
+
+
+def test_seconds_are_those_at_feed_and_of_dwells(advice: rm.Advice) -> None:
+    """20 mm at 600 mm/min are 2 s; a dwell of 1.5 s counts, a rapid does not."""
+    text = "G21 G90 S9000 M3\nG0 X-20 Y0 Z5\nG0 Z-1\nG1 X0 F600\nG4 P1.5\nG0 Z5\nM2\n"
+    run = rm.simulate(SETUP.replace(source=rm.GCodeSource(text)))
+    assert replace(way(advice, "now"), run=run).seconds == pytest.approx(3.5)
+    assert np.isnan(replace(way(advice, "now"), run=None).seconds)
 
 
 def test_two_passes_are_two_programs_lines_one_after_the_other(advice: rm.Advice) -> None:

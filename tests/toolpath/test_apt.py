@@ -260,6 +260,7 @@ def test_arcs_lead_round_their_axis_to_the_next_point(arc: str, turn: float) -> 
     np.testing.assert_allclose(np.hypot(p[:, 0], p[:, 1]), 10.0, atol=1e-9)
     np.testing.assert_allclose(p[:, 2], 5 + 6 * angle / angle[-1], atol=1e-9)
     assert path.s[-1] * 1e3 == pytest.approx(np.hypot(10 * np.radians(turn), 6), rel=1e-3)
+    assert 10 * (1 - np.cos(np.abs(np.diff(angle)).max() / 2)) <= 1e-3 + 1e-9  # mm: how far chords are within the arc
     assert path.cutting.tolist() == [False] + [True] * (len(p) - 1)
 
 

@@ -39,6 +39,14 @@ def test_a_single_slot_keeps_the_mark_of_its_push():
     assert "stays on the part" in found.words
 
 
+def test_what_is_left_is_read_at_its_own_place_not_at_another():
+    """Of two slots apart the tip strays most in one, and the wall of the other is as far off as its own push."""
+    lines = (*SLOT, *beside(15.0))
+    run = pushed(lines, (3, (0.15, 0.1, 0.0)), (7, (0.0, 0.17, 0.0)))
+    assert run.stray.left == pytest.approx(0.1e-3, abs=1e-7)
+    assert pushed(lines, (3, (0.0, 0.1, 0.0)), (7, (0.0, 0.17, 0.0))).stray.left == pytest.approx(0.17e-3, abs=1e-7)
+
+
 def test_a_later_pass_on_either_side_takes_the_mark_of_a_wall_away():
     both = (*SLOT, *beside(3.0), *beside(-3.0))
     assert pushed(both, (3, (0.0, 0.2, 0.0))).stray.fate == "cleaned"
