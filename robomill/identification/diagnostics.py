@@ -1,7 +1,6 @@
 """Checks of a fit in words: which joint cannot be seen and why, which rows do not belong, what hit a bound."""
 
 import numpy as np
-from scipy.special import stdtrit
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.identification.fit.confidence import half_width
@@ -53,6 +52,8 @@ def twins(system: System) -> dict[int, int]:
 
 def outliers(system: System, row: IntArray) -> tuple[Outlier, ...]:
     """Tests further from the robust fit than normal noise puts any number once in a hundred data sets."""
+    from scipy.special import stdtrit
+
     e = len(system.b)
     A, b = system.A / system.noise[:, None], system.b / system.noise
     dof = e - A.shape[1]

@@ -13,6 +13,12 @@ from robomill.paper import BOX_SIZE, SLOT
 from robomill.units import format_number, format_short, format_si, from_si
 
 Status = Literal["reproduced", "assumed", "gap", "not computed"]
+WORDS: dict[Status, str] = {
+    "reproduced": "reproduced",
+    "assumed": "reproduced with the assumed lengths",
+    "gap": "gap",
+    "not computed": "nothing to compute",
+}
 
 # Table 1: alpha (deg), offset of theta (deg), sense of theta, link by link. Its three lengths are symbols.
 TABLE_1 = ((90, 0, 90, -90, 0), (-90, 90, 0, 0, 180), (1, 1, 1, -1, 1))

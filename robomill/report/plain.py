@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from robomill.provenance import Finding, named
-from robomill.report.reproduction_row import WORDS as WORDS_OF_STATUS
+from robomill.report.paper import WORDS as WORDS_OF_STATUS
 from robomill.simulation.judging.strays import WORDS
 from robomill.surface.sections.measures import MEASURED
 from robomill.surface.sections.section_law import MEASURES

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from robomill.cutting.materials import Material
 from robomill.identification.result import IdentificationResult
 from robomill.lazy import cached_property
-from robomill.report.paper import Statement, Status
+from robomill.report.paper import WORDS, Statement
 from robomill.robot.model import Robot
 from robomill.simulation.origin.assumptions import assumed_of_robot
 from robomill.simulation.result import SimulationResult
@@ -15,12 +15,6 @@ from robomill.workspace.fields import ComplianceMap, compliance_map
 from robomill.workspace.grid import PAPER_BOX, plane_grid
 
 STEP = 0.1  # m: grid of the checks
-WORDS: dict[Status, str] = {
-    "reproduced": "reproduced",
-    "assumed": "reproduced with the assumed lengths",
-    "gap": "gap",
-    "not computed": "nothing to compute",
-}
 
 
 @dataclass(frozen=True, eq=False)

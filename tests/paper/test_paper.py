@@ -14,9 +14,9 @@ from robomill.cutting.forces.mechanistic import MechanisticRow
 from robomill.io.materials import sample_materials
 from robomill.io.samples import samples_dir
 from robomill.paper import BOX_SIZE, SLOT
-from robomill.report.paper import STATEMENTS, TABLE_1, TABLES
+from robomill.report.paper import STATEMENTS, TABLE_1, TABLES, WORDS
 from robomill.report.reproduction import CHECKS, reproduction
-from robomill.report.reproduction_row import WORDS, Evidence, columns, summary
+from robomill.report.reproduction_row import Evidence, columns, summary
 from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import PAPER_BOX, box_grid, plane_grid
 from robomill.workspace.lines import border_and_middle_lines

@@ -2,7 +2,6 @@
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri, stdtrit
 
 from robomill.arrays import FloatArray
 
@@ -16,6 +15,8 @@ def quantile(dof: int | None, level: float = LEVEL) -> float:
 
     Infinite where nothing was left to judge the noise by.
     """
+    from scipy.special import ndtri, stdtrit
+
     upper = 0.5 + 0.5 * level
     if dof is None:
         return float(ndtri(upper))

@@ -14,8 +14,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
-from scipy.optimize import nnls
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.identification.fit.confidence import BISQUARE, LEVEL, MAD, bisquare, half_width
@@ -130,6 +128,8 @@ def _scale(A: FloatArray) -> FloatArray:
 
 
 def _free(S: FloatArray, b: FloatArray, keep: BoolArray) -> FloatArray:
+    from scipy.linalg import solve_triangular
+
     if keep.all():
         Q, R = np.linalg.qr(S)
         return np.asarray(solve_triangular(R, Q.T @ b))
@@ -138,6 +138,8 @@ def _free(S: FloatArray, b: FloatArray, keep: BoolArray) -> FloatArray:
 
 def _bounded(S: FloatArray, b: FloatArray, free: FloatArray, signed: BoolArray) -> FloatArray:
     """The bounded solution; where no bound is active it is the free one, to the last bit."""
+    from scipy.optimize import nnls
+
     if ((free >= 0) | signed).all():
         return free
     split = np.concatenate([S, -S[:, signed]], axis=1)  # a signed parameter is the difference of two positive ones

@@ -16,7 +16,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.identification.fit.confidence import LEVEL, quantile
@@ -91,6 +90,8 @@ def model_error(errors: Errors, dof: int) -> ModelError | None:
 
 def _spread(e2: FloatArray, v: FloatArray, columns: FloatArray) -> FloatArray:
     """(3,) squares of the parts by weighted non-negative least squares of squared errors on their columns (e, 3)."""
+    from scipy.optimize import nnls
+
     typical = columns.mean(axis=0)
     typical[typical == 0.0] = 1.0
     A = columns / typical

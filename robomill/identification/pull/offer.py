@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import fdtrc
 
 from robomill.errors import LoadTestError
 from robomill.identification.fit.crossvalidation import headline, relative_by_pose
@@ -59,6 +58,8 @@ def _sure(point: FoundPoint) -> bool:
 
 def _asked_for(robot: Robot, tests: LoadTests, choice: Model) -> bool:
     """Whether the readings ask for other points: an F-test of the six shifts, linear about the stated points."""
+    from scipy.special import fdtrc
+
     try:
         system = build_system(robot, tests, choice, FREED["both"])
     except LoadTestError:

@@ -1,7 +1,6 @@
 """What the lines of pull say, in sentences with codes."""
 
 import numpy as np
-from scipy.special import fdtri
 
 from robomill.arrays import frozen
 from robomill.identification.load_test import LoadTests
@@ -81,6 +80,8 @@ def pull_findings(found: LinesOfPull, robot: Robot, tests: LoadTests) -> list[Fi
 
 def disagreement(by_lines: FoundPoint | None, fitted: tuple[FoundPoint, ...]) -> list[Finding]:
     """Said where the fitted load point is not that of the lines of pull, beyond both their intervals."""
+    from scipy.special import fdtri
+
     for point in fitted:
         if by_lines is None or point.point != "force" or np.isnan(point.covariance).any():
             continue

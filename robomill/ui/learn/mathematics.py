@@ -8,9 +8,9 @@ from robomill.compliance.at_pose import PoseReport
 from robomill.learn.equations import component, product
 from robomill.learn.evidence import evidence
 from robomill.learn.push import AsidePush
-from robomill.report.paper import Statement
+from robomill.report.paper import WORDS, Statement
 from robomill.report.reproduction import reproduction
-from robomill.report.reproduction_row import WORDS, Row, columns, summary
+from robomill.report.reproduction_row import Row, columns, summary
 from robomill.report.tags import Html
 from robomill.ui import pieces
 from robomill.ui.work import cached
