@@ -355,7 +355,8 @@ class KlartextValues(SinumerikProcs):
                 raise GCodeError.at(line, f"CYCL DEF {number} needs more than {MAX_PECKS} pecks; give a larger Q202.")
         top = surface + max(safety, self.q(204))
         wait, taps = max(self.q(211), 0.0), number == 206
-        return Hole(top, surface + safety, bottom, wait, down, out, tuple(pecks), True, pitch, taps)
+        above = max(self.q(210), 0.0) if number in (200, 203) else 0.0
+        return Hole(top, surface + safety, bottom, wait, down, out, tuple(pecks), True, pitch, taps, above=above)
 
     def _out_of(self, number: int, down: float, slower: float) -> float:
         """The feed out of a hole: Q208, and Q206 where that is 0; without a Q208 a rapid, but for tapping."""

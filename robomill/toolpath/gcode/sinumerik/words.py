@@ -7,7 +7,7 @@ depth, or DPR how far it is below RFP).
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from robomill.errors import GCodeError
@@ -46,10 +46,12 @@ _COMPARES = (("==", " EQ "), ("<>", " NE "), (">=", " GE "), ("<=", " LE "), (">
 
 @dataclass(frozen=True)
 class Hole:
-    """A drilling cycle: heights along Z in program units, dwell in s, feeds.
+    """A drilling cycle: heights along Z in program units, dwells in s, feeds.
 
     A ``feed`` of 0 is the one in force, so is an ``out`` of infinity; an ``out`` of 0 is a rapid. A tap goes by its
     ``pitch``, or ``taps`` by a feed, in a chuck that gives. ``first`` is by how much the first depth is gone to slower.
+    The tool waits for ``dwell`` at the bottom, for ``between`` at each depth before it and for ``above`` when it has
+    come out of the hole in between.
     """
 
     retract: float
@@ -63,6 +65,8 @@ class Hole:
     pitch: float
     taps: bool = False
     first: float = 1.0
+    between: float = 0.0
+    above: float = 0.0
 
 
 class SinumerikWords(MacroCalls):
@@ -278,9 +282,11 @@ class SinumerikWords(MacroCalls):
         feeds = [0.0 if math.isnan(v) else abs(v) for v in (given[6], given[7])] if kind == "85" else [0.0, 0.0]
         feeds[1] = math.inf if kind == "89" else feeds[1]
         to_clear = kind == "83" and given[11] == 1.0
-        seconds = 0.0 if math.isnan(wait) else max(wait, 0.0)
-        first = given[10] if kind == "83" and 0.0 < given[10] < 1.0 else 1.0
-        return Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], pecks, to_clear, pitch, first=first)
+        seconds, above = (0.0 if math.isnan(each) else max(each, 0.0) for each in (wait, given[9]))
+        hole = Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], pecks, to_clear, pitch)
+        if kind != "83":
+            return hole
+        return replace(hole, first=given[10] if 0.0 < given[10] < 1.0 else 1.0, between=seconds, above=above)
 
     def _pecks(self, given: list[float], reference: float, bottom: float, line: int) -> tuple[float, ...]:
         """Depths of CYCLE83 before the last: FDEP or FDPR first, then less by DAM each time, DAM at least."""
@@ -319,16 +325,21 @@ class SinumerikWords(MacroCalls):
         begin = down if hole.first == 1.0 else hole.first * (feed_speed(machine) if down is None else down)
         for n, depth in enumerate(hole.pecks):
             self._to(FEED, line, depth, down if n else begin)
+            self._wait(hole.between)
             if hole.to_clear:
                 self._to(TRAVERSE, line, hole.clear)
+                self._wait(hole.above)
                 self._to(TRAVERSE, line, depth)
         self._to(FEED, line, hole.bottom, down if hole.pecks else begin)
-        if hole.dwell:
-            dwell(machine, hole.dwell)
+        self._wait(hole.dwell)
         if hole.out or hole.pitch:
             self._to(FEED, line, hole.clear, out)
         self._to(TRAVERSE, line, hole.retract)
         machine.motion = before
+
+    def _wait(self, seconds: float) -> None:
+        if seconds:
+            dwell(self.machine, seconds)
 
     def _to(self, kind: int, line: int, height: float, v_f: float | None = None) -> None:
         machine = self.machine

@@ -248,7 +248,9 @@ def test_cycles_move_as_the_manual_says(name: str, unit: str) -> None:
     """TNC 640, Cycle Programming: heights about a surface at 1, set-up clearance 2, depth 8, second clearance 9."""
     plunges, down, out, thread = TABLE[name]
     number, *more = name.split(" ")
-    cycle = " ~\n".join([f"CYCL DEF {number}", "Q200=2", "Q201=-8", "Q206=120", "Q211=0.5", "Q203=1", "Q204=9", *more])
+    cycle = " ~\n".join(
+        [f"CYCL DEF {number}", "Q200=2", "Q201=-8", "Q206=120", "Q211=0.5", "Q210=0.25", "Q203=1", "Q204=9", *more]
+    )
     head = HEAD.replace("MM", unit).replace("Z+10", "Z+30")
     program = interpret(f"{head}{cycle}\nL X+5 FMAX M99\nEND PGM Q {unit}\n")
     size = {"MM": 1e-3, "INCH": 25.4e-3}[unit]
@@ -256,6 +258,7 @@ def test_cycles_move_as_the_manual_says(name: str, unit: str) -> None:
     expected = [(30.0, RAPID), (3.0, RAPID)]
     for depth in plunges:
         expected += [(1.0 - depth, down), (3.0, RAPID), (1.0 - depth, RAPID)]
+    back = [2 + 3 * k + 2 for k in range(len(plunges))]  # into the hole again, behind Q210 above it
     expected += [(-7.0, down), *([(3.0, out)] if out else []), (10.0, RAPID)]
     np.testing.assert_allclose(program.end[1:, 2] / size, [z for z, _ in expected], atol=1e-9)
     np.testing.assert_allclose(program.v_f[1:] * 60 / size * tenth, [v for _, v in expected], rtol=1e-9)
@@ -263,6 +266,8 @@ def test_cycles_move_as_the_manual_says(name: str, unit: str) -> None:
     assert program.thread[1:].tolist() == [thread and v > 0 for _, v in expected]
     waits = [0.0] * len(expected)
     waits[-2 if out else -1] = 0.5
+    for k in back if number in ("200", "203") else ():
+        waits[k] = 0.25
     assert program.dwell[1:].tolist() == waits
 
 
