@@ -69,7 +69,7 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = _tool_axis(code, number, machine)
     code = _places(code, machine)
     code = _TURNS.sub(lambda found: _waited(found, number, machine), code)
-    code = re.sub(r"\b(G0?4)\s+F", r"\1 P", code, flags=re.IGNORECASE)
+    code = re.sub(r"\b(G0?4)\s+F\s*=?", r"\1 P", code, flags=re.IGNORECASE)
     code = re.sub(r"\bCR\s*=", "R", code, flags=re.IGNORECASE)
     code = _TURN.sub(lambda found: _whole_turns(found[1], number), code)
     code = re.sub(r"\b([XYZABCIJKFS])1?\s*=\s*([-+.\d]+)", r"\1\2", code, flags=re.IGNORECASE)

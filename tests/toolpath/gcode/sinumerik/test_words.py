@@ -299,3 +299,12 @@ def test_the_last_two_pecks_of_a_degression_are_alike() -> None:
     """840D sl, CYCLE83: less by DAM each time, DAM at least, and what is less than twice DAM in two halves."""
     found = [z for kind, z in heights("G0 X5 Z50\nCYCLE83(20,0,2,-15,,,5,2,0,0,1,0)\n") if kind == "F"]
     assert found == [-5, -8, -10, -12, -13.5, -15]
+
+
+@pytest.mark.parametrize(
+    ("dwell", "seconds"), [("F2", 2), ("F=2", 2), ("F=R1", 3), ("F = R1+1", 4), ("S50", 6), ("S=R1*10", 3.6)]
+)
+def test_a_dwell_may_be_computed(dwell: str, seconds: float) -> None:
+    """By F in seconds, by S in turns of the spindle (500 a minute)."""
+    program = interpret(f"{HEAD}R1=3\nG4 {dwell}\nG1 X5\nM30\n", dialect="sinumerik")
+    assert program.dwell_time == pytest.approx(seconds)
