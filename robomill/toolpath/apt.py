@@ -61,6 +61,7 @@ _SILENT = frozenset(
 )
 MAX_POINTS = 5_000_000
 _OTHER_RATES = ("IPT", "MMPT", "INVERS")
+_STANDS = "feed counts per turn, and the spindle stands; SPINDL comes first."
 
 
 @dataclass
@@ -185,7 +186,7 @@ def _statement(state: _State, findings: Findings, word: str, values: list[str], 
     elif word in ("CIRCLE", "MOVARC"):
         state.arc = arc_of(values, state.unit, line)
     elif word == "CYCLE":
-        state.drilling = drilling_of(values, state.unit, state.speed, line)
+        state.drilling = drilling_of(values, state.unit, line)
     elif word in ("TLAXIS", "MULTAX"):
         _axis(state, findings, word, values, line)
     elif word in ("TRANS", "MSYS", "CSYS"):
@@ -312,11 +313,13 @@ def _go(state: _State, numbers: list[float], line: int, is_start: bool = False) 
     point = np.array([to_si(v, state.unit) for v in numbers[:3]])
     arc, state.arc = state.arc, None
     if state.drilling is not None and not is_start:
-        axis = np.array(state.axis)
+        axis, down = np.array(state.axis), feed_of(*state.drilling.rate, state.speed)
+        if down <= 0.0:
+            raise GCodeError.at(line, f"the cycle's {_STANDS}")
         above = float((np.array([to_si(v, state.unit) for v in before]) - point) @ axis) if before else 0.0
         if above > state.drilling.out:
             _put(state, point + above * axis, 0.0, line)
-        for height, feed, dwell in state.drilling.moves():
+        for height, feed, dwell in state.drilling.moves(down):
             state.waited += dwell
             _put(state, point + height * axis, feed, line)
         state.rapid = False
@@ -324,8 +327,7 @@ def _go(state: _State, numbers: list[float], line: int, is_start: bool = False) 
     cutting = bool(state.rows) and not state.rapid and not is_start
     if cutting and state.feed <= 0:
         turns = state.rate[0] > 0.0
-        lacks = "its feed counts per turn, and the spindle stands; SPINDL" if turns else "a cut needs a feed; FEDRAT"
-        raise GCodeError.at(line, f"{lacks} comes first.")
+        raise GCodeError.at(line, f"its {_STANDS}" if turns else "a cut needs a feed; FEDRAT comes first.")
     feed = state.feed if cutting else 0.0
     points = [point]
     if arc is not None and before and not is_start:

@@ -139,10 +139,13 @@ def tangent_arc(text: str, tangent: FloatArray, start: FloatArray, unit: str, li
 
 @dataclass(frozen=True)
 class Drilling:
-    """A cycle that each point is drilled with: lengths (m) from the point along the tool, feed in m/s, dwell in s."""
+    """A cycle that each point is drilled with: lengths (m) from the point along the tool, dwell in s.
+
+    ``rate`` is its feed as the cycle says it: how much, by what, in which unit (see ``feed_of``).
+    """
 
     depth: float
-    feed: float
+    rate: tuple[float, str, str]
     clear: float
     out: float
     first: float
@@ -150,21 +153,21 @@ class Drilling:
     dwell: float
     feed_out: bool
 
-    def moves(self) -> list[tuple[float, float, float]]:
-        """(height above the point, feed, dwell before), in order; a feed of 0 is a rapid."""
+    def moves(self, feed: float) -> list[tuple[float, float, float]]:
+        """(height above the point, feed, dwell before), in order, at a ``feed`` (m/s); a feed of 0 is a rapid."""
         moves = [(self.out, 0.0, 0.0), (self.clear, 0.0, 0.0)]
         if self.step > 0.0:
             pecks = math.ceil((self.clear + self.depth - self.first) / self.step) + 1
             for peck in range(min(pecks, MAX_PECKS) - 1):
                 down = self.clear - self.first - peck * self.step
-                moves += [(down, self.feed, 0.0), (self.clear, 0.0, 0.0), (down, 0.0, 0.0)]
-        moves.append((-self.depth, self.feed, 0.0))
-        moves.append((self.clear, self.feed if self.feed_out else 0.0, self.dwell))
+                moves += [(down, feed, 0.0), (self.clear, 0.0, 0.0), (down, 0.0, 0.0)]
+        moves.append((-self.depth, feed, 0.0))
+        moves.append((self.clear, feed if self.feed_out else 0.0, self.dwell))
         return [*moves, (self.out, 0.0, 0.0)]
 
 
-def drilling_of(values: list[str], unit: str, speed: float, line: int) -> Drilling | None:
-    """CYCLE/...; None for OFF and INIT. ``speed`` is the spindle's (1/s). Raises GCodeError for what is not read."""
+def drilling_of(values: list[str], unit: str, line: int) -> Drilling | None:
+    """CYCLE/...; None for OFF and INIT. Raises GCodeError for what is not read."""
     words = [v.upper() for v in values]
     if words[:1] in (["OFF"], ["NOMORE"], ["INIT"]):
         return None
@@ -185,9 +188,9 @@ def drilling_of(values: list[str], unit: str, speed: float, line: int) -> Drilli
     step = max(named.get("STEP", named.get("SUBPECK", 0.0)), 0.0)
     first = max(named.get("1STPECK", step), 0.0) or step
     down, near, away, first, step = (to_si(v, unit) for v in (depth, near, away, first, step))
-    feed = feed_of(named[feeds[0]], feeds[0], unit, speed)
+    rate = named[feeds[0]], feeds[0], unit
     leaves = bool(_OUT_AT_FEED & set(kinds))
-    return Drilling(down, feed, near, away, first, step, max(named.get("DWELL", 0.0), 0.0), leaves)
+    return Drilling(down, rate, near, away, first, step, max(named.get("DWELL", 0.0), 0.0), leaves)
 
 
 def _said_of(words: list[str], kind: str, line: int) -> tuple[dict[str, float], list[float]]:

@@ -113,6 +113,17 @@ def test_a_feed_per_turn_follows_the_spindle_whichever_is_said_first(unit: str) 
         read_apt(f"UNITS/MM\n{feed}FROM/0,0,0\nGOTO/1,0,0\nFINI\n")
 
 
+def test_a_feed_per_turn_of_a_cycle_follows_the_spindle_too() -> None:
+    """0.2 mm a turn: at 10 turns a second 2 mm/s, at 20 4 mm/s; where the spindle stands there is no feed."""
+    cycle, holes = "CYCLE/DRILL,DEPTH,4,MMPR,0.2,CLEAR,2\n", "GOTO/1,0,0\nSPINDL/1200,CLW\nGOTO/2,0,0\nCYCLE/OFF\n"
+    for head in (f"{cycle}SPINDL/600,CLW\n", f"SPINDL/600,CLW\n{cycle}"):
+        path = read_apt(f"UNITS/MM\nFROM/0,0,9\n{head}{holes}FINI\n")
+        np.testing.assert_allclose(path.v_f[path.cutting] * 1e3, [2, 4])
+        np.testing.assert_allclose(path.p[path.cutting, 2] * 1e3, -4)
+    with pytest.raises(GCodeError, match="Line 4: the cycle's feed counts per turn, and the spindle stands"):
+        read_apt(f"UNITS/MM\nFROM/0,0,9\n{cycle}{holes}FINI\n")
+
+
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("turn", [1, -1])
 def test_an_arc_of_catia_is_the_circle_through_its_start_along_its_tangent(seed: int, turn: int) -> None:
