@@ -59,3 +59,25 @@ def test_a_floor_that_decides_is_what_is_ranked_not_the_tip() -> None:
     q = result.verdict.floor.worst
     down = result.delta_in_cut[q, 2] - 0.5 * (result.delta_joint[q] @ result.R_MF[q, :, 2])
     np.testing.assert_allclose(ranked.used, np.abs(down) / 1e-4, rtol=2e-3)
+
+
+@pytest.mark.parametrize("tolerance", [0.18e-3, 0.14e-3, 0.12e-3, 0.1e-3])
+def test_where_no_joint_is_enough_the_best_ones_are_taken_together_until_they_are(tolerance: float) -> None:
+    """By superposition: of the joints in the order of what they save, as few as keep the tolerance, or all of them."""
+    setup = load_setup("paper_flute").replace(tolerance=tolerance, floor_tolerance=None)
+    result = simulate(setup)
+    q = result.verdict.wall.worst
+    of_joint = result.delta_joint[q] @ result.R_MF[q, :, 1]
+    best = [int(joint) for joint in np.argsort(-of_joint, kind="stable") if of_joint[joint] > 1e-9]
+    left = of_joint.sum() - 0.5 * np.cumsum(of_joint[best])
+    enough = np.flatnonzero(left <= tolerance)
+    ranked = stiffer_joints(setup)
+    if len(enough) and enough[0] == 0:
+        assert ranked.together == ()
+        assert ranked.with_together is None
+        return
+    count = enough[0] + 1 if len(enough) else len(best)
+    assert ranked.together == tuple(best[:count])
+    assert ranked.with_together is not None
+    assert ranked.with_together.wall.value == pytest.approx(left[count - 1], rel=1e-3)
+    assert (ranked.with_together.level != "out") == bool(len(enough))
