@@ -54,6 +54,7 @@ class Provenance:
 
 # What a block counts as until someone says more.
 UNSTATED = Provenance("user", "not stated")
+BY_HAND = Provenance("user", "entered by hand")
 # What numbers are that were given in code.
 GIVEN = Provenance("user", "given in code")
 

@@ -15,7 +15,7 @@ from robomill.arrays import FloatArray, as_floats
 from robomill.errors import RobotError
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.jacobian import twists
-from robomill.provenance import Provenance
+from robomill.provenance import BY_HAND, Provenance
 from robomill.quantities import quantity, settle
 from robomill.robot.model import Robot
 from robomill.spelled import in_units
@@ -23,7 +23,6 @@ from robomill.spelled import in_units
 #: Standard gravity in a {M} whose z axis points up, m/s^2.
 GRAVITY = (0.0, 0.0, -9.80665)
 HEAVIEST = 2e4  # kg: no arm weighs as much: was it meant in g?
-BY_HAND = Provenance("user", "entered by hand")
 
 
 @in_units(RobotError, "Weight of the arm")

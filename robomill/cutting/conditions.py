@@ -122,6 +122,11 @@ class CutConditions:
         return sealed(np.asarray(self.cutting & (self.a_p > 0.0) & (self.phi_ex > self.phi_st) & down))
 
     @property
+    def highest(self) -> FloatArray:
+        """(m,) m above the tip: how high the cutter cuts."""
+        return self.a_p if self.reach is None else self.reach
+
+    @property
     def sinks(self) -> FloatArray:
         """(m,) how steeply the end of the tool sinks, 0 to 1."""
         return sealed(sinks(self.along) if self.steep is None else self.steep)
@@ -177,9 +182,8 @@ class CutConditions:
 
 def beyond_flutes(conditions: CutConditions, tooling: Tooling) -> BoolArray:
     """(m,) whether a step is engaged above the cutter's edges."""
-    highest = conditions.a_p if conditions.reach is None else conditions.reach
     edges = np.array([each.edge_height for each in tooling.cutters])
-    return np.asarray(conditions.engaged & (highest > edges[tooling.of_step] * (1.0 + 1e-9)))
+    return np.asarray(conditions.engaged & (conditions.highest > edges[tooling.of_step] * (1.0 + 1e-9)))
 
 
 THRUSTS = {
@@ -195,7 +199,7 @@ def cut_warnings(cutter: Cutter, conditions: CutConditions, computed: bool | Boo
     found = []
     engaged = conditions.engaged
     tooling = Tooling.of(conditions.tooling or cutter, len(conditions))
-    highest = conditions.a_p if conditions.reach is None else conditions.reach
+    highest = conditions.highest
     beyond = beyond_flutes(conditions, tooling)
     for each, made in tooling.steps_of_each():
         deep = np.flatnonzero(beyond & made)

@@ -20,11 +20,9 @@ from robomill.cutting.tool import Cutter
 from robomill.cutting.unjudged import Unjudged, against_hand
 from robomill.errors import CuttingError
 from robomill.progress import gathered
-from robomill.provenance import Finding, Provenance
+from robomill.provenance import BY_HAND, Finding, Provenance
 from robomill.quantities import described, settle
 from robomill.values import Said
-
-BY_HAND = Provenance("user", "entered by hand")
 
 Frame = Literal["path", "M"]
 COMPONENTS = {"feed": "feed", "feed_normal": "feed-normal", "axial": "axial"}

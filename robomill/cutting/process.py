@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import chain, product
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -169,8 +169,8 @@ class ProcessForce(ForceModel):
             ("drill_sideways", drill & (conditions.across > DISH), "a drill led sideways has no force model"),
             self._unknown(conditions, tooling),
         ]
-        found = (Unjudged(code, engaged & where, why) for code, where, why in reasons)
-        return against_hand(conditions, tooling) + tuple(each for each in found if each.where.any())
+        found = (Unjudged.at(code, engaged & where, why) for code, where, why in reasons)
+        return against_hand(conditions, tooling) + tuple(chain.from_iterable(found))
 
     def _unknown(self, conditions: CutConditions, tooling: Tooling) -> tuple[str, BoolArray, str]:
         """Steps whose force has a part that the material does not give: every mill's the radial one; the axial one,

@@ -1,5 +1,7 @@
 """Steps whose force has no model: they are said, counted, and never green."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +19,11 @@ class Unjudged:
     where: BoolArray
     why: str
 
+    @classmethod
+    def at(cls, code: str, where: BoolArray, why: str) -> tuple[Unjudged, ...]:
+        """The one of ``where``; none where that is nowhere."""
+        return (cls(code, where, why),) if where.any() else ()
+
 
 def against_hand(conditions: CutConditions, tooling: Tooling) -> tuple[Unjudged, ...]:
     """Steps in the material at which the spindle turns against the hand of its cutter: such teeth rub on their backs,
@@ -24,4 +31,4 @@ def against_hand(conditions: CutConditions, tooling: Tooling) -> tuple[Unjudged,
     left = np.array([cutter.hand == "left" for cutter in tooling.cutters])[tooling.of_step]
     where = conditions.engaged & (conditions.ccw != left) & (conditions.n_s != 0.0)
     why = "the spindle turns against the cutter's hand: it does not cut"
-    return (Unjudged("spindle_sense", where, why),) if where.any() else ()
+    return Unjudged.at("spindle_sense", where, why)

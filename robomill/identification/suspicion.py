@@ -10,6 +10,7 @@ from robomill.identification.length_units import length_suspicions
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
+from robomill.robot.sources import block_in_force
 from robomill.units import to_si
 
 PLAUSIBLE = (5e-8, 1e-4)  # m/N at the tip: stiffer than any arm of joints, to one that can be pushed about by hand
@@ -95,8 +96,7 @@ def _knows(robot: Robot | None) -> bool:
     """Whether the compliances of all its joints are known rather than assumed."""
     if robot is None or not np.all(robot.C_theta > 0):
         return False
-    said = robot.provenance
-    source = said.get(f"compliance.{robot.compliance_set}", said.get("compliance"))
+    source = robot.provenance.get(block_in_force(robot))
     return source is None or source.kind != "assumed"
 
 

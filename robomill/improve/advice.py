@@ -9,13 +9,14 @@ from functools import partial
 import numpy as np
 
 from robomill.arguments import asked, made_by
-from robomill.arrays import FloatArray, digest, of_kind
+from robomill.arrays import FloatArray, digest
 from robomill.errors import RobomillError, SetupError
 from robomill.frames import Columns
-from robomill.improve.judged import refuse_corrected
+from robomill.improve.judged import check_improvable
 from robomill.improve.ways import fed, in_levels, turned_round
 from robomill.lazy import cached_property
 from robomill.progress import step
+from robomill.simulation.judging.verdict_words import NO_NUMBER
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import Simulate, simulate
 from robomill.simulation.setup import SimulationSetup
@@ -156,8 +157,7 @@ def advise(setup: SimulationSetup, run: Simulate | None = None) -> Advice:
     >>> [(way.name, round(way.share, 2)) for way in advice.ways if "passes" in way.name]
     [('2 passes', 0.47), ('3 passes', 0.31), ('4 passes', 0.23)]
     """
-    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
-    refuse_corrected(setup)
+    check_improvable(setup)
     if not setup.force.follows_cut:
         raise SetupError(
             "The force of this set-up is stated and does not follow the cut: no other feed, way or number of passes "
@@ -168,7 +168,7 @@ def advise(setup: SimulationSetup, run: Simulate | None = None) -> Advice:
         setup = setup.replace(engagement=True, provenance=setup.provenance)
     run = run or simulate
     now = run(setup)
-    if now.verdict.level in ("unjudged", "unreached", "missed"):
+    if now.verdict.level in NO_NUMBER:
         raise SetupError(f"There is no number to improve: {now.verdict.sentence}")
     asked_for = [*_ways(now)]
     found = [Way("now", "As it is", now)]

@@ -19,7 +19,7 @@ from robomill.improve.least_cost import Errors, least_cost
 from robomill.improve.sensitivity import stiffened
 from robomill.kinematics.forward import joint_frames
 from robomill.lazy import cached_property
-from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.setup import SimulationSetup, check_setup
 from robomill.units import format_count, format_limit, format_many, format_short, format_si, from_si
 from robomill.values import Tabled
 from robomill.workspace.grid import Grid
@@ -172,7 +172,7 @@ def design_box(
     >>> found.feasible, round(float(found.after.max()) * 1e3, 4)
     (True, 0.2)
     """
-    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
+    check_setup(setup)
     of_kind(grid, Grid, "grid", "rm.box_grid(lower, upper, step)", SetupError)
     setup = asked_for(setup, tolerance, tolerance_mm)
     F = as_floats(force, "Force", (3,), error=SetupError)

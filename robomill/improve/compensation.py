@@ -16,7 +16,7 @@ from robomill.identification.knowledge import Knowledge
 from robomill.improve.correction import COMPONENTS, Correction, correct
 from robomill.improve.errors import Errors, errors_of, graver, level_of, measured
 from robomill.improve.finer import closer
-from robomill.improve.judged import refuse_corrected
+from robomill.improve.judged import check_improvable
 from robomill.improve.springs import Springs, springs
 from robomill.improve.trusted import check_found, check_reached, check_trusted
 from robomill.improve.written import WriteGCode, Written, writing
@@ -167,7 +167,7 @@ def compensation(
     if not FINEST <= bound <= COARSEST:
         ends = f"{format_si(FINEST, 'um', 1)} to {format_si(COARSEST, 'mm', 0)}"
         raise CompensationError(f"Bound: found {format_si(bound, 'um', 3)}; expected {ends}.", where="bound")
-    refuse_corrected(setup)
+    check_improvable(setup)
     with step(0, 4, "The program as it is"):
         back = writing(setup, write_gcode)
         wanted = along(setup, back.moves.wanted)

@@ -8,18 +8,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked, made_by
-from robomill.arrays import FloatArray, digest, frozen, of_kind
+from robomill.arrays import FloatArray, digest, frozen
 from robomill.compliance.deflection import shares_along
 from robomill.errors import SetupError
 from robomill.frames import Columns
 from robomill.improve.asked_joints import SETTLED, checked_bounds, checked_weight, words_of_joints
-from robomill.improve.judged import Judged, Measure, judged, refuse_corrected
+from robomill.improve.judged import Judged, Measure, check_improvable, check_joints_known, judged
 from robomill.improve.least_cost import Errors, Least, least_cost, least_share
 from robomill.improve.sensitivity import stiffened
 from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
+from robomill.simulation.judging.verdict_words import NO_NUMBER
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
@@ -201,8 +202,7 @@ def design(
     >>> round(found.share, 3)
     1.0
     """
-    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
-    refuse_corrected(setup)
+    check_improvable(setup)
     setup = asked_for(setup, tolerance, tolerance_mm)
     n = setup.robot.n
     ratios = checked_bounds(bounds, n)
@@ -307,8 +307,8 @@ def linear(result: SimulationResult, found: Judged, x: FloatArray, rest_goes: bo
 
 def _limits(setup: SimulationSetup, measure: Measure) -> str:
     """What has to be kept, in words: one tolerance, or those of walls and floors."""
-    wall, floor = setup.tolerance, setup.floor_tolerance
-    if floor is None or floor == wall or measure in ("wall", "tip"):
+    wall, floor = setup.limits["wall"], setup.limits["floor"]
+    if floor == wall or measure in ("wall", "tip"):
         return format_limit(wall, "mm")
     if measure == "floor":
         return format_limit(floor, "mm")
@@ -316,12 +316,7 @@ def _limits(setup: SimulationSetup, measure: Measure) -> str:
 
 
 def asked_for(setup: SimulationSetup, tolerance: float | None, tolerance_mm: float | None) -> SimulationSetup:
-    if setup.measured_map is not None:
-        raise SetupError(
-            "The compliance of this set-up is a measured map, in which no joint is known: take the map out "
-            "([measured_map]) to design joints.",
-            where="measured_map",
-        )
+    check_joints_known(setup, "to design joints")
     if tolerance is None and tolerance_mm is None:
         return setup
     declared = quantities(SimulationSetup)["tolerance"]
@@ -334,7 +329,7 @@ def asked_for(setup: SimulationSetup, tolerance: float | None, tolerance_mm: flo
 def _check(result: SimulationResult, measure: Measure) -> None:
     """Refuse a cut without numbers that a stiffer joint could make better."""
     verdict = result.verdict
-    if verdict.level in ("unjudged", "unreached", "missed"):
+    if verdict.level in NO_NUMBER:
         raise SetupError(f"There is no number to design for: {verdict.sentence}")
     if not len(judged(result, measure).sample):
         raise SetupError(f"The cut leaves no {measure} to judge; take another measure.", where="measure")

@@ -52,9 +52,9 @@ class Errors(Value):
 
     def share(self, setup: SimulationSetup) -> float:
         """The largest of the tolerance, each surface by its own; the tip's by that of walls where none is left."""
-        floor = setup.tolerance if setup.floor_tolerance is None else setup.floor_tolerance
-        used = np.array([self.wall[0] / setup.tolerance, self.floor[0] / floor])
-        return float(np.nanmax(used) if np.isfinite(used).any() else self.vector[0] / setup.tolerance)
+        limits = setup.limits
+        used = np.array([self.wall[0] / limits["wall"], self.floor[0] / limits["floor"]])
+        return float(np.nanmax(used) if np.isfinite(used).any() else self.vector[0] / limits["tip"])
 
     def _larger(self, which: int) -> float:
         surfaces = np.array([self.wall[which], self.floor[which]])

@@ -20,9 +20,10 @@ from itertools import combinations
 import numpy as np
 
 from robomill.arrays import FloatArray
-from robomill.improve.screening import Screen, configurations, screen, spin_matters
+from robomill.improve.screening import Screen, configurations, screen
 from robomill.improve.unsure import Unsure, changed
 from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin
+from robomill.kinematics.spin import spin_matters
 from robomill.progress import slices, step
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import compliances, sags

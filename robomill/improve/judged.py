@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import SetupError
 from robomill.simulation.judging.gauge import Readings
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.setup import SimulationSetup, check_setup
 from robomill.toolpath.source import wanted_of
 from robomill.values import ReadOnly
 
@@ -45,13 +45,22 @@ class Judged(ReadOnly):
         return np.asarray(np.einsum("qdk,qk...->qd...", self.way, vectors[self.sample]))
 
 
-def refuse_corrected(setup: SimulationSetup) -> None:
-    """Raises SetupError for a program that was corrected: remedies are those of the path that was meant."""
+def check_improvable(setup: Any) -> None:
+    """Raises SetupError for what is no set-up, and for a program that was corrected: remedies are those of the path
+    that was meant."""
+    check_setup(setup)
     made_of = wanted_of(setup.source) or getattr(setup.source, "mark", None)
     if made_of is None:
         return
     name = made_of.name
     raise SetupError(f"This program is corrected already: ask this of the program that it was made of, {name}.")
+
+
+def check_joints_known(setup: SimulationSetup, to: str) -> None:
+    """Raises SetupError, with what was to be done, where a measured map is in force, which knows of no joint."""
+    if setup.measured_map is not None:
+        text = "The compliance of this set-up is a measured map, in which no joint is known: take the map out "
+        raise SetupError(f"{text}([measured_map]) {to}.", where="measured_map")
 
 
 def judged(result: SimulationResult, measure: Measure = "verdict", tolerance: float | None = None) -> Judged:
@@ -62,13 +71,12 @@ def judged(result: SimulationResult, measure: Measure = "verdict", tolerance: fl
     if measure not in MEASURES:
         raise SetupError(f"Measure: found {measure!r:.40}, expected {', '.join(MEASURES)}.", where="measure")
     setup, gauge = result.setup, result.gauge
-    wall = setup.tolerance if tolerance is None else tolerance
-    floor = wall if tolerance is not None or setup.floor_tolerance is None else setup.floor_tolerance
+    limits = setup.limits if tolerance is None else dict.fromkeys(("wall", "floor", "tip"), tolerance)
     parts = []
     if measure in ("verdict", "wall"):
-        parts.append(_of(gauge.walls, wall))
+        parts.append(_of(gauge.walls, limits["wall"]))
     if measure in ("verdict", "floor"):
-        parts.append(_of(gauge.floors, floor))
+        parts.append(_of(gauge.floors, limits["floor"]))
     if measure == "verdict" and setup.feed_tolerance is not None:
         parts += [_of(gauge.ends, setup.feed_tolerance), _along(result, setup.feed_tolerance)]
     if any(len(part.sample) for part in parts):
@@ -77,7 +85,7 @@ def judged(result: SimulationResult, measure: Measure = "verdict", tolerance: fl
     i = np.flatnonzero(result.judged)
     if measure in ("wall", "floor"):
         i = i[:0]
-    return Judged(i, result.delta_in_cut[i], np.tile(np.eye(3), (len(i), 1, 1)), np.full(len(i), wall))
+    return Judged(i, result.delta_in_cut[i], np.tile(np.eye(3), (len(i), 1, 1)), np.full(len(i), limits["tip"]))
 
 
 def _of(found: Readings, tolerance: float) -> Judged:

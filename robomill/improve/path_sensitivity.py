@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from robomill.arguments import asked, made_by
-from robomill.arrays import FloatArray, digest, frozen, of_kind
-from robomill.errors import SetupError
+from robomill.arrays import FloatArray, digest, frozen
 from robomill.frames import Columns
 from robomill.identification.fit.models import Model
 from robomill.improve.expansion import At, chosen_spin
-from robomill.improve.judged import refuse_corrected
+from robomill.improve.judged import check_improvable, check_joints_known
 from robomill.improve.screening import screen
 from robomill.improve.unsure import Input, Unsure
 from robomill.lazy import cached_property
@@ -116,14 +115,8 @@ def sensitivity(setup: SimulationSetup) -> PathSensitivity:
     >>> dict(zip([each.key for each in found.inputs], (found.max_deviation * 1e3).round(4).tolist()))["a_5"]
     0.6348
     """
-    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
-    refuse_corrected(setup)
-    if setup.measured_map is not None:
-        raise SetupError(
-            "The compliance of this set-up is a measured map, in which no joint is known: take the map out "
-            "([measured_map]) to ask what each joint does.",
-            where="measured_map",
-        )
+    check_improvable(setup)
+    check_joints_known(setup, "to ask what each joint does")
     run = simulate(setup)
     inputs = _inputs(setup)
     n, unsure = setup.robot.n, Unsure(setup, inputs, np.eye(len(inputs)), Model(), tuple(range(setup.robot.n)))

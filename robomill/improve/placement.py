@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked
-from robomill.arrays import FloatArray, IntArray, of_kind
+from robomill.arrays import FloatArray, IntArray
 from robomill.errors import SetupError
 from robomill.improve.area import MOST_CANDIDATES, WHO, Area, area, grid, today
-from robomill.improve.judged import refuse_corrected
+from robomill.improve.judged import check_improvable
 from robomill.improve.placed import (
     FINE,
     FINEST,
@@ -120,8 +120,7 @@ def place(
     >>> found.best.level
     'ok'
     """
-    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
-    refuse_corrected(setup)
+    check_improvable(setup)
     given = {"x": x, "x_mm": x_mm, "y": y, "y_mm": y_mm, "z": z, "z_mm": z_mm, "yaw": yaw, "yaw_deg": yaw_deg}
     where = area(setup, {**given, "keep_out": keep_out, "keep_out_mm": keep_out_mm})
     if measure not in ASKED:

@@ -20,9 +20,8 @@ from robomill.kinematics.choice import spins
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.dexterity import determinant, largest_determinant, limit_distance
 from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_kinematics
-from robomill.kinematics.spin import LEAST_DEVIATION
+from robomill.kinematics.spin import LEAST_DEVIATION, spin_matters
 from robomill.progress import checkpoint
-from robomill.robot.model import Robot
 from robomill.simulation.judging.gauge import ALIKE, Readings
 from robomill.simulation.mapped import total_compliance
 from robomill.simulation.result import SimulationResult
@@ -74,16 +73,14 @@ class Screened(NamedTuple):
 
 def share_of(measure: Asked, setup: SimulationSetup, errors: dict[str, FloatArray]) -> FloatArray:
     """(k,) share of its tolerance that errors (k,) m use, as the verdict has it; NaN where nothing is known."""
-    wall = setup.tolerance
-    floor, feed = (wall if own is None else own for own in (setup.floor_tolerance, setup.feed_tolerance))
-    limits = {"wall": wall, "floor": floor, "feed": feed, "end": feed, "tip": wall}
+    limits = setup.limits
     if measure != "verdict":
         return np.asarray(errors[measure] / limits[measure])
     deciding = ("wall", "floor") if setup.feed_tolerance is None else ("wall", "floor", "feed", "end")
     every = np.array([errors[name] / limits[name] for name in deciding])
     there = np.isfinite(every).any(axis=0)
     largest = np.fmax.reduce(every)
-    return np.where(there, largest, errors["tip"] / wall)  # nothing is left to be measured
+    return np.where(there, largest, errors["tip"] / limits["tip"])  # nothing is left to be measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,12 +168,6 @@ class Screen:
         found["feed"] = np.where(self.judged, np.abs(d[..., 0]), 0.0)
         found["tip"] = np.where(self.judged, np.linalg.norm(d, axis=-1), 0.0)
         return np.where(np.isnan(d).any(axis=-1), np.nan, share_of(measure, self.setup, found))
-
-
-def spin_matters(robot: Robot) -> bool:
-    """Whether the turn about the tool axis moves more than one joint about that axis."""
-    arm = decoupled(robot)
-    return robot.n >= 6 and not (arm is not None and arm.spindle_on_last_axis)
 
 
 def configurations(setup: SimulationSetup, T_MT: FloatArray, near: FloatArray, spin: Spin = LEAST_MOTION) -> IKResult:

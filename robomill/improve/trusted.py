@@ -9,6 +9,7 @@ from robomill.improve.correction import Correction
 from robomill.provenance import named
 from robomill.simulation.judging.gauge import Gauge
 from robomill.simulation.judging.verdict import judge
+from robomill.simulation.judging.verdict_words import NO_NUMBER
 from robomill.simulation.meant import FARTHEST
 from robomill.simulation.result import SimulationResult
 from robomill.units import format_si, to_si
@@ -23,7 +24,7 @@ def check_trusted(run: SimulationResult, gauge: Gauge) -> None:
     if errors:
         raise CompensationError(f"The path is not corrected: {errors[0].sentence}")
     verdict = judge(run, gauge)
-    if verdict.level in ("unjudged", "unreached", "missed"):
+    if verdict.level in NO_NUMBER:
         raise CompensationError(
             f"The path is not corrected, since its prediction is not to be trusted. {verdict.sentence}"
         )

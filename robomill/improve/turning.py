@@ -8,19 +8,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from robomill.arguments import asked, made_by
-from robomill.arrays import BoolArray, FloatArray, of_kind
+from robomill.arrays import BoolArray, FloatArray
 from robomill.compliance.deflection import deflection, displacement
 from robomill.errors import SetupError
 from robomill.frames import Columns
 from robomill.improve.area import today
-from robomill.improve.judged import refuse_corrected
+from robomill.improve.judged import check_improvable
 from robomill.improve.placed import Place, place_of
-from robomill.improve.screening import ASKED, MOST_SAMPLES, Asked, Screen, screen, spin_matters, uncoupled
+from robomill.improve.screening import ASKED, MOST_SAMPLES, Asked, Screen, screen, uncoupled
 from robomill.improve.spin_course import best_course
 from robomill.kinematics.choice import every, overshoot, spun, turn as within
 from robomill.kinematics.decoupled import LIMIT_SLACK, decoupled
 from robomill.kinematics.dexterity import NEAR, determinant, largest_determinant
 from robomill.kinematics.inverse import inverse_kinematics
+from robomill.kinematics.spin import spin_matters
 from robomill.kinematics.steadiness import hasty_turns
 from robomill.kinematics.transforms import rotation_z, transform
 from robomill.lazy import cached_property
@@ -29,7 +30,7 @@ from robomill.provenance import Finding
 from robomill.quantities import Quantity
 from robomill.simulation.mapped import total_compliance
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import compliances, sags, simulate, tool_poses
+from robomill.simulation.run import compliances, known, sags, simulate, tool_poses
 from robomill.simulation.setup import SimulationSetup
 from robomill.spelled import one_of
 from robomill.units import format_si, from_si, to_si
@@ -137,8 +138,7 @@ def turn(
     >>> found.constant.share <= found.now.share
     True
     """
-    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
-    refuse_corrected(setup)
+    check_improvable(setup)
     if setup.robot.n < 6:
         raise SetupError(f"{WHO}: an arm of {setup.robot.n} joints holds the tool in one way; nothing is left to turn.")
     if not spin_matters(setup.robot):
@@ -297,6 +297,6 @@ class _Turned:
             C=C,
             delta_joint=deflection(C_joint, result.F),
             delta_spring=deflection(C_spring, result.F),
-            delta=displacement(C, result.F) + offset,
+            delta=known(displacement(C, result.F) + offset, result.unjudged),
             sag=sag,
         )

@@ -15,16 +15,17 @@ from robomill.identification.knowledge import Knowledge
 from robomill.identification.result import IdentificationResult
 from robomill.improve.draws import Tornado, Uncertainty
 from robomill.improve.expansion import Expansion, expand
-from robomill.improve.judged import MEASURES, Measure
+from robomill.improve.judged import MEASURES, Measure, check_joints_known
 from robomill.improve.placed import errors_of
 from robomill.improve.screening import share_of
 from robomill.improve.unsure import Spread, Unsure, unsure_of
 from robomill.progress import step
 from robomill.provenance import Finding
+from robomill.simulation.judging.verdict_words import NO_NUMBER
 from robomill.simulation.origin.doubts import OTHERS, known_notes
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
-from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.setup import SimulationSetup, check_setup
 from robomill.units import format_percent
 
 MANY, FULL, MOST = 10_000, 200, 1_000_000  # draws: usual, usual where each is a run in full, and most
@@ -89,7 +90,7 @@ def uncertainty(
     >>> found
     <Uncertainty Reference groove (Slavkovic 2013): 0.265 mm in 95 % of the draws, tolerance kept in 99.97 %>
     """
-    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
+    check_setup(setup)
     asked_for = Spread() if spread is None else spread
     of_kind(asked_for, Spread, "spread", "rm.Spread(compliance=0.1, force=0.05)", SetupError)
     _check(setup, measure, samples, seed)
@@ -98,7 +99,7 @@ def uncertainty(
     elif known is None and asked_for.compliance is None:
         known = setup.known
     run = simulate(setup)
-    if run.verdict.level in ("unjudged", "unreached", "missed"):
+    if run.verdict.level in NO_NUMBER:
         raise SetupError(f"There is no number to be sure of: {run.verdict.sentence}")
     unsure = unsure_of(setup, asked_for, known)
     wanted = samples or (FULL if setup.coupling else MANY)
@@ -139,12 +140,7 @@ def _expansion(unsure: Unsure, run: SimulationResult, change: FloatArray) -> Exp
 
 
 def _check(setup: SimulationSetup, measure: str, samples: Any, seed: Any) -> None:
-    if setup.measured_map is not None:
-        raise SetupError(
-            "The compliance of this set-up is a measured map, in which no joint is known: take the map out "
-            "([measured_map]) to draw compliances.",
-            where="measured_map",
-        )
+    check_joints_known(setup, "to draw compliances")
     if measure not in MEASURES:
         raise SetupError(f"Measure: found {measure!r:.40}, expected {', '.join(MEASURES)}.", where="measure")
     for name, value, most in (("samples", samples, MOST), ("seed", seed, 2**63)):

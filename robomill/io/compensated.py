@@ -5,12 +5,11 @@ from collections.abc import Iterable
 from numbers import Real
 
 from robomill.arguments import asked
-from robomill.arrays import of_kind
-from robomill.errors import CompensationError, SetupError
+from robomill.errors import CompensationError
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.compensation import BOUND, Compensation, compensation
 from robomill.io.gcode_out import toolpath_to_gcode
-from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.setup import SimulationSetup, check_setup
 from robomill.units import to_si
 
 
@@ -59,7 +58,7 @@ def compensate(
     >>> rm.compensate(rm.load_setup("paper_flute"))
     <Compensation Reference groove (Slavkovic 2013): 0.2295 mm before, 0.0002 mm after 2 iterations>
     """
-    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
+    check_setup(setup)
     asked_for = bound if bound_um is None else bound_um
     if not (isinstance(asked_for, Real) and math.isfinite(asked_for)):
         raise CompensationError(f"Bound: found {asked_for!r:.40}; expected a number.", where="bound")

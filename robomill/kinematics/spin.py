@@ -7,12 +7,19 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray, frozen
 from robomill.kinematics.choice import SPIN_STEPS, spins
+from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.inverse import LEAST_MOTION, inverse_kinematics
 from robomill.lazy import cached_property
 from robomill.robot.model import Robot
 
 LEAST_DEVIATION = "least_deviation"
 RULES = (LEAST_MOTION, LEAST_DEVIATION)
+
+
+def spin_matters(robot: Robot) -> bool:
+    """Whether the turn about the tool axis moves more than one joint about that axis."""
+    arm = decoupled(robot)
+    return robot.n >= 6 and not (arm is not None and arm.spindle_on_last_axis)
 
 
 @dataclass(frozen=True, eq=False)

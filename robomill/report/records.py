@@ -13,6 +13,7 @@ from robomill.kinematics.inverse import IKResult
 from robomill.kinematics.result import beyond_limits
 from robomill.report.settled import settled
 from robomill.robot.model import Robot
+from robomill.robot.sources import block_in_force
 from robomill.simulation.origin.assumptions import assumed_of_program, assumed_of_robot
 from robomill.toolpath.path import Toolpath
 from robomill.units import from_si, rounded
@@ -65,7 +66,7 @@ def robots_record(robots: Sequence[Robot]) -> dict[str, Any]:
 
 def said_of(robot: Robot) -> dict[str, dict[str, str]]:
     """What is said of each block of the robot's numbers: kind and source; of its compliance sets the one in force."""
-    in_force = f"compliance.{robot.compliance_set}"
+    in_force = block_in_force(robot)
     return {
         block: {"kind": said.kind, "source": said.source}
         for block, said in robot.provenance.items()

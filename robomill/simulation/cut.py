@@ -99,7 +99,7 @@ def unknown_material(conditions: CutConditions) -> tuple[Unjudged, ...]:
         "leaning cuts leave more layers of material above each other than are kept apart, so what stands there is not "
         "known: cut fewer above each other, or part the program"
     )
-    return (Unjudged("layers", where, why),) if where.any() else ()
+    return Unjudged.at("layers", where, why)
 
 
 def rotary_asked(path: Toolpath, conditions: CutConditions) -> tuple[Unjudged, ...]:

@@ -4,7 +4,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.unjudged import Unjudged
-from robomill.kinematics.decoupled import decoupled
+from robomill.kinematics.spin import spin_matters
 from robomill.progress import gathered
 from robomill.provenance import Finding
 from robomill.simulation.setup import SimulationSetup
@@ -47,13 +47,11 @@ def beyond_map(setup: SimulationSetup, path: Toolpath, reached: BoolArray) -> tu
     """Steps at which the map in force says nothing because the tool leans otherwise than when it was measured."""
     angle = turned(setup, path)
     where = (angle > MOST_TURNED) & reached
-    if not where.any():
-        return ()
     why = (
         f"the tool stands up to {format_si(angle.max(), 'deg', 1)} off the axis the measured map was taken with, and "
         f"beyond {format_si(MOST_TURNED, 'deg', 0)} it does not hold: measure at this axis, or use the joints' model."
     )
-    return (Unjudged("map-axis", where, why),)
+    return Unjudged.at("map-axis", where, why)
 
 
 def map_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
@@ -64,8 +62,7 @@ def map_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
     if setup.springs:
         text = "The measured map holds whatever gives; the springs beside the joints are shown, not added."
         notes.append(Finding("info", text, code="springs-in-map"))
-    arm = decoupled(setup.robot)
-    if setup.robot.n >= 6 and not (arm is not None and arm.spindle_on_last_axis):
+    if spin_matters(setup.robot):
         text = (
             "The measured map holds for the turn about the tool axis it was taken with, which is not in it; on this "
             "arm that turn changes the compliance: measure and mill with the same one."

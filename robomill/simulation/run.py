@@ -8,7 +8,7 @@ import numpy as np
 
 from robomill import budgets
 from robomill.arguments import asked
-from robomill.arrays import FloatArray, of_kind
+from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import joint_contributions
 from robomill.compliance.deflection import deflection
 from robomill.compliance.gravity import LinkMasses, gravity_sag
@@ -16,7 +16,7 @@ from robomill.compliance.spring import extra_contributions
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import feed_frame
 from robomill.cutting.unjudged import Unjudged
-from robomill.errors import SetupError, ToolpathError
+from robomill.errors import ToolpathError
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
@@ -33,7 +33,7 @@ from robomill.simulation.marching import Bent, march_coupled
 from robomill.simulation.meant import linked, meant, straight_on
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import sampled, ways
-from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.setup import SimulationSetup, check_setup
 from robomill.simulation.threads import threads_in_cut
 from robomill.simulation.tools import farther, held
 from robomill.simulation.turning import turns_in_cut
@@ -85,7 +85,7 @@ def simulate(setup: SimulationSetup) -> SimulationResult:
     >>> float((result.deviation[-1] * 1e3).round(3))
     0.252
     """
-    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)
+    check_setup(setup)
     return ran(setup)
 
 
@@ -154,7 +154,7 @@ def along(
         F=F,
         delta_joint=gathered(len(path), "Deflection", lambda some: deflection(C_joint[some], F[some])),
         delta_spring=gathered(len(path), "Deflection", lambda some: deflection(C_spring[some], F[some])),
-        delta=_known(bent.delta(F), unjudged),
+        delta=known(bent.delta(F), unjudged),
         sag=sag,
         coupling=coupling,
         unjudged=unjudged + beyond_map(setup, path, ik.reached) + lying(path),
@@ -265,7 +265,7 @@ def _reasons(bent: Bent, conditions: CutConditions) -> tuple[Unjudged, ...]:
     )
 
 
-def _known(delta: FloatArray, unjudged: tuple[Unjudged, ...]) -> FloatArray:
+def known(delta: FloatArray, unjudged: tuple[Unjudged, ...]) -> FloatArray:
     """``delta`` (m, 3), NaN where it is not judged."""
     for each in unjudged:
         delta = np.where(each.where[:, None], np.nan, delta)

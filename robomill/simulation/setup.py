@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked, refuse_unknown
-from robomill.arrays import FloatArray, Numbers, Rows, as_floats, check_place, frozen
+from robomill.arrays import FloatArray, Numbers, Rows, as_floats, check_place, frozen, of_kind
 from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.spring import Spring
 from robomill.cutting.force import ForceModel
@@ -272,6 +272,14 @@ class SimulationSetup(Replaceable, Value):
         return Stock.around(path, widest)
 
     @property
+    def limits(self) -> dict[str, float]:
+        """m, by what is judged: "wall", "floor", along the "feed", the "end" of a cut, the "tip" where no surface is
+        left; what has no tolerance of its own has that of walls."""
+        wall = self.tolerance
+        floor, feed = (wall if own is None else own for own in (self.floor_tolerance, self.feed_tolerance))
+        return {"wall": wall, "floor": floor, "feed": feed, "end": feed, "tip": wall}
+
+    @property
     def known(self) -> Knowledge | None:
         """How sure the compliances in force are; None where nothing is known, or only of others than these."""
         known = self.knowledge
@@ -307,3 +315,8 @@ class SimulationSetup(Replaceable, Value):
         said += [("Cutter", self.cutter.title), ("Force", self.force.title)]
         said += [] if self.stock is None else [("Stock", self.stock._said())]
         return said + told(self)
+
+
+def check_setup(setup: Any) -> None:
+    """Raises SetupError for what is no set-up."""
+    of_kind(setup, SimulationSetup, "set-up", 'rm.load_setup("setup.toml") or rm.SimulationSetup(...)', SetupError)

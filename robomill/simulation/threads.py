@@ -9,4 +9,4 @@ def threads_in_cut(path: Toolpath, conditions: CutConditions) -> tuple[Unjudged,
     """Steps in the material at which the program cuts a thread."""
     where = conditions.engaged & path.thread
     why = "a thread is cut in step with the spindle (G33, G33.1, G74, G76, G84), and its force has no model"
-    return (Unjudged("thread", where, why),) if where.any() else ()
+    return Unjudged.at("thread", where, why)

@@ -33,10 +33,7 @@ def turn_rate(path: Toolpath) -> FloatArray:
 def turns_in_cut(path: Toolpath, conditions: CutConditions) -> tuple[Unjudged, ...]:
     """Steps in the material at which the axis turns too fast for a force from the material."""
     assert conditions.tooling is not None
-    highest = conditions.a_p if conditions.reach is None else conditions.reach
-    share = turn_rate(path) * np.maximum(conditions.tooling.each("radius"), highest)
+    share = turn_rate(path) * np.maximum(conditions.tooling.each("radius"), conditions.highest)
     where = conditions.engaged & (share > DISH)
-    if not where.any():
-        return ()
     why = "the tool's axis turns while it cuts, and its teeth do not move as its tip does: no force is known there."
-    return (Unjudged(AXIS_TURNS, where, why),)
+    return Unjudged.at(AXIS_TURNS, where, why)

@@ -9,10 +9,10 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.cutting.conditions import STRAIGHT, CutConditions
-from robomill.cutting.force import BY_HAND, COMPONENTS, ForceModel, MeanForce
+from robomill.cutting.force import COMPONENTS, ForceModel, MeanForce
 from robomill.cutting.unjudged import Unjudged
 from robomill.errors import CuttingError
-from robomill.provenance import Provenance
+from robomill.provenance import BY_HAND, Provenance
 from robomill.quantities import quantity
 from robomill.spelled import in_units
 from robomill.units import format_short
@@ -76,7 +76,7 @@ class PathForce(ForceModel):
         """Plunges beside what holds for every force: stated along a path, it says nothing of a way straight down."""
         where = conditions.engaged & (conditions.across <= STRAIGHT)
         why = "a force stated along the path says nothing of a plunge"
-        return super().unjudged(conditions) + ((Unjudged("plunge_stated", where, why),) if where.any() else ())
+        return super().unjudged(conditions) + Unjudged.at("plunge_stated", where, why)
 
     def components(self, conditions: CutConditions) -> FloatArray:
         """(m, 3) N, the same at every step; a plunge has no feed across the tool, so only the axial part there."""

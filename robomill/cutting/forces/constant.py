@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.force import BY_HAND, ForceModel, Frame, MeanForce
+from robomill.cutting.force import ForceModel, Frame, MeanForce
 from robomill.errors import CuttingError
-from robomill.provenance import Provenance
+from robomill.provenance import BY_HAND, Provenance
 from robomill.quantities import quantity
 from robomill.spelled import in_units
 

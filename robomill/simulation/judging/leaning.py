@@ -21,14 +21,12 @@ def leaning(path: Toolpath, ik: IKResult) -> tuple[Unjudged, ...]:
     there = ik.reached & path.cutting
     angle[there] = misfit(ik.robot, ik.theta[there], ik.T_MT[there], "axis")[1]
     where = angle > NOTICED
-    if not where.any():
-        return ()
     why = (
         f"an arm of {format_count(ik.robot.n, 'joint')} brings the tip to its place, but the tool then stands up to "
         f"{format_si(angle.max(), 'deg', 1)} off the axis of the path: give an arm of five joints or more, or a path "
         "along the axis that this one holds"
     )
-    return (Unjudged("leaning", where, why),)
+    return Unjudged.at("leaning", where, why)
 
 
 def lies(path: Toolpath) -> BoolArray:

@@ -55,19 +55,15 @@ def _level(result: Run, verdict: Verdict) -> Level:
 
 def _readings(result: Run, gauge: Gauge) -> tuple[Reading, Reading, Reading, Reading]:
     setup, i = result.setup, result.judged
-    wall_tolerance = setup.tolerance
-    floor_tolerance, feed_tolerance = (
-        wall_tolerance if own is None else own for own in (setup.floor_tolerance, setup.feed_tolerance)
-    )
-    stated = setup.feed_tolerance is not None
+    limits, stated = setup.limits, setup.feed_tolerance is not None
     along = np.where(i, np.abs(result.delta_in_cut[:, 0]), -np.inf)
     feed = int(np.argmax(along)) if i.any() else -1
     value = float(result.delta_in_cut[feed, 0]) if feed >= 0 else float("nan")
     return (
-        _reading(gauge.walls, wall_tolerance),
-        _reading(gauge.floors, floor_tolerance),
-        Reading(feed, value, feed_tolerance, stated=stated),
-        _reading(gauge.ends, feed_tolerance, stated),
+        _reading(gauge.walls, limits["wall"]),
+        _reading(gauge.floors, limits["floor"]),
+        Reading(feed, value, limits["feed"], stated=stated),
+        _reading(gauge.ends, limits["end"], stated),
     )
 
 

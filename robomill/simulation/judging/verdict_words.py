@@ -18,7 +18,8 @@ TIGHT_FROM = 0.8
 ENDS_AT, MOST = 1.25, 6.0  # of the tolerance: where a gauge of the share used ends, and where at most
 Level = Literal["ok", "tight", "out", "unjudged", "unreached", "missed"]
 LEVELS: tuple[Level, ...] = get_args(Level)  # each graver than the one before
-RED: tuple[Level, ...] = ("out", "unjudged", "unreached", "missed")
+NO_NUMBER: tuple[Level, ...] = ("unjudged", "unreached", "missed")
+RED: tuple[Level, ...] = ("out", *NO_NUMBER)
 WORDS: dict[Level, str] = {
     "ok": "within tolerance",
     "tight": "within tolerance, tight",

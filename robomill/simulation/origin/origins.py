@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robomill.provenance import Provenance
+from robomill.provenance import BY_HAND, UNSTATED, Provenance
 from robomill.robot.model import USER_SET, Robot
+from robomill.robot.sources import block_in_force
 from robomill.simulation.setup import SimulationSetup
 from robomill.units import format_limit, format_many, format_si, format_significant, from_si, unit_label
 
-NOT_STATED = Provenance("user", "not stated")
 MODEL = Provenance("assumed", "static force, stiff links, joints as linear springs, small deflections")
 
 
@@ -29,11 +29,11 @@ def sources(setup: SimulationSetup, length: str = "mm") -> list[Source]:
     path = setup.toolpath
     return [
         *robot_sources(setup.robot, given, length),
-        Source("Path", f"{format_si(float(path.s[-1]), length, 0)} at feed", given.get("path", NOT_STATED)),
-        Source("Cutter", setup.cutter.called(length), given.get("cutter", NOT_STATED)),
+        Source("Path", f"{format_si(float(path.s[-1]), length, 0)} at feed", given.get("path", UNSTATED)),
+        Source("Cutter", setup.cutter.called(length), given.get("cutter", UNSTATED)),
         Source("Force", setup.force.numbers, given.get("force", setup.force.provenance)),
-        Source("Stock", _stock(setup, length), given.get("stock", NOT_STATED)),
-        Source("Tolerance", format_limit(setup.tolerance, length), given.get("tolerance", NOT_STATED)),
+        Source("Stock", _stock(setup, length), given.get("stock", UNSTATED)),
+        Source("Tolerance", format_limit(setup.tolerance, length), given.get("tolerance", UNSTATED)),
         Source("Model", "C = J C_θ Jᵀ, δ = C F", MODEL),
     ]
 
@@ -41,18 +41,16 @@ def sources(setup: SimulationSetup, length: str = "mm") -> list[Source]:
 def robot_sources(robot: Robot, given: Mapping[str, Provenance], length: str = "mm") -> list[Source]:
     """The rows of a robot: of each block what is ``given`` of it."""
     compliances = format_many(robot.C_theta, "1e-7 rad/(N m)", 2)
-    own = robot.compliance_set == USER_SET
-    name = "Edited" if own else robot.compliance_set.replace("_", " ").capitalize()
-    by_hand = Provenance("user", "entered by hand")
-    of_set = given.get("compliance" if own else f"compliance.{robot.compliance_set}", by_hand)
+    name = "Edited" if robot.compliance_set == USER_SET else robot.compliance_set.replace("_", " ").capitalize()
+    of_set = given.get(block_in_force(robot), BY_HAND)
     lengths = ", ".join(format_significant(from_si(v, length)) for v in robot_lengths(robot).values())
-    geometry = given.get("geometry", NOT_STATED)
+    geometry = given.get("geometry", UNSTATED)
     return [
         Source("Joint compliances", f"{name}: {compliances}", of_set),
         Source("D-H table", f"{robot.rows} joints, {robot.convention}", geometry),
         Source("Link lengths", f"{lengths} {unit_label(length)}", given.get("lengths", geometry)),
-        Source("Joint limits", f"{robot.n} ranges", given.get("limits", NOT_STATED)),
-        Source("Tool in the last axis", _tool(robot, length), given.get("tool", NOT_STATED)),
+        Source("Joint limits", f"{robot.n} ranges", given.get("limits", UNSTATED)),
+        Source("Tool in the last axis", _tool(robot, length), given.get("tool", UNSTATED)),
     ]
 
 

@@ -8,10 +8,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from robomill.arrays import digest
-from robomill.cutting.force import BY_HAND
 from robomill.cutting.tool import Cutter
 from robomill.errors import SetupError
-from robomill.provenance import GIVEN, Provenance, stated_blocks
+from robomill.provenance import BY_HAND, GIVEN, Provenance, stated_blocks
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.robot.sources import BLOCKS as ROBOT_BLOCKS, changed_blocks, is_of_robot

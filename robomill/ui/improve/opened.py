@@ -50,7 +50,7 @@ def _corrected(found: Compensation, row: Shown, result: SimulationResult, unit: 
     with here, st.container(border=True):
         pieces.strong("What the corrected program leaves")
         rows = [
-            (name, format_si(each.max, unit), format_percent(each.max / result.setup.tolerance))
+            (name, format_si(each.max, unit), format_percent(each.share(result.setup)))
             for name, each in (
                 (first, found.before),
                 ("Corrected", found.after),

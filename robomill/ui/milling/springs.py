@@ -14,6 +14,7 @@ from robomill.compliance.spring import TYPED, Spring
 from robomill.compliance.springs import SPRINGS
 from robomill.errors import RobotError
 from robomill.quantities import Quantity, quantities
+from robomill.robot.sources import block_in_force
 from robomill.simulation.result import SimulationResult
 from robomill.ui import pieces, session
 from robomill.ui.entry import declared, grid, inputs
@@ -180,7 +181,7 @@ def lines(result: SimulationResult, i: int) -> list[tuple[str, FloatArray, str, 
     """Rows of the result at sample i: what gives, its share (3,) m, its provenance, whether it counts."""
     setup = result.setup
     robot, links = setup.robot, setup.links
-    known = {**robot.provenance, **setup.provenance}.get(f"compliance.{robot.compliance_set}")
+    known = {**robot.provenance, **setup.provenance}.get(block_in_force(robot))
     kind = known.kind if known is not None else "user"
     rows: list[tuple[str, FloatArray, str, bool]] = [
         (f"joint {number}", result.delta_joint[i, j], kind, True) for j, number in enumerate(robot.joint_numbers)

@@ -10,6 +10,7 @@ import streamlit as st
 from robomill.io.robot.robots import load_robot, robot_titles
 from robomill.provenance import TYPED
 from robomill.robot.model import USER_SET, Robot
+from robomill.robot.sources import block_in_force
 from robomill.ui import pieces, session
 from robomill.ui.entry import grid, inputs
 from robomill.ui.project import Project
@@ -89,8 +90,7 @@ def _take_set(name: str) -> None:
 
 def _whence(robot: Robot) -> None:
     """Where the compliances come from; what a file does not hold is asked for."""
-    mine = robot.compliance_set == USER_SET
-    found = robot.provenance.get("compliance" if mine else f"compliance.{robot.compliance_set}")
+    mine, found = robot.compliance_set == USER_SET, robot.provenance.get(block_in_force(robot))
     if mine and found is None:
         found = TYPED
     if found is not None:

@@ -3,6 +3,9 @@
 import math
 import re
 from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.expressions import Reader
@@ -10,7 +13,7 @@ from robomill.toolpath.gcode.machine import Scale
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.program import TRAVERSE
 from robomill.toolpath.gcode.sinumerik.procs import SinumerikProcs
-from robomill.toolpath.gcode.sinumerik.words import Hole
+from robomill.toolpath.gcode.sinumerik.words import Hole, Peck
 from robomill.toolpath.gcode.words import Block, normalise
 from robomill.toolpath.plane import polar, turned
 
@@ -343,20 +346,50 @@ class KlartextValues(SinumerikProcs):
         if number in (207, 209) and pitch == 0.0:
             raise GCodeError.at(line, f"CYCL DEF {number} needs Q239, its pitch.")
         out = self._out_of(number, down, slower)
-        bottom, step = surface + depth, abs(self.q(202)) if number in (200, 203, 205) else 0.0
-        pecks: list[float] = []
-        less = abs(self.q(212)) if number in (203, 205) else 0.0
-        at = surface - step
-        while step > 0.0 and at > bottom + 1e-9:
-            pecks.append(at)
-            step = max(step - less, abs(self.q(205)) or less) if less else step
-            at -= step
-            if len(pecks) > MAX_PECKS:
-                raise GCodeError.at(line, f"CYCL DEF {number} needs more than {MAX_PECKS} pecks; give a larger Q202.")
+        bottom, clear = surface + depth, surface + safety
+        pecks = self._pecks_of(number, surface, bottom, clear, line) if number in (200, 203, 205) else ()
         top = surface + max(safety, self.q(204))
         wait, taps = max(self.q(211), 0.0), number == 206
         above = max(self.q(210), 0.0) if number in (200, 203) else 0.0
-        return Hole(top, surface + safety, bottom, wait, down, out, tuple(pecks), True, pitch, taps, above=above)
+        return Hole(top, clear, bottom, wait, down, out, pecks, pitch, taps, above=above)
+
+    def _pecks_of(self, number: int, surface: float, bottom: float, clear: float, line: int) -> tuple[Peck, ...]:
+        """Cycles 200, 203 and 205: out of the hole from each depth, and back at rapid to the set-up clearance above it,
+        in 205 to Q258 above the first depth and Q259 above the last. 203 breaks the chip Q213 times in between, 205 at
+        every Q257: up by Q256."""
+        step, less = abs(self.q(202)), abs(self.q(212)) if number in (203, 205) else 0.0
+        depths: list[float] = []
+        at = surface - step
+        while step > 0.0 and at > bottom + 1e-9:
+            depths.append(at)
+            step = max(step - less, abs(self.q(205)) or less) if less else step
+            at -= step
+            if len(depths) > MAX_PECKS:
+                raise GCodeError.at(line, f"CYCL DEF {number} needs more than {MAX_PECKS} pecks; give a larger Q202.")
+        back, breaks = abs(self.q(256)), self.q(213) if number == 203 else 0.0
+        near = [abs(self.q(200))] * len(depths)
+        if number == 205:
+            near = np.linspace(abs(self.q(258)), abs(self.q(259)), len(depths)).tolist()
+        outs = [breaks < 1.0 or n % (int(breaks) + 1) == int(breaks) for n in range(len(depths))]
+        found = [
+            Peck(each, min(each + (above if out else back), clear), out) for each, above, out in zip(depths, near, outs)
+        ]
+        often = abs(self.q(257)) if number == 205 else 0.0
+        if often > 0.0:
+            found += self._breaks([surface, *depths, bottom], often, back, line)
+            found.sort(key=lambda peck: -peck.depth)
+        return tuple(found)
+
+    def _breaks(self, ends: list[float], often: float, back: float, line: int) -> list[Peck]:
+        """Where cycle 205 breaks the chip: at every Q257 (``often``) of each infeed, between its ``ends``."""
+        found: list[Peck] = []
+        for start, end in pairwise(ends):
+            count = math.ceil((start - end) / often - 1e-9) - 1
+            if len(found) + count > MAX_PECKS:
+                raise GCodeError.at(line, f"CYCL DEF 205 needs more than {MAX_PECKS} breaks; give a larger Q257.")
+            depths = [start - k * often for k in range(1, count + 1)]
+            found += [Peck(depth, depth + back, False) for depth in depths]
+        return found
 
     def _out_of(self, number: int, down: float, slower: float) -> float:
         """The feed out of a hole: Q208, and Q206 where that is 0; without a Q208 a rapid, but for tapping."""

@@ -45,6 +45,17 @@ _COMPARES = (("==", " EQ "), ("<>", " NE "), (">=", " GE "), ("<=", " LE "), (">
 
 
 @dataclass(frozen=True)
+class Peck:
+    """A depth of a drilling cycle before its bottom, a height as all of them. From there the tool goes ``out`` of the
+    hole, and back at rapid down to ``on``; or it breaks the chip: up to ``on``, ``at_feed`` or at rapid."""
+
+    depth: float
+    on: float
+    out: bool
+    at_feed: bool = False
+
+
+@dataclass(frozen=True)
 class Hole:
     """A drilling cycle: heights along Z in program units, dwells in s, feeds.
 
@@ -60,8 +71,7 @@ class Hole:
     dwell: float
     feed: float
     out: float
-    pecks: tuple[float, ...]
-    to_clear: bool
+    pecks: tuple[Peck, ...]
     pitch: float
     taps: bool = False
     first: float = 1.0
@@ -262,7 +272,7 @@ class SinumerikWords(MacroCalls):
     # --- holes
     def _hole(self, kind: str, text: str, line: int) -> Hole:
         given = [self.value(each, line) if each.strip() else math.nan for each in text.split(",")]
-        given += [math.nan] * (12 - len(given))
+        given += [math.nan] * (17 - len(given))
         retract, reference, safety, bottom, below = given[:5]
         if math.isnan(retract + reference) or (math.isnan(bottom) and math.isnan(below)):
             raise GCodeError.at(line, f"CYCLE{kind} needs RTP, RFP and DP or DPR, as in CYCLE{kind}(50,0,2,-10).")
@@ -278,32 +288,45 @@ class SinumerikWords(MacroCalls):
         pitch = abs(given[8]) if kind == "84" else 0.0
         if kind == "84" and not pitch > 0.0:
             raise GCodeError.at(line, "CYCLE84 needs PIT, its pitch, which MPIT does not say here; give it.")
-        pecks = self._pecks(given, reference, bottom, line) if kind == "83" else ()
         feeds = [0.0 if math.isnan(v) else abs(v) for v in (given[6], given[7])] if kind == "85" else [0.0, 0.0]
         feeds[1] = math.inf if kind == "89" else feeds[1]
-        to_clear = kind == "83" and given[11] == 1.0
-        seconds, above = (0.0 if math.isnan(each) else max(each, 0.0) for each in (wait, given[9]))
-        hole = Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], pecks, to_clear, pitch)
-        if kind != "83":
-            return hole
-        return replace(hole, first=given[10] if 0.0 < given[10] < 1.0 else 1.0, between=seconds, above=above)
+        seconds = 0.0 if math.isnan(wait) else max(wait, 0.0)
+        hole = Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], (), pitch)
+        return self._pecked(hole, given, reference, line) if kind == "83" else hole
 
-    def _pecks(self, given: list[float], reference: float, bottom: float, line: int) -> tuple[float, ...]:
-        """Depths of CYCLE83 before the last: FDEP or FDPR first, then less by DAM each time, DAM at least."""
+    def _pecked(self, hole: Hole, given: list[float], reference: float, line: int) -> Hole:
+        """CYCLE83: VARI 1 goes out of the hole and back at rapid to DIS1 above the depth (0: 0.6 mm, or a 50th of holes
+        deeper than 30 mm, 7 mm at most); VARI 0 goes up by VRT (0: 1 mm) at feed."""
+        said = [0.0 if math.isnan(each) else each for each in given]
+        mm = 1e-3 / self.machine.factor
+        goes_out, depth = said[11] == 1.0, reference - hole.bottom
+        usual = min(max(0.6 * mm, depth / 50.0 if depth > 30.0 * mm else 0.0), 7.0 * mm) if goes_out else mm
+        up = abs(said[16 if goes_out else 14]) or usual
+        depths = self._depths(given, reference, hole.bottom, line)
+        pecks = tuple(Peck(each, min(each + up, hole.clear), goes_out, not goes_out) for each in depths)
+        slower, last = said[10] if 0.0 < said[10] < 1.0 else 1.0, said[15]
+        dwell = last if last > 0.0 else hole.dwell
+        return replace(hole, dwell=dwell, pecks=pecks, first=slower, between=hole.dwell, above=max(said[9], 0.0))
+
+    def _depths(self, given: list[float], reference: float, bottom: float, line: int) -> list[float]:
+        """Depths of CYCLE83 before the last: FDEP or FDPR first; then each stroke is less by DAM, and DAM at least, or
+        by a factor where DAM is negative, and MDEP at least."""
         first = reference - abs(given[6]) if math.isnan(given[5]) else given[5]
         step = reference - first
         if math.isnan(first) or step <= 0.0:
             raise GCodeError.at(line, "CYCLE83 needs FDEP or FDPR, its first depth.")
-        less = 0.0 if math.isnan(given[7]) else abs(given[7])
+        less, least = (0.0 if math.isnan(each) else each for each in (given[7], given[13]))
+        if less < -1.0:
+            raise GCodeError.at(line, f"CYCLE83 has DAM {less:g}; a factor is -1 to 0, an amount above 0.")
         depths: list[float] = []
         while first > bottom:
             depths.append(first)
-            step = max(step - less, less) if less > 0.0 else step
+            step = max(step - less, less) if less > 0.0 else max(-less * step, least) if less < 0.0 else step
             rest = first - bottom
             first -= 0.5 * rest if step == less < rest <= 2.0 * less else step  # the last two are alike
             if len(depths) > MAX_PECKS:
                 raise GCodeError.at(line, f"CYCLE83 would need more than {MAX_PECKS} pecks; give a larger FDPR.")
-        return tuple(depths)
+        return depths
 
     def drill_here(self, hole: Hole, line: int) -> None:
         """Drill where the tool stands."""
@@ -323,13 +346,14 @@ class SinumerikWords(MacroCalls):
         before, machine.motion = machine.motion, 840 if hole.pitch or hole.taps else machine.motion
         self._to(TRAVERSE, line, hole.clear)
         begin = down if hole.first == 1.0 else hole.first * (feed_speed(machine) if down is None else down)
-        for n, depth in enumerate(hole.pecks):
-            self._to(FEED, line, depth, down if n else begin)
+        for n, peck in enumerate(hole.pecks):
+            self._to(FEED, line, peck.depth, down if n else begin)
             self._wait(hole.between)
-            if hole.to_clear:
-                self._to(TRAVERSE, line, hole.clear)
+            if peck.out:
+                self._to(FEED if hole.out else TRAVERSE, line, hole.clear, out)
                 self._wait(hole.above)
-                self._to(TRAVERSE, line, depth)
+            if peck.on < hole.clear if peck.out else peck.on > peck.depth:
+                self._to(*(FEED, line, peck.on, down) if peck.at_feed else (TRAVERSE, line, peck.on))
         self._to(FEED, line, hole.bottom, down if hole.pecks else begin)
         self._wait(hole.dwell)
         if hole.out or hole.pitch:
