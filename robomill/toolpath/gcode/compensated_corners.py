@@ -6,7 +6,7 @@ known, and goes on to the reader of contours with its corner as an arc or a shor
 
 from dataclasses import dataclass
 
-from robomill.toolpath.gcode.corners import joined
+from robomill.toolpath.gcode.corners import Corner, joined
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.program import Move
 from robomill.toolpath.gcode.rules.motion_rules import ARC, CLOCKWISE, COUNTERCLOCKWISE, FEED, LINE
@@ -21,7 +21,7 @@ class Due:
 
     block: Block
     end: list[float]
-    corner: tuple[str, float]
+    corner: Corner
     feed: float
 
 
@@ -45,14 +45,15 @@ def straight(machine: Machine, block: Block, end: list[float]) -> None:
 def _cut_before(machine: Machine, due: Due, end: list[float]) -> None:
     """The straight cut that is due, and its corner, up to where the cut to ``end`` goes on."""
     compensation, factor = machine.compensation, machine.factor
-    kind, size = due.corner
     rows = (Move(due.block.line), Move(due.block.line))
     for row, start, stop in zip(rows, (compensation.programmed_point(machine), due.end), (due.end, end)):
         row.kind = FEED
         row.start, row.end = ([v * factor for v in point[:3]] for point in (start, stop))
         row.rotary = list(stop[3:])
     feed, machine.feed = machine.feed, due.feed
-    for row in joined(*rows, (kind, size * factor))[:-1]:
+    for count, row in enumerate(joined(*rows, due.corner.scaled(factor))[:-1]):
+        if count:
+            machine.feed = due.corner.feed or due.feed
         place = [*(v / factor for v in row.end), *due.end[3:]]
         if row.kind != ARC:
             compensation.straight(machine, Block(due.block.line, motion=LINE), place)

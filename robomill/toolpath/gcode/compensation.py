@@ -59,7 +59,7 @@ class Compensation:
         """Change the unit of all lengths."""
         if self.due is not None:
             self.due.end[:3] = [v * ratio for v in self.due.end[:3]]
-            self.due.corner, self.due.feed = (self.due.corner[0], self.due.corner[1] * ratio), self.due.feed * ratio
+            self.due.corner, self.due.feed = self.due.corner.scaled(ratio), self.due.feed * ratio
         self.radius *= ratio
         if self.programmed is not None:
             self.programmed = (self.programmed[0] * ratio, self.programmed[1] * ratio, self.programmed[2] * ratio)

@@ -1,6 +1,9 @@
 """Corners between two straight cuts that a program rounds or chamfers: Fanuc's ``,R`` and ``,C``, RND=, CHF=, CHR=."""
 
+from __future__ import annotations
+
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,12 +21,25 @@ _SMOOTH = math.radians(0.01)
 """Cuts whose directions differ by less than this meet in no corner."""
 
 
-def joined(first: Move, then: Move, corner: tuple[str, float]) -> list[Move]:
-    """``first``, the corner and ``then``, of which both ends are cut; ``corner`` is its kind and size (m).
+class Corner(NamedTuple):
+    """What becomes of a corner: its kind, its size and a ``feed`` of its own, 0 where it is that of its line; as a line
+    says them in program units (a minute), or in m and m/s."""
+
+    kind: str
+    size: float
+    feed: float = 0.0
+
+    def scaled(self, length: float, speed: float | None = None) -> Corner:
+        """In other units of length; of speed, too, where they do not go with those."""
+        return Corner(self.kind, self.size * length, self.feed * (length if speed is None else speed))
+
+
+def joined(first: Move, then: Move, corner: Corner) -> list[Move]:
+    """``first``, the corner (m, m/s) and ``then``, of which both ends are cut.
 
     Raises GCodeError where the two are no straight cuts in one plane, or shorter than the corner.
     """
-    kind, size = corner
+    kind, size, feed = corner
     if kind == EACH:
         if not _is_corner(first, then):
             return [first, then]
@@ -48,6 +64,7 @@ def joined(first: Move, then: Move, corner: tuple[str, float]) -> list[Move]:
     first.end, then.start = here.tolist(), there.tolist()
     middle.start, middle.end, middle.dwell = list(first.end), list(then.start), 0.0
     middle.rotary0 = list(first.rotary)
+    middle.v_f = feed or middle.v_f
     if kind == ROUND:
         _bend(middle, b + (back + on) / np.linalg.norm(back + on) * size / math.sin(half), np.cross(back, on), half)
     return [first, middle, then]

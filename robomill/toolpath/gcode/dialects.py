@@ -9,7 +9,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.findings import Findings
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
-from robomill.toolpath.gcode.corners import LEGS, ROUND
+from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
 from robomill.toolpath.gcode.fanuc.cycles import bolt_holes
 from robomill.toolpath.gcode.fanuc.scaling import scales
 from robomill.toolpath.gcode.machine import UNITS, Machine
@@ -351,7 +351,7 @@ def _take_corner(raw: str, machine: Machine) -> str:
     found = _CORNER.search(raw) if "," in raw else None
     if found is None or "(" in raw[: found.start()] or ";" in raw[: found.start()]:
         return raw
-    machine.corner = (ROUND if found[1] in "Rr" else LEGS), float(found[2])
+    machine.corner = Corner(ROUND if found[1] in "Rr" else LEGS, float(found[2]))
     return raw[: found.start()] + raw[found.end() :]
 
 

@@ -14,11 +14,11 @@ from robomill.errors import GCodeError
 from robomill.provenance import Level
 from robomill.toolpath.findings import Findings
 from robomill.toolpath.gcode.codes import LETTERS
-from robomill.toolpath.gcode.corners import EACH, joined
+from robomill.toolpath.gcode.corners import EACH, Corner, joined
 from robomill.toolpath.gcode.parameters import Parameters
 from robomill.toolpath.gcode.program import ARC, FEED, TAP, TRAVERSE, Move, Recorder
 from robomill.toolpath.gcode.rules.mode_rules import system_code
-from robomill.toolpath.gcode.rules.motion_rules import feed_speed, rotate, write_arc, write_straight
+from robomill.toolpath.gcode.rules.motion_rules import MINUTE, feed_speed, rotate, write_arc, write_straight
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import Tool, Tools, own_copy
 from robomill.units import from_si, to_si
@@ -88,7 +88,7 @@ class Machine:
         self.store = Parameters(lambda name: asked()(name), (*_AXES, *_PROVIDED))  # type: ignore[misc]
         self.findings = Findings()
         self.recorder = Recorder(joined)
-        self.corner: tuple[str, float] | None = None
+        self.corner: Corner | None = None
         self.rounding = 0.0
         self.polar_words = False
         self.modal: Any = None
@@ -255,12 +255,12 @@ class Machine:
         """RNDM: every corner of the contour is rounded from here on; 0 ends it."""
         self.rounding = radius
 
-    def corner_of(self, kind: int) -> tuple[str, float] | None:
-        """What becomes of the corner at the end of a move of a kind, its size in m; what the line said is taken."""
+    def corner_of(self, kind: int) -> Corner | None:
+        """What becomes of the corner at the end of a move of a kind, in m and m/s; what the line said is taken."""
         said, self.corner = self.corner, None
         if said is None and self.rounding and kind in (FEED, ARC):
-            said = EACH, self.rounding
-        return None if said is None else (said[0], said[1] * self.factor)
+            said = Corner(EACH, self.rounding)
+        return None if said is None else said.scaled(self.factor, self.factor / MINUTE)
 
     # --- coordinates as lines say them
     def set_scale(self, scale: Scale | None) -> None:

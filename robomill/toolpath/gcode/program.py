@@ -198,7 +198,7 @@ class Recorder:
     def __len__(self) -> int:
         return self.count + self._taken
 
-    def add(self, move: Move, corner: tuple[str, float] | None = None) -> None:
+    def add(self, move: Move, corner: Any = None) -> None:
         """A move, and the corner that its end shall have once the next one is known. Raises GCodeError if too many."""
         if self.held is not None and self.join is not None:
             (first, size), self.held = self.held, None

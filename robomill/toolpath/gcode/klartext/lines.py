@@ -9,7 +9,7 @@ import re
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode.corners import LEGS, ROUND
+from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
 from robomill.toolpath.gcode.dialects import plain_numbers
 from robomill.toolpath.gcode.klartext.approach import KlartextApproach
 from robomill.toolpath.gcode.klartext.values import NUMBER
@@ -33,7 +33,7 @@ _M = re.compile(r"(?<![A-Z])M[ \t]*(\d+)")
 _CALL = re.compile(r"CALL LBL (\"[^\"]+\"|\d+)(?: REP(?: ?(\d+)(?:/\d+)?)?)?")
 _TOOL = re.compile(rf"TOOL CALL ?(\d+|\"[^\"]*\"|Q[LR]?\d+)?(?: ([XYZ])\b)?((?: ?(?:S|F|DL|DR2?) ?{NUMBER})*)")
 _REPEAT = re.compile(r"REP(\d)")
-_CORNER = re.compile(rf"(RND ?R?|CHF ?L?) ?({NUMBER})(?: ?F.*)?")
+_CORNER = re.compile(rf"(RND ?R?|CHF ?L?) ?({NUMBER})(?: ?F ?(?:({NUMBER})|.*))?")
 _SILENT = re.compile(
     r"BLK FORM|TOOL DEF|FUNCTION (?:RESET )?TCPM|FUNCTION MODE MILL|PLANE RESET|M1(?:07|08|16|17|20|24|26|27|38)\b"
 )
@@ -178,7 +178,7 @@ class Klartext(KlartextApproach):
         if not arc and machine.plane != 17:
             out.append("G17")
         if feed is not None and feed[1] not in ("MAX", "AUTO"):
-            out.append(f"F{self.number(feed[1], line) / (10.0 if machine.unit == 'in' else 1.0):.9f}")
+            out.append(f"F{self.number(feed[1], line) / self.tenth:.9f}")
         machine.machine_word = "M140" if 140 in codes else "M91" if 91 in codes else "M92"
         if where:
             if 91 in codes or 92 in codes:
@@ -319,7 +319,8 @@ class Klartext(KlartextApproach):
             line = self.pc + 1
             if kind != "L":
                 raise GCodeError.at(line, f"{code[:3]} is read between two straight cuts (L) alone.")
-            self.machine.corner = (ROUND if code[0] == "R" else LEGS), self.number(found[2], line)
+            feed = self.number(found[3], line) / self.tenth if found[3] else 0.0
+            self.machine.corner = Corner(ROUND if code[0] == "R" else LEGS, self.number(found[2], line), feed)
             self.pc = after
 
     # --- tools, labels

@@ -257,6 +257,11 @@ class KlartextValues(SinumerikProcs):
             see_frame(self.machine, shift, angle)
 
     # --- drilling
+    @property
+    def tenth(self) -> float:
+        """A feed counts in tenths of an inch a minute where the program is in inches."""
+        return 10.0 if self.machine.unit == "in" else 1.0
+
     def _pattern(self, number: int, line: int) -> None:
         """CYCL DEF 220 and 221 drill at once, on a circle or in lines."""
         if self.drill == 0:
@@ -333,7 +338,7 @@ class KlartextValues(SinumerikProcs):
             self.drill_here(hole, block.line)
 
     def _hole_of(self, line: int) -> Hole:
-        number, machine = self.drill, self.machine
+        number = self.drill
         surface, safety, depth = self.q(203) + self.raised, abs(self.q(200)), self.q(201)
         if number == 240 and self.q(343) != 0.0:
             raise GCodeError.at(line, "CYCL DEF 240 counts by its diameter (Q343=1), which is not read; give Q201.")
@@ -341,11 +346,10 @@ class KlartextValues(SinumerikProcs):
             raise GCodeError.at(line, f"CYCL DEF {number} needs Q200 above 0 and Q201, its depth, below 0; mend them.")
         if self.q(379) != 0.0:
             raise GCodeError.at(line, f"CYCL DEF {number} starts below the surface (Q379), which is not read; give 0.")
-        slower = 10.0 if machine.unit == "in" else 1.0
-        down, pitch = self.q(206) / slower, abs(self.q(239)) if number in (207, 209) else 0.0
+        down, pitch = self.q(206) / self.tenth, abs(self.q(239)) if number in (207, 209) else 0.0
         if number in (207, 209) and pitch == 0.0:
             raise GCodeError.at(line, f"CYCL DEF {number} needs Q239, its pitch.")
-        out = self._out_of(number, down, slower)
+        out = self._out_of(number, down)
         bottom, clear = surface + depth, surface + safety
         pecks = self._pecks_of(number, surface, bottom, clear, line) if number in (200, 203, 205) else ()
         top = surface + max(safety, self.q(204))
@@ -391,13 +395,13 @@ class KlartextValues(SinumerikProcs):
             found += [Peck(depth, depth + back, False) for depth in depths]
         return found
 
-    def _out_of(self, number: int, down: float, slower: float) -> float:
+    def _out_of(self, number: int, down: float) -> float:
         """The feed out of a hole: Q208, and Q206 where that is 0; without a Q208 a rapid, but for tapping."""
         if number == 206:
             return down
         if number not in (201, 203) and not (number == 205 and self.says_out):
             return 0.0
-        return 0.0 if self.q(208) >= RAPID_OUT else self.q(208) / slower or down or math.inf
+        return 0.0 if self.q(208) >= RAPID_OUT else self.q(208) / self.tenth or down or math.inf
 
 
 def _written_out(text: str) -> str:

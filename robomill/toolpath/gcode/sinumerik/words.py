@@ -12,12 +12,12 @@ from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
-from robomill.toolpath.gcode.corners import BEVEL, LEGS, ROUND
+from robomill.toolpath.gcode.corners import BEVEL, LEGS, ROUND, Corner
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.fanuc.macro_calls import MacroCalls
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
-from robomill.toolpath.gcode.rules.motion_rules import MINUTE, dwell, feed_speed
+from robomill.toolpath.gcode.rules.motion_rules import MINUTE, PER_TURN, dwell, feed_speed
 from robomill.toolpath.gcode.words import Block, normalise
 from robomill.toolpath.plane import turned
 
@@ -27,7 +27,7 @@ MAX_PECKS = 10_000
 _N = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?")
 _R = re.compile(r"\bR(\d+)\b")
 _SET_R = re.compile(r"\bR(\d+)\s*=\s*")
-_WORD = re.compile(r"\b([XYZABCIJKFS]|[ABC]3|RND|RNDM|CHF|CHR|CR|TURN)\s*=\s*(?!(?:AC|IC|DC|ACP|ACN)\s*\()")
+_WORD = re.compile(r"\b([XYZABCIJKFS]|[ABC]3|RND|RNDM|CHF|CHR|FRC|FRCM|CR|TURN)\s*=\s*(?!(?:AC|IC|DC|ACP|ACN)\s*\()")
 _LABEL = re.compile(r"([A-Z_]{2}\w*)[ \t]*:(?!=)")
 _LABELS = re.compile(rb"^[/ \t]*(?:N\d+[ \t]*)?([A-Za-z_]{2}\w*)[ \t]*:(?!=)", re.MULTILINE)
 _JUMP = re.compile(r"(?:IF\b(.*?)[ \t]*)?\b(GOTO[FBC]?)[ \t]+(\w+)[ \t]*")
@@ -35,7 +35,7 @@ _FRAME = re.compile(r"(A?TRANS|A?ROT)\b(.*)")
 _ALONE = re.compile(r"\bA?(?:TRANS|ROT)\b")
 _FRAME_WORD = re.compile(r"\b(X|Y|Z|RPL)[ \t]*(?:=|(?=[-+.\d]))")
 _CYCLE = re.compile(r"(MCALL\b[ \t]*)?(?:CYCLE(8[1-9])[ \t]*\(([^()]*)\))?[ \t]*")
-_CORNER = re.compile(r"\b(RNDM?|CHF|CHR)[ \t]*=[ \t]*(\d+(?:\.\d*)?|\.\d+)")
+_CORNER = re.compile(r"\b(RNDM?|CHF|CHR|FRCM?)[ \t]*=[ \t]*(\d+(?:\.\d*)?|\.\d+)")
 _KINDS = {"RND": ROUND, "CHF": BEVEL, "CHR": LEGS}
 _IDENTIFIER = re.compile(r"\b[A-Z_]{1,2}\w+\b")
 _TWO = re.compile(r"\b(?:POT[ \t]*\(((?:[^()]|\([^()]*\))*)\)|ATAN2[ \t]*\(((?:[^()]|\([^()]*\))*)\))")
@@ -83,6 +83,7 @@ class SinumerikWords(MacroCalls):
     """Reads what stands beside moves; what is left of a line goes on to the reader of words."""
 
     modal_hole: Hole | None = None
+    corner_feed = 0.0
 
     def sinumerik_line(self, code: str, line: int) -> str | None:
         """What is left of ``code`` (capitals, no comment); None where it is done."""
@@ -111,13 +112,22 @@ class SinumerikWords(MacroCalls):
         if alone is not None:
             raise GCodeError.at(line, f"{alone[0]} stands on a line of its own, and not as it is here.")
         code = self._values(code, line)
-        for corner in reversed(list(_CORNER.finditer(code))):
-            if corner[1] == "RNDM":
-                self.machine.set_rounding(float(corner[2]))
-            else:
-                self.machine.corner = _KINDS[corner[1]], float(corner[2])
-            code = code[: corner.start()] + code[corner.end() :]
+        said = {corner[1]: float(corner[2]) for corner in _CORNER.finditer(code)}
+        if said:
+            code = _CORNER.sub("", code)
+            self._corner(said)
         return code if code.strip() else None
+
+    def _corner(self, said: dict[str, float]) -> None:
+        """What a line says of corners; FRC is the feed of the one at its end, FRCM that of all that follow, until 0."""
+        machine = self.machine
+        if "RNDM" in said:
+            machine.set_rounding(said["RNDM"])
+        self.corner_feed = said.get("FRCM", self.corner_feed)
+        feed = said.get("FRC", self.corner_feed) * (machine.speed if machine.feed_mode == PER_TURN else 1.0)
+        for name, kind in _KINDS.items():
+            if name in said:
+                machine.corner = Corner(kind, said[name], feed)
 
     def drill_modal(self, block: Block) -> None:
         """Drill where a line has moved to in X or Y, while MCALL holds."""

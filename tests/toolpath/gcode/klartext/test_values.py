@@ -10,6 +10,7 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import Program, interpret
+from robomill.toolpath.tools import Tool
 
 HEAD = "BEGIN PGM Q MM\nTOOL CALL 1 Z S1000 F99\nL X+0 Y+0 Z+10 FMAX M3\n"
 
@@ -376,3 +377,12 @@ def test_a_plane_that_is_not_tilted_and_cycles_that_suit_the_control_move_nothin
     program = read(body)
     assert program.end[-1, 0] * 1e3 == pytest.approx(5)
     assert not np.any(program.rotary)
+
+
+@pytest.mark.parametrize("side", ["R0", "RL"])
+def test_a_feed_behind_a_corner_is_that_of_the_corner_alone(side: str) -> None:
+    """TNC 640, Conversational Programming: a feed in an RND or CHF block is effective in that block only."""
+    head = "BEGIN PGM Q MM\nTOOL CALL 1 Z S1000 F99\nL X+0 Y+0 Z+10 FMAX M3\n"
+    body = f"L X+10 Y+10 {side} F100\nL X+30\nRND R5 F20\nL Y+40\nCHF 2 F10\nL X+10\nRND R5\nL Y+12\nEND PGM Q MM\n"
+    found = interpret(head + body, tools={1: Tool(1, diameter=2e-3)})
+    np.testing.assert_allclose(found.v_f[found.kind > 0][1:] * 6e4, [100, 20, 100, 10, 100, 100, 100])

@@ -337,3 +337,20 @@ def test_a_dwell_may_be_computed(dwell: str, seconds: float) -> None:
     """By F in seconds, by S in turns of the spindle (500 a minute)."""
     program = interpret(f"{HEAD}R1=3\nG4 {dwell}\nG1 X5\nM30\n", dialect="sinumerik")
     assert program.dwell_time == pytest.approx(seconds)
+
+
+@pytest.mark.parametrize(
+    ("said", "feeds"),
+    [
+        ("FRC=20", [100, 20, 100, 100, 100]),
+        ("FRCM=R1", [100, 30, 100, 30, 100]),
+        ("FRC=20 FRCM=40", [100, 20, 100, 40, 100]),
+        ("", [100] * 5),
+    ],
+)
+def test_a_corner_may_have_a_feed_of_its_own(said: str, feeds: list[float]) -> None:
+    """840D, Fundamentals: FRC is non-modal, FRCM holds for every chamfer and rounding that follows."""
+    program = interpret(f"{HEAD}R1=30\nG1 X20 RND=2 {said}\nY20 CHR=2\nX0\nM30\n", dialect="sinumerik")
+    np.testing.assert_allclose(program.v_f * 6e4, feeds)
+    turned = interpret(f"{HEAD}G95 F0.2\nG1 X20 RND=2 FRC=0.1\nY20\nM30\n", dialect="sinumerik")
+    np.testing.assert_allclose(turned.v_f * 6e4, [100, 50, 100])
