@@ -48,12 +48,25 @@ _MOVES = frozenset(
             "CALL",
             "MACRO",
         ),
-        *("GOCLER", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN"),
+        *("GO", "HELIX", "NURBS", "SPLINE", "GOCLER", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN"),
     ]
 )
 _SILENT = frozenset(
     {
-        *("PARTNO", "PPRINT", "REMARK", "INSERT", "MACHIN", "SEQNO", "LEADER", "FINI", "END", "STOP", "OPSTOP"),
+        *(
+            "PARTNO",
+            "PPRINT",
+            "TPRINT",
+            "REMARK",
+            "INSERT",
+            "MACHIN",
+            "SEQNO",
+            "LEADER",
+            "FINI",
+            "END",
+            "STOP",
+            "OPSTOP",
+        ),
         *("COOLNT", "CUTTER", "SELCTL", "CATLOG", "TURRET", "PREFUN", "AUXFUN", "OPSKIP", "LOADTL", "TLDATA"),
         *("TOOL PATH", "END-OF-PATH", "LOAD", "CLAMP", "HEAD", "ARCSLP"),
         *("INTOL", "OUTTOL", "TOLER", "CLEARP", "DISPLY", "PAINT", "AUTOPS"),
@@ -118,6 +131,10 @@ def read_apt(path_or_text: Source) -> Toolpath:
     if not state.unit_said:
         findings.add(NO_UNITS, "suspicious", 0, "no UNITS: lengths are taken as mm")
     table = np.array(state.rows)
+    still = np.flatnonzero((table[:, 7] > 0) & (table[:, 9] == 0.0))
+    if len(still) and table[:, 9].any():
+        text = "cuts with the spindle stopped; start it with SPINDL/ before"
+        findings.add("spindle-stopped", "warning", int(table[still[0], 8]), text, len(still))
     return Toolpath(
         p=table[:, 0:3],
         k=table[:, 3:6],
@@ -259,7 +276,7 @@ def _other(state: _State, findings: Findings, word: str, values: list[str], line
         findings.add("cutcom", "warning", line, "CUTCOM is left out: points are taken as those of the tool's centre")
     elif word == "ORIGIN" and any(numbers_of(values, line, word)):
         findings.add("origin", "info", line, "ORIGIN is left out: points count from where the file counts them")
-    elif word not in _SILENT and word not in ("CUTCOM", "ORIGIN"):
+    elif word not in ("CUTCOM", "ORIGIN") and _SILENT.isdisjoint((word, word.split(" ")[0])):
         findings.add("unknown-word", "ignored", line, f"{word[:20]} is not known and is left out")
 
 

@@ -477,3 +477,21 @@ def test_the_reader_of_g_code_names_the_one_of_apt(tmp_path: Path) -> None:
         read_gcode(file)
     with pytest.raises(GCodeError, match=r'rm.read_program\("part.apt"\).read\(\) gives its path'):
         read_gcode(CATIA)
+
+
+@pytest.mark.parametrize("word", ["GO/TO,L1", "HELIX/0,0,0,10,5", "NURBS/3", "SPLINE/0,0,0,1,1,1"])
+def test_motions_that_are_not_known_stop_the_reading(word: str) -> None:
+    with pytest.raises(GCodeError, match="Line 3: .* moves the tool in a way that is not read"):
+        read_apt(f"UNITS/MM\nFROM/0,0,0\n{word}\nFEDRAT/60\nGOTO/1,0,0\nFINI\n")
+
+
+def test_cuts_with_a_spindle_that_was_stopped_are_told() -> None:
+    head, cuts = (
+        "PARTNO PART OPERATION.1\nUNITS/MM\nFEDRAT/60\nSPINDL/600,CLW\nFROM/0,0,0\n",
+        "GOTO/1,0,0\nGOTO/2,0,0\n",
+    )
+    found = read_apt(f"{head}{cuts}SPINDL/OFF\nGOTO/3,0,0\nGOTO/4,0,0\nFINI\n").findings
+    assert [(each.code, each.line, each.count) for each in found if each.level == "warning"] == [
+        ("spindle-stopped", 9, 2)
+    ]
+    assert not read_apt(f"{head}{cuts}FINI\n").findings

@@ -47,7 +47,10 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
         raise block.refuse(f"{g_name(non_modal)} needs axis words such as X0.")
     if motion == 800:
         if (axes or polar) and not covets:
-            raise block.refuse("G80 ends a cycle and takes no axis words; move with G0 or G1.")
+            if not dialect.has_macros:
+                raise block.refuse("G80 ends a cycle and takes no axis words; move with G0 or G1.")
+            del block.g[modal.MOTION]
+            machine.motion, motion = 800, -1
     elif motion >= 0:
         if non_modal in (280, 300) and motion in (0, 10) and not dialect.strict:
             keep_motion(machine, motion)

@@ -80,12 +80,12 @@ _SINUMERIK = (
     ("supa", r"\bsupa\b"),
     ("%_n_", r"\n%_n_\w+_[ms]pf\b"),
     ("def", r"\bdef[ \t]+(?:real|int)"),
-    ("g7", r"\n[^\n]*\bg7[01]\b(?![^\n]*[qpuwrdl][ \t]*[-.\d#\[])"),
+    ("g7", r"\n[^\n]*\bg7[01]\b(?![^\n]*(?:[qpuwrdl][ \t]*[-.\d#\[]|g9[01]\.1))"),
 )
 _FANUC = (
     *_words("g65", "g54.1", "g05", "g43.4"),
     (":", r"\n[ \t]*:\d{4,}[ \t]*(?=\n)"),
-    ("o", r"\n[ \t]*o\d{4,}[ \t]*(?=\n)"),
+    ("o", r"\n[ \t]*o\d{4,}[ \t]*(?=\n)|\A\s*%[^\n]*\n\s*o\d+[ \t]*(?=\n)"),
     ("m98", r"\bm98[ \t]*p"),
     ("goto", r"\bif[ \t]*\[.*\bgoto\b"),
     ("g28", r"\bg28[ \t]*u0"),
@@ -209,6 +209,11 @@ class Dialect:
             if self.has_macros and (self._turns(machine, block, code) or _selects(machine, block, code)):
                 continue
             if self.has_macros and (scales(machine, block, code) or bolt_holes(machine, block, code)):
+                continue
+            if code in (700, 710) and not self.marked and block.words.keys().isdisjoint("pquwrdl"):
+                units = 200 if code == 700 else 210
+                block.g.setdefault(modal.UNITS, units)
+                machine.note("mach3-units", "info", f"{g_name(code)} is read as {g_name(units)}, as Mach3 does")
                 continue
             if self.name == "sinumerik" and 5050 <= code <= 5990 and code % 10 == 0:
                 select_extended(machine, block, code / 10 - 500)

@@ -16,8 +16,9 @@ LIKELY = (0.008, 3.0)
 """m: parts smaller or larger than this are doubted."""
 MOST_SAID = 1000
 """Stretches of a program that one finding counts."""
-FEW, RARE = 3, 0.1
-"""So many whole numbers with a point (X10.) show how a program writes them; of so small a share none is a slip."""
+FEW, RARE, RARE_ON_FANUC = 3, 0.1, 1.0 / 3.0
+"""So many whole numbers with a point (X10.) show how a program writes them; of so small a share none is a slip: of a
+larger one in the code of a control that may count the others in thousandths."""
 LARGE = 1000
 """A whole number without a point, beside numbers that have one, is doubted from here on however many there are."""
 SAMPLE = 2_000_000
@@ -30,6 +31,8 @@ def _coordinate(number: bytes) -> re.Pattern[bytes]:
 
 
 _POINTED, _WHOLE = _coordinate(rb"\d{1,9}+\.\d*+"), _coordinate(rb"0*+([1-9]\d{0,8}+)(\.0*+)?+")
+_LATHE_TOOL = re.compile(rb"(?<![A-Za-z0-9])[Tt](\d\d)\1(?![\d.])")
+_CHANGES = re.compile(rb"[Mm]0?6(?![\d.])|(?<![A-Za-z#<])[Yy]\s*[-+.\d#\[]")
 _COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
 QUARTER = 90.0 + 1e-6
 """degrees that a tool which leans is led through, or stands from upright, without a doubt."""
@@ -42,14 +45,15 @@ def _without_comments(data: bytes) -> bytes:
     return _COMMENT.sub(b" ", data) if b"(" in data or b";" in data else data
 
 
-def doubt_points(findings: Findings, data: bytes) -> None:
+def doubt_points(findings: Findings, data: bytes, on_fanuc: bool = False) -> None:
     """Note whole numbers without a point where others have one (X10.): many controls count them in thousandths."""
     sample = _without_comments(data[:SAMPLE])
     whole = _WHOLE.findall(sample)
     pointless = [int(number) for number, point in whole if not point]
     if not pointless:
         return
-    rare = len(whole) - len(pointless) >= FEW and len(pointless) <= max(RARE * len(whole), 1.0)
+    share = RARE_ON_FANUC if on_fanuc else RARE
+    rare = len(whole) - len(pointless) >= FEW and len(pointless) <= max(share * len(whole), 1.0)
     least = 1 if rare else LARGE
     if not (rare or _POINTED.search(sample)) or (max(pointless) < least and len(data) <= SAMPLE):
         return
@@ -81,6 +85,18 @@ def doubt_all_points(findings: Findings, data: bytes, program: Program) -> None:
     findings.add("no-points", level, 0, text)
 
 
+def doubt_lathe(findings: Findings, data: bytes, program: Program) -> None:
+    """Say of a program that looks like a lathe's how it is read: T0101 without M6, and nothing that names Y."""
+    sample = _without_comments(data[:SAMPLE])
+    if program.extents is None or not _LATHE_TOOL.search(sample) or _CHANGES.search(sample):
+        return
+    text = (
+        "this looks like the program of a lathe (T0101, no M6, no Y), where X counts as a diameter and F per turn; it "
+        "is read as one of a mill, so do not trust this path"
+    )
+    findings.add("lathe", "suspicious", 0, text)
+
+
 def doubt(machine: Machine, program: Program) -> None:
     """Note all that is doubted."""
     if machine.dwell_time > LONG_DWELL * machine.dwells:
@@ -89,6 +105,10 @@ def doubt(machine: Machine, program: Program) -> None:
             "it counts milliseconds (Fanuc, without a point) choose that dialect."
         )
         machine.findings.add("long-dwell", "suspicious", 0, text)
+    if not len(program.line):
+        machine.findings.add(
+            "no-move", "warning", 0, "the program moves nothing; subprograms move where they are called"
+        )
     _doubt_length(machine, program)
     _doubt_spindle(machine, program)
     _doubt_size(machine, program)

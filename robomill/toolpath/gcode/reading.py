@@ -14,7 +14,7 @@ from robomill.toolpath.arcs import CHORD_ERROR
 from robomill.toolpath.findings import NO_UNITS
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.dialects import SAMPLE, Dialect, choose_dialect
-from robomill.toolpath.gcode.doubts import doubt, doubt_all_points, doubt_points, doubt_second_table
+from robomill.toolpath.gcode.doubts import doubt, doubt_all_points, doubt_lathe, doubt_points, doubt_second_table
 from robomill.toolpath.gcode.fanuc.macro_calls import begin_empty
 from robomill.toolpath.gcode.foreign import language_of
 from robomill.toolpath.gcode.grbl import check_grbl
@@ -123,10 +123,11 @@ def interpret(
             "dialect-guessed", "info", 0, f"read as {chosen.name} code; this is a guess from how it looks"
         )
     if chosen.has_macros:
-        doubt_points(machine.findings, data)
+        doubt_points(machine.findings, data, chosen.name == "fanuc")
     program = _program(machine, chosen.name, len(lines) - (lines[-1] == ""))
     if chosen.name == "fanuc":
         doubt_all_points(machine.findings, data, program)
+        doubt_lathe(machine.findings, data, program)
         return replace(program, findings=machine.findings.freeze())
     return program
 

@@ -296,3 +296,25 @@ def test_a_feed_beside_g20_counts_in_inches_on_grbl() -> None:
     program = interpret("G21 G90\nG20 G1 X1 F10\nX2 F20\nG21 X3 F30\nM2\n", dialect="grbl")
     np.testing.assert_allclose(program.v_f * 6e4, [254, 508, 30])
     assert "feed-units" not in {f.code for f in program.findings}
+
+
+@pytest.mark.parametrize(("word", "units", "size"), [("G71", "mm", 5.0), ("G70", "in", 127.0)])
+def test_mach3_says_its_units_as_others_rough_on_a_lathe(word: str, units: str, size: float) -> None:
+    """Vectric's Mach2/3 posts write G71 or G70 with G91.1; beside P and Q both rough, which is refused."""
+    for gap in ("", " "):
+        program = interpret(f"N10G0X0Y0\nN20{gap}{word}{gap}G91.1\nN30 G1 X5 F100\nM30\n")
+        assert (program.units, program.dialect) == (units, "linuxcnc")
+        assert program.end[-1, 0] * 1e3 == pytest.approx(size)
+    with pytest.raises(GCodeError, match=f"Line 2: {word} is not known"):
+        interpret(f"G0 X0\n{word} P10 Q20 U1 W1\nG1 X3 F9\n")
+
+
+@pytest.mark.parametrize("head", ["%\nO1\n", "%\nO0001 (PART)\n"])
+def test_axis_words_beside_g80_move_as_the_motion_before_the_cycle_does(head: str) -> None:
+    """Smid, CNC Programming Handbook: G80 Z25.0 ends the cycle and moves; LinuxCNC refuses it."""
+    body = "G21 G17 G90 G54\nS1000 M3\nG0 X0. Y0. Z25.\nG99 G81 X10. Z-5. R2. F100.\nG80 Z25.\nM30\n"
+    program = interpret(f"{head}{body}%\n")
+    assert program.dialect == "fanuc"
+    assert (program.kind[-1], program.end[-1, 2] * 1e3) == (0, 25.0)
+    with pytest.raises(GCodeError, match="G80 ends a cycle and takes no axis words"):
+        interpret(body, dialect="linuxcnc")

@@ -85,3 +85,33 @@ def test_a_system_other_than_the_first_is_said_to_be_at_part_zero(said: str, fou
 def test_numbers_without_a_point_are_said_of_a_fanuc_program(text: str, code: str, level: str) -> None:
     found = [(f.code, f.level) for f in interpret(text, dialect="fanuc").findings if f.code.startswith("no-point")]
     assert found == ([(code, level)] if code else [])
+
+
+def codes(text: str, dialect: str = "auto") -> list[str]:
+    return [each.code for each in interpret(text, dialect=dialect).findings]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("%\nO1\nT0101\nG97 S1000 M3\nG0 X50. Z2.\nG1 Z-20. F0.2\nM30\n%\n", True),
+        ("%\nO1\nT0101 M6\nG0 X50. Z2.\nG1 Z-20. F0.2\nM30\n%\n", False),
+        ("%\nO1\nT0101\nG0 X50. Y0. Z2.\nG1 Z-20. F0.2\nM30\n%\n", False),
+        ("%\nO1\nT0102\nG0 X50. Z2.\nG1 Z-20. F0.2\nM30\n%\n", False),
+    ],
+)
+def test_the_program_of_a_lathe_is_told(text: str, said: bool) -> None:
+    assert ("lathe" in codes(text)) == said
+
+
+def test_a_program_that_moves_nothing_is_told() -> None:
+    assert "no-move" in codes("o<a> sub\nG0 X1\no<a> endsub\nM2\n")
+    assert "no-move" not in codes("G0 X1\nM2\n")
+
+
+@pytest.mark.parametrize(("dialect", "said"), [("fanuc", True), ("linuxcnc", False)])
+def test_on_a_fanuc_a_third_of_the_points_may_be_forgotten(dialect: str, said: bool) -> None:
+    text = "G21 G90\nG0 X0. Y0. Z5.\nG1 Z-2. F100.\nX10.\nX25\nX30.\nX45\nX50.\nG0 Z50.\nM30\n"
+    assert ("no-point" in codes(text, dialect)) == said
+    many = text.replace("X30.", "X30").replace("X10.", "X10")
+    assert "no-point" not in codes(many, dialect)
