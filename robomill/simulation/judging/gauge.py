@@ -30,7 +30,8 @@ RIM = 0.98  # and at this share of what the tool cuts flat although it goes asid
 HEIGHTS = (0.05, 0.9)  # of the depth, above the nose: where a wall is measured
 ON_NOSE = 0.95  # of the depth, where the nose alone cuts
 BESIDE = 20e-6  # m: material this far beyond the rim makes a wall, and bears its mark
-LEVEL = 1e-6  # what the share of the feed across the axis lacks of 1 where a move is level
+LEVEL = 1.4e-3  # how far a path may rise on its way that counts as level
+CROWN = 0.5  # how steep across the feed a floor may be that the heel of a sinking or rising end has rounded
 SLENDER = 0.125  # of its height: a wall as thin gives way to a cutter as the arm does
 ALIKE = 2e-6  # m: readings, and deviations, that differ by less are one
 LEAST = 1e-4  # share that a single place stands for
@@ -258,8 +259,13 @@ def _floors(at: Places) -> Readings:
     inside &= at.below[q] <= SAME  # there is no floor beneath a cut through the stock
     q, offset, u = q[inside], offset[inside], u[inside]
     lines = np.hstack([at.c[q], at.axial[q], u])
-    told, error, found = at.outline.floors(lines, offset, (at.slope * aside)[q])
+    along_itself = np.maximum(at.slope, np.minimum(at.slope / math.sqrt(1.0 - RIM**2), CROWN))
+    told, error, found = at.outline.floors(lines, offset, (along_itself * aside)[q])
     found &= ~(at.bottoms[q] & (told < -SAME))  # a peck's end is drilled away
+    found &= told >= -((at.slope * at.number("radius"))[q] + SAME)  # a deeper one is of the pass that has made it
+    # Across a slope the heel rounds the floor: it is read beneath the axis, and beside it where none is left there, as
+    # beside a shoulder or over a deeper slot.
+    found &= (offset == 0.0) | (at.slope < LEVEL)[q] | at.steep[q] | ~np.isin(q, q[found & (offset == 0.0)])
     # A hole, or a groove with the sides of a cone, is as deep as its lowest point, wherever that has gone aside.
     deepest = (at.bottoms | _alone(at, aside))[q] & (told > -SAME)
     conditions = at.result.conditions
@@ -290,13 +296,14 @@ def _under(at: Places, flat: FloatArray, aside: FloatArray) -> tuple[IntArray, F
     """Where a floor is looked for: places q (m,), offsets (m,) m along unit directions u (m, 3). Beneath the axis;
     where the tool cuts flat across its feed, to both sides too; and at the bottom of a plunge all around."""
     every, bottom = np.arange(len(at.i)), np.flatnonzero(at.bottoms & at.steep & (flat > 0.0))
-    rim = RIM * np.maximum(flat - aside, 0.0)
-    level = at.result.conditions.across[at.i] > 1.0 - LEVEL  # else the heel rounds the floor across the feed
+    even = np.where(at.steep, 1.0, CROWN / np.hypot(at.slope, CROWN))
+    rim = np.minimum(RIM, even) * np.maximum(flat - aside, 0.0)
     beneath = every[~at.steep | at.bottoms]
-    wide = np.flatnonzero((flat > 0.0) & level & ~at.steep)
+    wide = np.flatnonzero((flat > 0.0) & ~at.steep)
     aims = [(beneath, np.zeros(len(beneath)))]
     for at_side in (*(share * flat for share in ACROSS if share), rim, -rim):
-        some = wide[(np.abs(at_side) + aside < flat)[wide]]  # else metal left there is the wall's error
+        seen = (np.abs(at_side) + aside < flat) & (np.abs(at_side) <= even * flat)
+        some = wide[seen[wide]]  # else metal left there is the wall's error
         aims.append((some, at_side[some]))
     turned = np.repeat(bottom, len(AROUND))
     ahead, left = np.tile(np.cos(AROUND), len(bottom)), np.tile(np.sin(AROUND), len(bottom))
