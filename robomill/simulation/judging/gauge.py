@@ -30,6 +30,7 @@ RIM = 0.98  # and at this share of what the tool cuts flat although it goes asid
 HEIGHTS = (0.05, 0.9)  # of the depth, above the nose: where a wall is measured
 ON_NOSE = 0.95  # of the depth, where the nose alone cuts
 BESIDE = 20e-6  # m: material this far beyond the rim makes a wall, and bears its mark
+ON_NOSES = (0.02, 0.1, 0.25, 0.45, 0.7)  # of the way from the flat end to the rim
 LEVEL = 1.4e-3  # how far a path may rise on its way that counts as level
 CROWN = 0.5  # how steep across the feed a floor may be that the heel of a sinking or rising end has rounded
 SLENDER = 0.125  # of its height: a wall as thin gives way to a cutter as the arm does
@@ -273,10 +274,32 @@ def _floors(at: Places) -> Readings:
     root = at.d[:, 2] * np.where(at.steep, 1.0, conditions.across[at.i]) - at.d[:, 0] * rise
     error[deepest] = np.fmin(error, root[q])[deepest]
     q, error = q[found], error[found]
+    beside, off, normal = _on_noses(at, ~np.isin(np.arange(len(at.i)), q) & ~at.steep, aside)
+    normal = np.concatenate([np.tile([0.0, 0.0, 1.0], (len(q), 1)), normal])
+    q, error = np.concatenate([q, beside]), np.concatenate([error, off])
     length = at.length[q] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]
-    return Readings(
-        at.i[q], error, length, 2.0 * at.number("radius")[q], at.d[q, 2], np.tile([0.0, 0.0, 1.0], (len(q), 1))
-    )
+    return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q], _dot(normal, at.d[q]), normal)
+
+
+def _on_noses(at: Places, where: BoolArray, aside: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+    """What noses and cones leave beside their axis ``where`` (q,) no floor lies beneath it, as along the edge of the
+    stock: places (m,), errors (m,) m normal to the surface, and its normals (m, 3) by feed, left and axis."""
+    chosen = np.flatnonzero(where & (at.number("flat_radius") < at.number("radius")))
+    q = np.repeat(chosen, 2 * len(ON_NOSES))
+    share = np.tile([*ON_NOSES, *(-each for each in ON_NOSES)], len(chosen))
+    flat, R = at.number("flat_radius")[q], at.number("radius")[q]
+    offset = np.sign(share) * (flat + np.abs(share) * (R - flat))
+    own = at.profile(q, np.abs(offset))
+    inside = (at.depth(q, at.c[q] + offset[:, None] * at.left_of[q]) > own + SAME) & (at.below[q] <= SAME)
+    q, offset, own = q[inside], offset[inside], own[inside]
+    slope = at.slope[q]
+    lines = np.hstack([at.c[q], at.axial[q], at.left_of[q]])
+    told, error, found = at.outline.floors(lines, offset, slope * aside[q])
+    found &= np.abs(told - own) <= slope * at.number("radius")[q] + SAME  # what another pass leaves is read along that
+    q, offset, own = q[found], offset[found], own[found]
+    upright = _upright(at, q, own)
+    normal = np.column_stack([np.zeros(len(q)), -np.sign(offset) * upright, np.sqrt(1.0 - upright**2)])
+    return q, error[found], normal
 
 
 def _alone(at: Places, aside: FloatArray) -> BoolArray:
@@ -285,7 +308,7 @@ def _alone(at: Places, aside: FloatArray) -> BoolArray:
     q = np.flatnonzero((at.number("conical") > 0) & ~at.steep)
     if not len(q):
         return alone
-    own = np.stack([cutter.profile(np.minimum(aside, cutter.radius)) for cutter in at.cutters])[at.of[q], q]
+    own = at.profile(q, aside[q])
     lines, no_slack = np.hstack([at.c[q], at.axial[q], at.left_of[q]]), np.zeros(len(q))
     left, right = (at.outline.floors(lines, side * aside[q], no_slack)[0] for side in (1.0, -1.0))
     alone[q] = np.minimum(left, right) >= own - SAME

@@ -41,6 +41,11 @@ class Places:
         every = np.stack([cutter.radius_at(np.maximum(height, 0.0)) for cutter in self.cutters])
         return np.asarray(every[self.of[q], np.arange(len(q))])
 
+    def profile(self, q: IntArray, offset: FloatArray) -> FloatArray:
+        """Heights (m) above their tips of the cutters at places q, at a distance (m) from their axes."""
+        every = np.stack([cutter.profile(np.minimum(offset, cutter.radius)) for cutter in self.cutters])
+        return np.asarray(every[self.of[q], np.arange(len(q))])
+
     @property
     def length(self) -> FloatArray:
         """(q,) m along the path that a place stands for."""
