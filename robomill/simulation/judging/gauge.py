@@ -30,7 +30,7 @@ RIM = 0.98  # and at this share of what the tool cuts flat although it goes asid
 HEIGHTS = (0.05, 0.9)  # of the depth, above the nose: where a wall is measured
 ON_NOSE = 0.95  # of the depth, where the nose alone cuts
 BESIDE = 20e-6  # m: material this far beyond the rim makes a wall, and bears its mark
-ON_NOSES = (0.02, 0.1, 0.25, 0.45, 0.7)  # of the way from the flat end to the rim
+ON_NOSES = (0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)  # of the way from the flat end to the rim
 LEVEL = 1.4e-3  # how far a path may rise on its way that counts as level
 CROWN = 0.5  # how steep across the feed a floor may be that the heel of a sinking or rising end has rounded
 SLENDER = 0.125  # of its height: a wall as thin gives way to a cutter as the arm does
@@ -174,7 +174,7 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
     told, left, one, carried = _standing(at, rims)
     # Chords of an arc overlap on its inner side by no more than this.
     gentle = (rims.length > 0.0) & (turn[rims.q] < CORNER) & ~steep[rims.q]
-    same = SAME + np.where(gentle, rims.radius * (1.0 - np.cos(turn[rims.q])), 0.0)
+    same = SAME + np.where(gentle, rims.radius * (1.0 - np.cos(turn[rims.q])), 0.0) + _leads(at, rims)
     # A tool lifted above the height at which a wall is measured leaves metal over its whole width: the floor's error.
     keep = (told <= same) & (at.d[rims.q, 2] < rims.height) & (one | np.isnan(left))
     rims, told, left, carried = rims.only(keep), told[keep], left[keep], carried[keep]
@@ -196,6 +196,21 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
     readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * upright * rims.sign, way)
     along = rims.only(rims.length > 0.0)
     return readings, np.unique(at.i[q[lost]]), np.unique(at.i[along.q[_thin(at, along)]])
+
+
+def _leads(at: Places, rims: Rims) -> FloatArray:
+    """(m,) m by which the wall of a nose or a cone that sinks or rises stands further out than its rim at a place: it
+    is made a little ahead or behind, where the tool is wider, and by moves that are each taken at their middle."""
+    wider = _wider(at, rims.q, rims.height)
+    step = at.result.path.step_length[at.i[rims.q]]
+    return np.asarray(rims.radius * (1.0 / np.sqrt(1.0 - wider**2) - 1.0) + wider * step)
+
+
+def _wider(at: Places, q: IntArray, height: FloatArray) -> FloatArray:
+    """(m,) by how much the radius of a tool that sinks or rises changes at a height on its way, of that way; where it
+    is more than 0.9 the surface is the rim's and no more the side's."""
+    upright = _upright(at, q, height)
+    return np.minimum(np.where(at.steep, 0.0, at.slope)[q] * np.sqrt(1.0 - upright**2) / upright, 0.9)
 
 
 def _thin(at: Places, rims: Rims) -> BoolArray:
@@ -311,7 +326,10 @@ def _alone(at: Places, aside: FloatArray) -> BoolArray:
     own = at.profile(q, aside[q])
     lines, no_slack = np.hstack([at.c[q], at.axial[q], at.left_of[q]]), np.zeros(len(q))
     left, right = (at.outline.floors(lines, side * aside[q], no_slack)[0] for side in (1.0, -1.0))
-    alone[q] = np.minimum(left, right) >= own - SAME
+    # On its way down or up a cone's groove is flatter across than the cone, and made by moves taken at their middle.
+    flatter = np.sqrt(1.0 - _wider(at, q, own + SAME) ** 2)
+    slack = SAME + np.where(at.steep, 0.0, at.slope)[q] * at.result.path.step_length[at.i[q]]
+    alone[q] = np.minimum(left, right) >= own * flatter - slack
     return alone
 
 

@@ -568,3 +568,80 @@ def test_an_error_goes_with_the_tip_as_its_way_says(kind):
         for before, after in zip((still.walls, still.floors, still.ends), (moved.walls, moved.floors, moved.ends)):
             np.testing.assert_array_equal(before.sample, after.sample)
             np.testing.assert_allclose(after.error - before.error, 1e-6 * before.way[:, axis], atol=2e-8)
+
+
+@pytest.mark.parametrize("rise", [0.3, -0.3, 1.0, -2.0, 3.0])
+@pytest.mark.parametrize("wide", [0.5, 2.0, 3.9])
+def test_the_floor_beside_a_shoulder_is_told_on_slopes_too(rise, wide):
+    """The ledge that a side pass leaves goes with the tip: as far, where it is pushed up or down alone, as that is
+    along the normal of the slope."""
+    y, b = -20.0 + wide - R * 1e3, np.radians(rise)
+    ends = (-3.0 - 45.0 * np.tan(b), -3.0 + 45.0 * np.tan(b))
+    result = run("G0 X-45 Y-40 Z5", f"G0 Y{y}", f"G0 Z{ends[0]:.6f}", f"G1 X45 Z{ends[1]:.6f} F1800")
+    for up in (0.2e-3, -0.2e-3):
+        floors = pushed(result, up=up).gauge.floors
+        inner = np.abs(result.path.p[floors.sample, 0]) < 20e-3
+        assert inner.sum() > 10
+        upright = np.einsum("i,ij->j", [0.0, 0.0, 1.0], result.setup.T_MW[:3, :3]) @ result.R_MF[-1][:, 2]
+        assert upright == pytest.approx(1.0)
+        np.testing.assert_allclose(floors.error[inner], up * np.cos(b), rtol=0.12)
+
+
+def test_a_floor_over_an_earlier_hole_is_that_of_the_ledges_beside_it():
+    """A deeper groove of another tool lies beneath the axis: what this pass leaves stands to both sides of it."""
+    tools = [rm.TableTool(1, Cutter("flat", 4e-3)), rm.TableTool(2, Cutter("flat", 10e-3))]
+    lines = ["T1 M6", "S12000 M3", "G0 X-40 Y0 Z5", "G0 Z-4", "G1 X40 F900", "G0 Z5"]
+    lines += ["T2 M6", "S12000 M3", "G0 X-40 Y0", "G0 Z-1.8", "G1 X40 Z-2.2 F1800"]
+    result = run(*lines, tools=rm.ToolTable(tools))
+    second = result.path.tool == 2
+    floors = pushed(result, left=0.1e-3, up=np.where(second, -0.15e-3, 0.05e-3)).gauge.floors
+    of_second = second[floors.sample]
+    assert of_second.sum() > 50
+    np.testing.assert_allclose(floors.error[of_second], -0.15e-3, atol=4e-6)
+    np.testing.assert_allclose(floors.error[~of_second], 0.05e-3, atol=1e-9)
+
+
+@pytest.mark.parametrize("y", [0.3, 1.0, 2.0])
+@pytest.mark.parametrize("push", [(0.0, 0.15e-3), (0.0, -0.15e-3), (0.1e-3, 0.05e-3), (-0.05e-3, 0.1e-3)])
+def test_a_ball_along_the_edge_is_off_normal_to_what_it_leaves(y, push):
+    """Its axis runs beside the block, and its flank alone cuts: each place goes by the tip's part along its normal, the
+    line from there to the ball's centre."""
+    ball = Cutter("ball", 2 * R)
+    result = run("G0 X-40 Y-40 Z5", f"G0 Y{-20 - y}", "G0 Z-3.5", "G1 X40 F1800", cutter=ball)
+    left, up = push
+    reading = pushed(result, left=left, up=up).gauge
+    found = reading.floors.error[np.abs(result.path.p[reading.floors.sample, 0]) < 20e-3]
+    offset = np.linspace(y * 1e-3, 0.7 * R, 200)  # left of the axis, where the block is
+    normal = np.column_stack([-offset, np.sqrt(R**2 - offset**2)]) / R
+    errors = normal @ np.array([left, up])
+    assert len(found) > 20
+    assert found.min() > errors.min() - 5e-6
+    assert found.max() < errors.max() + 5e-6
+    size = 5e-6 + 0.35 * (errors.max() - errors.min())  # read at a few places, not at every one
+    assert abs(np.abs(found).max() - np.abs(errors).max()) < size
+
+
+@pytest.mark.parametrize("angle", [60.0, 90.0, 120.0])
+@pytest.mark.parametrize("rise", [0.5, -1.0, 3.0, -3.0])
+def test_the_walls_of_a_cones_groove_on_a_slope_are_off_along_their_normals(angle, rise):
+    """The sides that a cone makes on its way down or up are planes, |y| = T (z - s x) / sqrt(1 - s^2 T^2): what the tip
+    goes aside and down, along their normals."""
+    cone, b, T = (
+        Cutter("chamfer", 2 * R, tip_angle=np.radians(angle)),
+        np.radians(rise),
+        np.tan(np.radians(0.5 * angle)),
+    )
+    ends = (-1.4 - 15.0 * np.tan(b), -1.4 + 15.0 * np.tan(b))
+    result = run("G0 X-25 Y0 Z5", f"G0 Z{ends[0]:.6f}", f"G1 X5 Z{ends[1]:.6f} F1800", cutter=cone, step=0.5e-3)
+    s, left, up = np.tan(b), 0.2e-3, -0.1e-3
+    flat = T / np.sqrt(1.0 - (s * T) ** 2)
+    expected = np.array([side * (side * left - flat * up) for side in (1.0, -1.0)]) / np.hypot(
+        1.0, flat * np.hypot(1.0, s)
+    )
+    walls = pushed(result, left=left, up=up).gauge.walls
+    here = (walls.length > 0.0) & (np.abs(result.path.p[walls.sample, 0] + 10e-3) < 12e-3)
+    found = walls.error[here]
+    assert here.sum() > 40
+    near = np.abs(found[:, None] - expected)
+    assert (near.min(axis=1) < 6e-6).all(), (found.min(), found.max(), expected)
+    assert (near.min(axis=0) < 6e-6).all()
