@@ -11,9 +11,11 @@ from robomill.errors import ProjectError
 
 def run_compensate(arguments: Any) -> int:
     """Correct the program of a set-up and write it."""
+    from robomill.improve.errors import level_of
     from robomill.io.compensated import compensate
     from robomill.io.results import write_files
     from robomill.report.compensation_record import compensation_lines, compensation_record
+    from robomill.simulation.judging.verdict_words import RED
 
     setup = given.setup(arguments.setup, arguments.allow_outside)
     place = Path(arguments.out)
@@ -24,7 +26,7 @@ def run_compensate(arguments: Any) -> int:
     record = compensation_record(found)
     check = ["robomill", "simulate", arguments.setup, "--program", arguments.out]
     lines = [*compensation_lines(record), f"to check  {shlex.join(check)}"]
-    return say(arguments, record, lines, files=files)
+    return say(arguments, record, lines, int(level_of(found.led) in RED), files)
 
 
 def _check_kept(place: Path, setup: str, source: Any) -> None:

@@ -280,18 +280,19 @@ def reversals(run: SimulationResult) -> int:
 
 
 def _wrong(led: SimulationResult) -> tuple[Errors, Errors]:
-    """What is left where compliances, or the force, are wrong by 20 % to either side: the larger one."""
+    """What is left where compliances, or the force, are wrong by 20 % to either side, whichever uses more of the
+    tolerance."""
     setup = led.setup
     if not setup.coupling and not setup.add_sag:  # then the deflection is wrong by as much, whichever it is
         assert led.ahead is not None
         more = (WRONG - 1.0) * (led.delta - led.ahead)
         both = [replace(led, delta=led.delta + sign * more) for sign in (1.0, -1.0)]
-        worse = errors_of(max(both, key=lambda run: float(np.abs(run.delta_in_cut[run.judged, 1:]).max(initial=0.0))))
+        worse = graver(*map(errors_of, both), setup)
         return worse, worse
     found = []
     for name in ("softer", "stronger"):
         runs = [ran(setup, **{name: by}) for by in (WRONG, 2.0 - WRONG)]
-        found.append(max(map(errors_of, runs), key=lambda each: each.max))
+        found.append(graver(*map(errors_of, runs), setup))
     return found[0], found[1]
 
 

@@ -101,6 +101,8 @@ class _Cluster:
             rows = self._answer(future, piece)
             if rows is None:
                 alone += piece
+                if future.status not in ("finished", "error"):  # the task itself may have gone with its worker
+                    shared = self._client.submit(same, self._task, pure=False)
             else:
                 yield rows
 
@@ -121,7 +123,7 @@ class _Cluster:
         future.add_done_callback(self._back.put)
 
     def _answer(self, future: Any, piece: list[int]) -> list[Row] | None:
-        """Rows of a piece; None where its worker ended, and its points are to be tried one by one."""
+        """Rows of a piece; None where its worker ended or was taken down, and its points are to be tried one by one."""
         if future.status == "finished":
             try:
                 rows, seconds = future.result(timeout=FIRST_S)
@@ -130,8 +132,9 @@ class _Cluster:
                 return None
             self._size = max(1, min(LARGEST, int(PIECE_S * len(piece) / max(seconds, 1e-3))))
             return list(rows)
-        if future.status != "error":
-            raise self._lost("is gone")
+        if future.status != "error":  # lost or cancelled with a worker that left
+            self._threads()
+            return None
         wrong = future.exception(timeout=FIRST_S)
         if type(wrong).__name__ == "KilledWorker":  # Dask's own, which has no other mark
             if len(piece) > 1:

@@ -48,9 +48,17 @@ class Dask:
         program = f"import sys; from distributed.cli.dask_{words[0]} import main; sys.exit(main())"
         return subprocess.Popen([sys.executable, "-c", program, *words[1:]], stderr=subprocess.PIPE, env=ENV)
 
-    def work(self, count: int) -> None:
+    def work(self, count: int, *more: str) -> None:
         for _ in range(count):
-            words = [self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1"]
+            words = [
+                self.address,
+                "--nthreads",
+                "1",
+                *(more or ("--no-nanny",)),
+                "--no-dashboard",
+                "--host",
+                "127.0.0.1",
+            ]
             self.workers.append(self._started("worker", *words))
 
     def end(self) -> None:
@@ -66,14 +74,17 @@ def dask() -> Iterator[Dask]:
     one.end()
 
 
-def test_a_killed_worker_loses_nothing_and_rows_are_those_of_this_machine(dask: Dask, tmp_path: Path) -> None:
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM])
+def test_a_worker_that_ends_loses_nothing_and_rows_are_those_of_this_machine(
+    dask: Dask, tmp_path: Path, end: signal.Signals
+) -> None:
     study, killed = drawn(120), []
-    dask.work(2)
+    dask.work(2, *(["--nanny"] if end == signal.SIGTERM else []))
 
     def say(now: Progress) -> None:
         if now.share > 0.2 and not killed:
             killed.append(now.share)
-            dask.workers[0].send_signal(signal.SIGKILL)
+            dask.workers[0].send_signal(end)
 
     with watched(Progress(say=say)):
         there = rm.run_study(study, tmp_path / "there", scheduler=dask.address)
