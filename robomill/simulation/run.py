@@ -26,7 +26,7 @@ from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import Led, cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
 from robomill.simulation.judging.leaning import leaning, lying
-from robomill.simulation.judging.sinking import clear, sinking, told_to_sink
+from robomill.simulation.judging.sinking import clear, pressing, sinking, told_to_sink
 from robomill.simulation.led import against, led_beside, led_conditions, plunges
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
@@ -223,7 +223,7 @@ def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...],
     """Conditions, force F (m, 3) N in {M}, what it has no model for, and how a coupled run was solved."""
     setup, path = bent.setup, bent.path
     if setup.force.follows_cut and told_to_sink(bent.told).any():
-        bent = replace(bent, told=sinking(bent.told, path, _tips(bent)))
+        bent = replace(bent, told=sinking(bent.told, path, _tips(bent), partial(_lift, bent)))
     conditions, F = _once(bent)
     if not setup.coupling:
         return conditions, F, _reasons(bent, conditions), None
@@ -253,6 +253,14 @@ def _tips(bent: Bent) -> FloatArray:
         return bent.led.meant
     delta = bent.delta(_once(replace(bent, told=clear(bent.told)))[1])
     return np.asarray(bent.path.p + bent.setup.to_part(np.nan_to_num(delta)))
+
+
+def _lift(bent: Bent) -> FloatArray:
+    """(m, 3) m in {W}: how far whole ends of tools that press on their floors hold the tips off where they go if no end
+    met anything."""
+    told = pressing(bent.told)
+    F, free = (bent.force(each, bent.R_MF) for each in (told, clear(told)))
+    return np.asarray(bent.setup.to_part(np.nan_to_num(bent.delta(F) - bent.delta(free))))
 
 
 def _reasons(bent: Bent, conditions: CutConditions) -> tuple[Unjudged, ...]:

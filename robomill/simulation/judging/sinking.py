@@ -3,8 +3,13 @@
 A tool that is told to go down just as its arm is pushed up stays at its height, and its end meets nothing: so goes a
 program that undoes its own deflection. The slope is that of the tip over the last diameter of its way, which a hollow
 end needs to be met by what its rim has left.
+
+An end that presses on its floor holds its tip up, by its thrust, above where the tip would go if the end met nothing.
+Where the arm springs up, as where the flank leaves the material, it lets go only once it has sprung up by all of that:
+until then the tip would sink into the floor that it has left.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +17,12 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.engaged import sinks
+from robomill.cutting.tool import DISH
 from robomill.toolpath.path import Toolpath
+
+SLIGHT = 1e-6  # of what an end cuts: less of it is lost by rounding only
+SLOT = 1e-3  # m deep: any depth has the same thrust of its end
+ALIKE = 4  # decimals of a feed's part along the axis: ways down that differ by less press alike
 
 
 def told_to_sink(told: CutConditions) -> BoolArray:
@@ -27,13 +37,50 @@ def clear(told: CutConditions) -> CutConditions:
     return replace(told, steep=np.where(told_to_sink(told), 0.0, told.sinks))
 
 
-def sinking(told: CutConditions, path: Toolpath, tips: FloatArray) -> CutConditions:
-    """The conditions with ends that sink no more steeply than ``tips`` (m, 3) m do, along the axes of a path."""
+def pressing(told: CutConditions) -> CutConditions:
+    """Conditions of the same tools that go down as steeply in a slot: against them ``clear`` of end, the force is that
+    of whole ends."""
+    some = told_to_sink(told) & (told.n_s != 0.0) & (told.v_f > 0.0)
+    return replace(told, a_p=np.where(some, SLOT, 0.0), along=np.round(told.along, ALIKE))
+
+
+def sinking(told: CutConditions, path: Toolpath, tips: FloatArray, lift: Callable[[], FloatArray]) -> CutConditions:
+    """The conditions with ends that sink no more steeply than ``tips`` (m, 3) m do, where these go along a path if no
+    end meets anything; ``lift`` says how far, (m, 3) m, whole ends that press hold them off that."""
     some = told_to_sink(told)
     if not some.any():
         return told
-    really = sinks(-_slopes(told, path, tips))
-    return replace(told, steep=np.where(some, np.minimum(told.sinks, really), told.sinks))
+    steep = np.where(some, np.minimum(told.sinks, sinks(-_slopes(told, path, tips))), told.sinks)
+    goes_on = some & np.append(False, some[:-1])
+    if (goes_on & (steep < np.minimum(np.append(0.0, steep[:-1]), told.sinks) - SLIGHT)).any():
+        up = np.einsum("mi,mi->m", lift(), path.k)
+        steep = np.minimum(told.sinks, _held(told, steep, goes_on, _falls(path, tips), up))
+    return replace(told, steep=steep)
+
+
+def _held(
+    told: CutConditions, steep: FloatArray, goes_on: BoolArray, falls: FloatArray, lift: FloatArray
+) -> FloatArray:
+    """(m,) how steeply ends sink: as their slopes say, ``steep`` (m,), or as before while they hold, on a way down that
+    ``goes_on`` (m,). The free tip ``falls`` (m,) m on each step, and a pressing end lifts it by ``lift`` (m,) m.
+
+    The end keeps the tip at its height while the free tip would sink below it, by its lift at most (the stop of
+    Prandtl); it holds with all that it held with before while it would sink deeper than it is ground hollow.
+    """
+    assert told.tooling is not None
+    hollow = told.tooling.each("flat_radius") * (DISH / np.sqrt(1.0 - DISH**2))
+    held, depth, last = np.empty(len(steep)), 0.0, 0.0
+    steps = zip(steep.tolist(), goes_on.tolist(), falls.tolist(), lift.tolist(), hollow.tolist(), strict=True)
+    for i, (own, on, fall, most, whole) in enumerate(steps):
+        depth = max(min(depth + fall, most), 0.0) if on else 0.0
+        last = max(own, min(last, depth / whole)) if depth > 0.0 else own
+        held[i] = last
+    return held
+
+
+def _falls(path: Toolpath, points: FloatArray) -> FloatArray:
+    """(m,) m by which points (m, 3) m along a path fall along the tool's axis on each step."""
+    return np.asarray(-np.einsum("mi,mi->m", np.diff(points, axis=0, prepend=points[:1]), path.k))
 
 
 def _slopes(told: CutConditions, path: Toolpath, tips: FloatArray) -> FloatArray:
@@ -43,10 +90,7 @@ def _slopes(told: CutConditions, path: Toolpath, tips: FloatArray) -> FloatArray
     assert told.tooling is not None
     step = np.where(path.cutting, path.step_length, 0.0)
     s = np.cumsum(step)
-    fallen, fall = (
-        -np.einsum("mi,mi->m", np.diff(points, axis=0, prepend=points[:1]), path.k) for points in (tips, path.p)
-    )
-    fallen = np.cumsum(fallen)
+    fallen, fall = np.cumsum(_falls(path, tips)), _falls(path, path.p)
     kind = np.where(path.cutting, np.where(told.mostly_axial, 2, 1), 0)
     begins = np.append(True, kind[1:] != kind[:-1])
     first = np.maximum.accumulate(np.where(begins, np.arange(len(s)), 0))

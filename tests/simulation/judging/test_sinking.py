@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from robomill.arrays import FloatArray
 from robomill.cutting.conditions import CutConditions
+from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
-from robomill.simulation.judging.sinking import clear, sinking, told_to_sink
+from robomill.io.materials import load_material
+from robomill.simulation.judging.sinking import clear, pressing, sinking, told_to_sink
 from robomill.simulation.samples import ways
 from robomill.toolpath.path import Toolpath
 
@@ -25,10 +28,19 @@ def ramp(degrees: float, cutter: Cutter = MILL) -> tuple[CutConditions, Toolpath
     return CutConditions(**{**vars(told), "tooling": Tooling.of(cutter, len(path))}), path
 
 
+def steep_of(told: CutConditions, path: Toolpath, tips: FloatArray, lift: float) -> FloatArray:
+    """How steeply ends sink whose tips go there, where whole ends lift them by so much, m."""
+    return np.array(sinking(told, path, tips, lambda: np.full_like(tips, lift) * [0.0, 0.0, 1.0]).steep)
+
+
+def never() -> FloatArray:
+    raise AssertionError("nothing lets go: how far an end lifts its tip is not asked")
+
+
 @pytest.mark.parametrize("degrees", [0.2, 0.5, 3.0])
 def test_a_ramp_that_the_tip_follows_is_cut_as_it_is_told_once_it_goes_on_for_the_tools_width(degrees):
     told, path = ramp(degrees)
-    steep = sinking(told, path, path.p).steep
+    steep = sinking(told, path, path.p, never).steep
     assert told_to_sink(told)[21:].all()
     np.testing.assert_allclose(steep[29:], told.sinks[29:], atol=1e-9)
     assert (np.diff(steep[20:]) >= -1e-9).all()  # taken up by and by
@@ -38,18 +50,54 @@ def test_a_ramp_that_the_tip_follows_is_cut_as_it_is_told_once_it_goes_on_for_th
 def test_an_end_that_is_told_down_as_its_arm_is_pushed_up_meets_nothing(degrees):
     told, path = ramp(degrees)
     level = path.p * [1.0, 1.0, 0.0] + [0.0, 0.0, -1e-3]
-    assert not sinking(told, path, level).steep.any()
+    assert not sinking(told, path, level, never).steep.any()
     assert not clear(told).sinks.any()
 
 
 def test_where_a_cut_rises_or_goes_level_or_the_tool_has_no_end_nothing_is_asked():
     for told, path in (ramp(-2.0), ramp(0.0), ramp(2.0, Cutter("ball", 8e-3, flutes=2))):
         assert not told_to_sink(told).any()
-        assert sinking(told, path, path.p) is told
+        assert sinking(told, path, path.p, never) is told
 
 
 def test_half_of_the_slope_taken_back_leaves_the_other_half():
     told, path = ramp(0.4)
     half = path.p * [1.0, 1.0, 0.5] + [0.0, 0.0, -0.5e-3]
     expected = ramp(np.degrees(np.arctan(0.5 * np.tan(np.radians(0.4)))))[0].sinks
-    np.testing.assert_allclose(sinking(told, path, half).steep[29:], expected[29:], atol=1e-4)
+    np.testing.assert_allclose(sinking(told, path, half, never).steep[29:], expected[29:], atol=1e-4)
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.2e-3, 0.4e-3, 0.5e-3, 0.51e-3, 0.53e-3, 0.6e-3])
+def test_an_end_that_holds_lets_go_once_its_arm_has_sprung_up_by_all_that_it_lifts_the_tip(rise: float) -> None:
+    """It lifts it by 0.5 mm, and half way down a ramp on which it has sunk by more the arm springs up on one step."""
+    told, path = ramp(6.0)
+    free = path.p.copy()
+    free[30:, 2] += rise + 1e-3 * np.tan(np.radians(6.0))
+    by_slope, held = (steep_of(told, path, free, up) for up in (0.0, 0.5e-3))
+    assert held[29] == 1.0
+    depth = (0.5e-3 - rise) / (4e-3 * np.tan(np.radians(0.5)))
+    assert held[30] == pytest.approx(np.clip(depth, by_slope[30], 1.0), abs=1e-6)
+    assert (held >= by_slope).all()
+    assert held[-1] == 1.0
+
+
+def test_an_end_holds_with_no_more_than_it_has_taken_up() -> None:
+    """The tip of a corrected program, a few um off a level, however far its end could lift it."""
+    told, path = ramp(3.0)
+    level = path.p * [1.0, 1.0, 0.0]
+    level[:, 2] = 5e-6 * np.sin(1e3 * path.p[:, 0])
+    by_slope, held = (steep_of(told, path, level, up) for up in (0.0, 1e-3))
+    assert 0.0 < by_slope.max() < 0.2
+    assert (held <= np.maximum.accumulate(by_slope)).all()
+    assert (held == 0.0)[25:].any()  # once the tip is back at its height nothing holds
+
+
+def test_what_presses_a_whole_end_is_its_thrust() -> None:
+    """In closed form: every radius of the end carries Kr h + Kre along the axis."""
+    told, path = ramp(2.0)
+    force = MechanisticForce(MILL, load_material("al7075_t6_carbide_ref190"))
+    pressed, free = (force.components(each) for each in (pressing(told), clear(pressing(told))))
+    h = 0.03 / (200.0 * 3) * np.sin(np.radians(2.0))
+    thrust = 3 * 4e-3 * (168.8e6 * h + 26.6e3)
+    np.testing.assert_allclose((pressed - free)[21:, 2], thrust, rtol=2e-3)
+    np.testing.assert_allclose((pressed - free)[:21], 0.0, atol=1e-9)
