@@ -186,6 +186,17 @@ def _helix(radius: float, pitch: float, turns: float, chord: float = 9.0) -> tup
 
 RAMP = math.tan(math.radians(3.0))
 
+
+def down(degrees: float, z: float = -4.0) -> Pass:
+    """Down along x through the whole block and out of it, from depth z on."""
+    return Pass(((-30, 0, z), (40, 0, z - 70 * math.tan(math.radians(degrees)))))
+
+
+def way_out(name: str, cutter: Cutter, ramp: Pass, *before: Pass, span: tuple[float, float] = (44.0, 54.0)) -> CutCase:
+    """A ramp's last millimetres in the material, where its flank has left it and the rear of its end has not."""
+    return CutCase(name, cutter, (*before, ramp), span=span, steady=False, steps=(1.0,))
+
+
 BESIDE_A_STEM: tuple[tuple[Point, Point], ...] = (((-20, -20, -12), (20, -2, -2)), ((-20, 2, -12), (20, 20, -2)))
 CAVITY = (((-15.0, -12.0, -6.0), (15.0, 12.0, -1.0)),)
 TUNNEL = (((-3.0, -20.0, -2.0), (3.0, 20.0, -1.0)),)
@@ -223,6 +234,17 @@ CASES = (
     CutCase("ramp up", FLAT, (Pass(((-30, 0, -3), (10, 0, -3 + 40 * RAMP))),), span=(20.0, 26.0), steady=False),
     CutCase("ramp down, ball", BALL, (Pass(((-14, 0, 0), (6, 0, -20 * RAMP))),), span=(4.0, 18.0), steady=False),
     CutCase("ramp up, ball", BALL, (Pass(((-30, 0, -3), (10, 0, -3 + 40 * RAMP))),), span=(20.0, 26.0), steady=False),
+    way_out("way out of a ramp of 0.6 degrees", FLAT, down(0.6)),
+    way_out("way out of a ramp of 1 degree", FLAT, down(1)),
+    way_out("way out of a ramp of 1 degree, bull", BULL, down(1)),
+    way_out("way out of a ramp of 3 degrees", FLAT, down(3)),
+    way_out(
+        "ramp of 1 degree into an older, deeper groove",
+        FLAT,
+        down(1),
+        Pass(((6, -30, -8), (6, 30, -8))),
+        span=(26.0, 36.0),
+    ),
     CutCase("plunge", FLAT, (drill(-5),), span=(4.0, 7.0)),
     CutCase("plunge, half over the edge", FLAT, (drill(-5, 20),), span=(4.0, 7.0)),
     CutCase("plunge, half over the left edge", FLAT, (drill(-5, 0, 20),), span=(4.0, 7.0)),
