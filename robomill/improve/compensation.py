@@ -287,12 +287,12 @@ def _wrong(led: SimulationResult) -> tuple[Errors, Errors]:
         assert led.ahead is not None
         more = (WRONG - 1.0) * (led.delta - led.ahead)
         both = [replace(led, delta=led.delta + sign * more) for sign in (1.0, -1.0)]
-        worse = graver(*map(errors_of, both), setup)
+        worse = graver(errors_of(both[0]), errors_of(both[1]), setup)
         return worse, worse
     found = []
     for name in ("softer", "stronger"):
-        runs = [ran(setup, **{name: by}) for by in (WRONG, 2.0 - WRONG)]
-        found.append(graver(*map(errors_of, runs), setup))
+        one, other = (errors_of(ran(setup, **{name: by})) for by in (WRONG, 2.0 - WRONG))
+        found.append(graver(one, other, setup))
     return found[0], found[1]
 
 

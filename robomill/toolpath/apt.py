@@ -32,24 +32,10 @@ from robomill.toolpath.tools import MOST
 from robomill.units import to_si
 
 _MOVES = frozenset(
-    [
-        *(
-            "ARC",
-            "INDIRP",
-            "TLON",
-            "TLLFT",
-            "TLRGT",
-            "THREAD",
-            "RETRCT",
-            "ROTATE",
-            "ROTABL",
-            "TRACUT",
-            "COPY",
-            "CALL",
-            "MACRO",
-        ),
-        *("GO", "HELIX", "NURBS", "SPLINE", "GOCLER", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN"),
-    ]
+    (
+        *("ARC", "INDIRP", "TLON", "TLLFT", "TLRGT", "THREAD", "RETRCT", "ROTATE", "ROTABL", "TRACUT", "COPY", "CALL"),
+        *("MACRO", "GO", "HELIX", "NURBS", "SPLINE", "GOCLER", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN"),
+    )
 )
 _SILENT = frozenset(
     {

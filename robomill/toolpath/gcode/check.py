@@ -47,10 +47,7 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
         raise block.refuse(f"{g_name(non_modal)} needs axis words such as X0.")
     if motion == 800:
         if (axes or polar) and not covets:
-            if not dialect.has_macros:
-                raise block.refuse("G80 ends a cycle and takes no axis words; move with G0 or G1.")
-            del block.g[modal.MOTION]
-            machine.motion, motion = 800, -1
+            motion = _ends_and_moves(machine, block, dialect)
     elif motion >= 0:
         if non_modal in (280, 300) and motion in (0, 10) and not dialect.strict:
             keep_motion(machine, motion)
@@ -84,6 +81,15 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
     for letter in "uvw":
         if letter in words:
             raise block.refuse(f"this machine has no {letter.upper()} axis; write X, Y, Z, A, B or C.")
+
+
+def _ends_and_moves(machine: Machine, block: Block, dialect: Dialect) -> int:
+    """G80 beside places: where a dialect keeps the motion before the cycle, that is what is left of the line (-1)."""
+    if not dialect.has_macros:
+        raise block.refuse("G80 ends a cycle and takes no axis words; move with G0 or G1.")
+    del block.g[modal.MOTION]
+    machine.motion = 800
+    return -1
 
 
 def _read_polar(machine: Machine, block: Block) -> None:

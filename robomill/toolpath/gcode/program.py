@@ -187,7 +187,7 @@ _row_of = attrgetter(*_COLUMNS)
 class Recorder:
     """Collects moves: the last ones as rows of ``MOVE``, those before as columns."""
 
-    def __init__(self, join: Callable[[Move, Move, tuple[str, float]], list[Move]] | None = None) -> None:
+    def __init__(self, join: Callable[[Move, Move, Any], list[Move]] | None = None) -> None:
         self.join = join
         self.held: tuple[Move, tuple[str, float]] | None = None
         self.count, self.most = 0, MAX_MOVES

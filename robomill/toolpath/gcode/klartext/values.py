@@ -3,24 +3,22 @@
 import math
 import re
 from dataclasses import replace
-from itertools import pairwise
-
-import numpy as np
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.klartext.pecks import pecks_of
 from robomill.toolpath.gcode.machine import Scale
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.program import TRAVERSE
+from robomill.toolpath.gcode.sinumerik.holes import Hole
 from robomill.toolpath.gcode.sinumerik.procs import SinumerikProcs
-from robomill.toolpath.gcode.sinumerik.words import Hole, Peck
 from robomill.toolpath.gcode.words import Block, normalise
 from robomill.toolpath.plane import polar, turned
 
 NUMBER = r"[-+]? ?(?:\d+(?:\.\d*)?|\.\d+|Q[LR]?\d+)"
 FIRST_Q = {"Q": 1000, "QL": 3000, "QR": 4000}
 MOST_Q = {"Q": 1999, "QL": 499, "QR": 499}
-MAX_PECKS = 10_000
+MOST_HOLES = 10_000
 RAPID_OUT = 99_999.0
 """Q208 from which on a tool leaves its hole at rapid; what MAX and FMAX stand for."""
 _Q = re.compile(r"(Q[LR]?)(\d+)")
@@ -284,8 +282,8 @@ class KlartextValues(SinumerikProcs):
                 for column in range(columns) if row % 2 == 0 else reversed(range(columns)):
                     u, v = column * self.q(237), row * self.q(238)
                     points.append(turned(u, v, t, self.q(225), self.q(226)))
-        if len(points) > MAX_PECKS:
-            raise GCodeError.at(line, f"CYCL DEF {number} has more than {MAX_PECKS} holes; split it.")
+        if len(points) > MOST_HOLES:
+            raise GCodeError.at(line, f"CYCL DEF {number} has more than {MOST_HOLES} holes; split it.")
         hole = self._hole_of(line)
         if self.machine.p[2] < hole.retract and not self.machine.away[2]:
             self._to(TRAVERSE, line, hole.retract)
@@ -295,8 +293,8 @@ class KlartextValues(SinumerikProcs):
 
     def _asked(self, number: int, cycle: int, line: int) -> int:
         value = self.q(number)
-        if not 1.0 <= value <= MAX_PECKS:
-            raise GCodeError.at(line, f"CYCL DEF {cycle} has Q{number}={value:g} repeats; expected 1 to {MAX_PECKS}.")
+        if not 1.0 <= value <= MOST_HOLES:
+            raise GCodeError.at(line, f"CYCL DEF {cycle} has Q{number}={value:g} repeats; expected 1 to {MOST_HOLES}.")
         return round(value)
 
     def _cycle_call(self, code: str, line: int) -> str | None:
@@ -351,49 +349,11 @@ class KlartextValues(SinumerikProcs):
             raise GCodeError.at(line, f"CYCL DEF {number} needs Q239, its pitch.")
         out = self._out_of(number, down)
         bottom, clear = surface + depth, surface + safety
-        pecks = self._pecks_of(number, surface, bottom, clear, line) if number in (200, 203, 205) else ()
+        pecks = pecks_of(number, self.q, (surface, bottom, clear), line) if number in (200, 203, 205) else ()
         top = surface + max(safety, self.q(204))
         wait, taps = max(self.q(211), 0.0), number == 206
         above = max(self.q(210), 0.0) if number in (200, 203) else 0.0
         return Hole(top, clear, bottom, wait, down, out, pecks, pitch, taps, above=above)
-
-    def _pecks_of(self, number: int, surface: float, bottom: float, clear: float, line: int) -> tuple[Peck, ...]:
-        """Cycles 200, 203 and 205: out of the hole from each depth, and back at rapid to the set-up clearance above it,
-        in 205 to Q258 above the first depth and Q259 above the last. 203 breaks the chip Q213 times in between, 205 at
-        every Q257: up by Q256."""
-        step, less = abs(self.q(202)), abs(self.q(212)) if number in (203, 205) else 0.0
-        depths: list[float] = []
-        at = surface - step
-        while step > 0.0 and at > bottom + 1e-9:
-            depths.append(at)
-            step = max(step - less, abs(self.q(205)) or less) if less else step
-            at -= step
-            if len(depths) > MAX_PECKS:
-                raise GCodeError.at(line, f"CYCL DEF {number} needs more than {MAX_PECKS} pecks; give a larger Q202.")
-        back, breaks = abs(self.q(256)), self.q(213) if number == 203 else 0.0
-        near = [abs(self.q(200))] * len(depths)
-        if number == 205:
-            near = np.linspace(abs(self.q(258)), abs(self.q(259)), len(depths)).tolist()
-        outs = [breaks < 1.0 or n % (int(breaks) + 1) == int(breaks) for n in range(len(depths))]
-        found = [
-            Peck(each, min(each + (above if out else back), clear), out) for each, above, out in zip(depths, near, outs)
-        ]
-        often = abs(self.q(257)) if number == 205 else 0.0
-        if often > 0.0:
-            found += self._breaks([surface, *depths, bottom], often, back, line)
-            found.sort(key=lambda peck: -peck.depth)
-        return tuple(found)
-
-    def _breaks(self, ends: list[float], often: float, back: float, line: int) -> list[Peck]:
-        """Where cycle 205 breaks the chip: at every Q257 (``often``) of each infeed, between its ``ends``."""
-        found: list[Peck] = []
-        for start, end in pairwise(ends):
-            count = math.ceil((start - end) / often - 1e-9) - 1
-            if len(found) + count > MAX_PECKS:
-                raise GCodeError.at(line, f"CYCL DEF 205 needs more than {MAX_PECKS} breaks; give a larger Q257.")
-            depths = [start - k * often for k in range(1, count + 1)]
-            found += [Peck(depth, depth + back, False) for depth in depths]
-        return found
 
     def _out_of(self, number: int, down: float) -> float:
         """The feed out of a hole: Q208, and Q206 where that is 0; without a Q208 a rapid, but for tapping."""

@@ -7,23 +7,20 @@ depth, or DPR how far it is below RFP).
 
 import math
 import re
-from dataclasses import dataclass, replace
 from typing import Any
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.corners import BEVEL, LEGS, ROUND, Corner
 from robomill.toolpath.gcode.expressions import Reader
-from robomill.toolpath.gcode.fanuc.macro_calls import MacroCalls
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
-from robomill.toolpath.gcode.program import FEED, TRAVERSE
-from robomill.toolpath.gcode.rules.motion_rules import MINUTE, PER_TURN, dwell, feed_speed
+from robomill.toolpath.gcode.rules.motion_rules import PER_TURN
+from robomill.toolpath.gcode.sinumerik.holes import Hole, Holes, drilling_cycle
 from robomill.toolpath.gcode.words import Block, normalise
 from robomill.toolpath.plane import turned
 
 FIRST_R = 1000
 MOST_R = 1000
-MAX_PECKS = 10_000
 _N = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?")
 _R = re.compile(r"\bR(\d+)\b")
 _SET_R = re.compile(r"\bR(\d+)\s*=\s*")
@@ -44,42 +41,7 @@ _IN_PLACE = re.compile(r"\b([XYZABCIJK])[ \t]*=[ \t]*(AC|IC|DC|ACP|ACN)[ \t]*\((
 _COMPARES = (("==", " EQ "), ("<>", " NE "), (">=", " GE "), ("<=", " LE "), (">", " GT "), ("<", " LT "))
 
 
-@dataclass(frozen=True)
-class Peck:
-    """A depth of a drilling cycle before its bottom, a height as all of them. From there the tool goes ``out`` of the
-    hole, and back at rapid down to ``on``; or it breaks the chip: up to ``on``, ``at_feed`` or at rapid."""
-
-    depth: float
-    on: float
-    out: bool
-    at_feed: bool = False
-
-
-@dataclass(frozen=True)
-class Hole:
-    """A drilling cycle: heights along Z in program units, dwells in s, feeds.
-
-    A ``feed`` of 0 is the one in force, so is an ``out`` of infinity; an ``out`` of 0 is a rapid. A tap goes by its
-    ``pitch``, or ``taps`` by a feed, in a chuck that gives. ``first`` is by how much the first depth is gone to slower.
-    The tool waits for ``dwell`` at the bottom, for ``between`` at each depth before it and for ``above`` when it has
-    come out of the hole in between.
-    """
-
-    retract: float
-    clear: float
-    bottom: float
-    dwell: float
-    feed: float
-    out: float
-    pecks: tuple[Peck, ...]
-    pitch: float
-    taps: bool = False
-    first: float = 1.0
-    between: float = 0.0
-    above: float = 0.0
-
-
-class SinumerikWords(MacroCalls):
+class SinumerikWords(Holes):
     """Reads what stands beside moves; what is left of a line goes on to the reader of words."""
 
     modal_hole: Hole | None = None
@@ -133,6 +95,10 @@ class SinumerikWords(MacroCalls):
         """Drill where a line has moved to in X or Y, while MCALL holds."""
         if self.modal_hole is not None and block.motion in (0, 10) and block.words.keys() & {"x", "y"}:
             self.drill_here(self.modal_hole, block.line)
+
+    def _hole(self, kind: str, text: str, line: int) -> Hole:
+        given = [self.value(each, line) if each.strip() else math.nan for each in text.split(",")]
+        return drilling_cycle(kind, given, self.machine.factor, line)
 
     # --- values
     def __init__(self, *given: Any) -> None:
@@ -278,109 +244,6 @@ class SinumerikWords(MacroCalls):
             turn_back(self.machine)
         else:
             see_frame(self.machine, shift, angle)
-
-    # --- holes
-    def _hole(self, kind: str, text: str, line: int) -> Hole:
-        given = [self.value(each, line) if each.strip() else math.nan for each in text.split(",")]
-        given += [math.nan] * (17 - len(given))
-        retract, reference, safety, bottom, below = given[:5]
-        if math.isnan(retract + reference) or (math.isnan(bottom) and math.isnan(below)):
-            raise GCodeError.at(line, f"CYCLE{kind} needs RTP, RFP and DP or DPR, as in CYCLE{kind}(50,0,2,-10).")
-        if kind in "8182" and not math.isnan(given[6]) and given[6] != 0.0:
-            raise GCodeError.at(
-                line, f"CYCLE{kind} counts its depth by the diameter (_GMODE), which is not read; give DP."
-            )
-        bottom = reference - abs(below) if math.isnan(bottom) else bottom
-        clear = reference + (0.0 if math.isnan(safety) else abs(safety))
-        if bottom >= clear or retract < clear:
-            raise GCodeError.at(line, f"CYCLE{kind}: expected RTP above RFP + SDIS, and the depth below; mend them.")
-        wait = given[8] if kind == "83" else given[5] if kind not in ("81", "87") else math.nan
-        pitch = abs(given[8]) if kind == "84" else 0.0
-        if kind == "84" and not pitch > 0.0:
-            raise GCodeError.at(line, "CYCLE84 needs PIT, its pitch, which MPIT does not say here; give it.")
-        feeds = [0.0 if math.isnan(v) else abs(v) for v in (given[6], given[7])] if kind == "85" else [0.0, 0.0]
-        feeds[1] = math.inf if kind == "89" else feeds[1]
-        seconds = 0.0 if math.isnan(wait) else max(wait, 0.0)
-        hole = Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], (), pitch)
-        return self._pecked(hole, given, reference, line) if kind == "83" else hole
-
-    def _pecked(self, hole: Hole, given: list[float], reference: float, line: int) -> Hole:
-        """CYCLE83: VARI 1 goes out of the hole and back at rapid to DIS1 above the depth (0: 0.6 mm, or a 50th of holes
-        deeper than 30 mm, 7 mm at most); VARI 0 goes up by VRT (0: 1 mm) at feed."""
-        said = [0.0 if math.isnan(each) else each for each in given]
-        mm = 1e-3 / self.machine.factor
-        goes_out, depth = said[11] == 1.0, reference - hole.bottom
-        usual = min(max(0.6 * mm, depth / 50.0 if depth > 30.0 * mm else 0.0), 7.0 * mm) if goes_out else mm
-        up = abs(said[16 if goes_out else 14]) or usual
-        depths = self._depths(given, reference, hole.bottom, line)
-        pecks = tuple(Peck(each, min(each + up, hole.clear), goes_out, not goes_out) for each in depths)
-        slower, last = said[10] if 0.0 < said[10] < 1.0 else 1.0, said[15]
-        dwell = last if last > 0.0 else hole.dwell
-        return replace(hole, dwell=dwell, pecks=pecks, first=slower, between=hole.dwell, above=max(said[9], 0.0))
-
-    def _depths(self, given: list[float], reference: float, bottom: float, line: int) -> list[float]:
-        """Depths of CYCLE83 before the last: FDEP or FDPR first; then each stroke is less by DAM, and DAM at least, or
-        by a factor where DAM is negative, and MDEP at least."""
-        first = reference - abs(given[6]) if math.isnan(given[5]) else given[5]
-        step = reference - first
-        if math.isnan(first) or step <= 0.0:
-            raise GCodeError.at(line, "CYCLE83 needs FDEP or FDPR, its first depth.")
-        less, least = (0.0 if math.isnan(each) else each for each in (given[7], given[13]))
-        if less < -1.0:
-            raise GCodeError.at(line, f"CYCLE83 has DAM {less:g}; a factor is -1 to 0, an amount above 0.")
-        depths: list[float] = []
-        while first > bottom:
-            depths.append(first)
-            step = max(step - less, less) if less > 0.0 else max(-less * step, least) if less < 0.0 else step
-            rest = first - bottom
-            first -= 0.5 * rest if step == less < rest <= 2.0 * less else step  # the last two are alike
-            if len(depths) > MAX_PECKS:
-                raise GCodeError.at(line, f"CYCLE83 would need more than {MAX_PECKS} pecks; give a larger FDPR.")
-        return depths
-
-    def drill_here(self, hole: Hole, line: int) -> None:
-        """Drill where the tool stands."""
-        machine = self.machine
-        block = Block(line)
-        machine.need_compensation_off(block, "A drilling cycle")
-        if machine.plane != 17:
-            raise block.refuse("a drilling cycle is read in the plane G17 alone.")
-        if machine.feed == 0.0 and hole.feed == 0.0 and hole.pitch == 0.0:
-            raise block.refuse("a drilling cycle needs a feed rate; give an F word above 0 first.")
-        down = hole.feed * machine.factor / MINUTE if hole.feed else None
-        out = hole.out * machine.factor / MINUTE if 0.0 < hole.out < math.inf else None
-        if hole.pitch:
-            if machine.speed == 0.0:
-                raise block.refuse("CYCLE84 needs a spindle speed; give an S word first.")
-            down = out = hole.pitch * machine.factor * machine.speed / MINUTE
-        before, machine.motion = machine.motion, 840 if hole.pitch or hole.taps else machine.motion
-        self._to(TRAVERSE, line, hole.clear)
-        begin = down if hole.first == 1.0 else hole.first * (feed_speed(machine) if down is None else down)
-        for n, peck in enumerate(hole.pecks):
-            self._to(FEED, line, peck.depth, down if n else begin)
-            self._wait(hole.between)
-            if peck.out:
-                self._to(FEED if hole.out else TRAVERSE, line, hole.clear, out)
-                self._wait(hole.above)
-            if peck.on < hole.clear if peck.out else peck.on > peck.depth:
-                self._to(*(FEED, line, peck.on, down) if peck.at_feed else (TRAVERSE, line, peck.on))
-        self._to(FEED, line, hole.bottom, down if hole.pecks else begin)
-        self._wait(hole.dwell)
-        if hole.out or hole.pitch:
-            self._to(FEED, line, hole.clear, out)
-        self._to(TRAVERSE, line, hole.retract)
-        machine.motion = before
-
-    def _wait(self, seconds: float) -> None:
-        if seconds:
-            dwell(self.machine, seconds)
-
-    def _to(self, kind: int, line: int, height: float, v_f: float | None = None) -> None:
-        machine = self.machine
-        end = [*machine.p[:2], height, *machine.p[3:]]
-        machine.place({"z": height})
-        machine.go(kind, line, end, v_f)
-        machine.p = end
 
 
 def _of_two(found: re.Match[str], line: int) -> str:
