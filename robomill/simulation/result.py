@@ -29,7 +29,7 @@ from robomill.simulation.judging.verdict_words import Deciding, Verdict
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.meant import corrected_notes, jump_notes
 from robomill.simulation.origin.assumptions import Assumed, assumed_of_setup
-from robomill.simulation.origin.doubts import frame_notes, known_notes, unit_doubts
+from robomill.simulation.origin.doubts import frame_notes, known_notes, rigid_tool_notes, unit_doubts
 from robomill.simulation.posture import posture_notes, turned_notes
 from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
@@ -211,6 +211,7 @@ class SimulationResult(Tabled):
         found += suspicions(self.setup, self.force_components[pushed])
         found += [*unit_doubts(self.setup, self.path, self.F, pushed), *known_notes(self.setup)]
         found += frame_notes(self.setup.robot)
+        found += rigid_tool_notes(self.setup, self.tooling, self.force_components)
         if self.coupling is not None:
             found.append(self.coupling.finding)
         if self.setup.add_sag:

@@ -8,6 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.compliance.springs.tool_bending import ToolBending
+from robomill.cutting.tooling import Tooling
 from robomill.kinematics.asked import longest_reach
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
@@ -21,6 +23,7 @@ SLIP = "unit-slip"  # what nobody means: by such numbers nothing is judged
 THIN = 0.6e-3  # m: the widest cutter there is, with its metres taken for mm
 SMALL_PATH, NEAR, SHORT_TOOL = 2e-3, 0.05, 2e-3  # m
 SLIGHT, HEAVY = 1.0, 20e3  # N: hardly a cut pushes less, or more
+MUCH = 0.1  # of the tolerance
 FINE, COARSE = 2e-6, 2e-3  # m a tooth
 
 
@@ -73,6 +76,24 @@ def known_notes(setup: SimulationSetup) -> tuple[Finding, ...]:
         "Give that robot's compliances, or identify these."
     )
     return (Finding("warning", text, code=OTHERS),)
+
+
+def rigid_tool_notes(setup: SimulationSetup, tooling: Tooling, force: FloatArray) -> tuple[Finding, ...]:
+    """Cutters that are taken as rigid though their stick-out is stated, and would bend by much of the tolerance under
+    ``force`` (m, 3) N by feed, left and axis."""
+    if setup.measured_map is not None or any(isinstance(each, ToolBending) for each in setup.springs):
+        return ()
+    across = np.nan_to_num(np.linalg.norm(force[:, :2], axis=1))
+    found = []
+    for cutter, made in tooling.steps_of_each():
+        bent = ToolBending.first(cutter).lateral * float(across[made].max(initial=0.0))
+        if cutter.stick_out is not None and bent > MUCH * setup.tolerance:
+            text = (
+                f"the cutter ({cutter.title}) sticks out by {format_si(cutter.stick_out, 'mm', 1)} and is taken as "
+                f"rigid: of solid carbide it would bend by about {format_si(bent, 'mm')}; add the spring of its bending."
+            )
+            found.append(Finding("warning", text, code="rigid-tool"))
+    return tuple(found)
 
 
 def frame_notes(robot: Robot) -> tuple[Finding, ...]:
