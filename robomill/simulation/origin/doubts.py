@@ -90,7 +90,7 @@ def rigid_tool_notes(setup: SimulationSetup, tooling: Tooling, force: FloatArray
         if cutter.stick_out is not None and bent > MUCH * setup.tolerance:
             text = (
                 f"the cutter ({cutter.title}) sticks out by {format_si(cutter.stick_out, 'mm', 1)} and is taken as "
-                f"rigid: of solid carbide it would bend by about {format_si(bent, 'mm')}; add the spring of its bending."
+                f"rigid: solid carbide would bend by about {format_si(bent, 'mm')}; add the spring of its bending."
             )
             found.append(Finding("warning", text, code="rigid-tool"))
     return tuple(found)

@@ -114,3 +114,18 @@ def test_tools_that_stand_off_or_beside_their_flange_are_not_doubted() -> None:
     assert len(frame_notes(six(T_tool=beside))) == 1
     for name in ("slavkovic_5r", "kuka_kr270", "kuka_kr500", "fanuc_r2000ic", "planar_2r", "planar_3r"):
         assert frame_notes(rm.load_robot(name)) == ()
+
+
+def test_a_cutter_that_sticks_out_far_and_is_taken_as_rigid_is_told() -> None:
+    """A cantilever, F L^3 / (3 E I): 40 mm of 4 mm carbide under the slot's force; not with its spring, nor if short."""
+    setup, told = rm.load_setup("paper_flute/setup_process").replace(step_mm=10, cell_mm=1.0), {}
+    for length, springs in ((40, ()), (8, ()), (None, ()), (40, (rm.ToolBending(diameter_mm=4, stick_out_mm=40),))):
+        cutter = rm.Cutter("flat", diameter_mm=4, flutes=3, stick_out_mm=length)
+        force = rm.process_force("al7075_t6_carbide_ref190", cutter)
+        run = rm.simulate(setup.replace(cutter=cutter, force=force, springs=springs))
+        told[length, bool(springs)] = [each.message for each in run.notes if each.code == "rigid-tool"]
+        if length == 40 and not springs:
+            F = run.F[run.worst]
+            bent = np.hypot(F[0], F[1]) * 0.04**3 / (3 * 600e9 * np.pi * 0.0032**4 / 64)
+            assert f"{bent * 1e3:.2f}" in told[length, False][0]
+    assert [len(each) for each in told.values()] == [1, 0, 0, 0]
