@@ -117,7 +117,7 @@ def test_tools_that_stand_off_or_beside_their_flange_are_not_doubted() -> None:
 
 
 def test_a_cutter_that_sticks_out_far_and_is_taken_as_rigid_is_told() -> None:
-    """A cantilever, F L^3 / (3 E I): 40 mm of 4 mm carbide under the slot's force; not with its spring, nor if short."""
+    """A cantilever, F L^3 / (3 E I): 40 mm of 4 mm carbide at the slot's force; not with its spring, not if short."""
     setup, told = rm.load_setup("paper_flute/setup_process").replace(step_mm=10, cell_mm=1.0), {}
     for length, springs in ((40, ()), (8, ()), (None, ()), (40, (rm.ToolBending(diameter_mm=4, stick_out_mm=40),))):
         cutter = rm.Cutter("flat", diameter_mm=4, flutes=3, stick_out_mm=length)
