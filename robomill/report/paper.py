@@ -275,6 +275,6 @@ STATEMENTS = (
         f"the flute is about {_mm(SLOT.measured)} off in Y",
         "gap",
         "Joints alone make {low:.0f} % to {high:.0f} % of what was measured; structure, spindle and tool give as well. "
-        "Nothing is tuned.",
+        "No force and no stiffness is tuned to it.",
     ),
 )

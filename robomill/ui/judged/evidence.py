@@ -92,6 +92,6 @@ def panel(project: Project, dark: bool) -> None:
         },
         caption="Dashed: measured on the part. Process data: the force follows from cutter, feed and material; its bar "
         "is over every published coefficient of 7075. The paper names neither alloy nor helix: 7075-T6 and a "
-        "right-hand helix are assumed, and nothing is tuned.",
+        "right-hand helix are assumed; no force and no stiffness is tuned to what was measured.",
         alt="The paper's predictions and measurement beside the values computed from process data, with their band.",
     )

@@ -29,7 +29,7 @@ def findings_list(findings: Sequence[Finding]) -> None:
     """What the reader noticed, worst first; a click on a row points at its line."""
     st.markdown("**What was read**")
     if not findings:
-        pieces.note("Every word was understood; nothing was skipped or guessed.")
+        pieces.note("Every word was understood, and none was left out.")
         return
     found = worst_first(findings)
     shown = found[:500]
