@@ -118,8 +118,8 @@ def beside_the_paper(project: Project) -> None:
     pieces.table(rows, " bn")
     pieces.note(
         f"Sideways error of the groove. {format_si(SLOT.from_map, project.view.length, 2)} is read off a map whose "
-        "raw data are not printed, and Table 3 alone cannot give it. The link lengths are chosen by the paper's own C_yy, "
-        "so the joints' share of it is no independent check; stiffnesses and forces are nowhere tuned to match."
+        "raw data are not printed, and Table 3 alone cannot give it. The link lengths are chosen by the paper's own "
+        "C_yy, so the joints' share of it is no independent check; stiffnesses and forces are nowhere tuned to match."
     )
 
 
