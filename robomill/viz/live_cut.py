@@ -71,6 +71,7 @@ def parcel(result: SimulationResult, exaggerations: Sequence[float]) -> Parcel:
 
     z.K, ideal (nx ny,) u2    height = low + value * quantum, at exaggeration K
     error.K (nx ny,) i1       true signed error over the tolerance x 127, held at +-127; -128 where nothing was cut
+    wall.K (nx ny,) i1        as much of the wall that the cell stands beside; -128 where none stands
     ready.K (nx ny,) u2       frame at which a cell has its last height and the ideal cut has passed it
     cell.K, height.K, frame.K the lowerings of cells on the way there, in their order
     p, delta, k (f, 3) f4     tip as told, its deviation at true size, tool axis; s (f,) mm cut so far
@@ -154,6 +155,7 @@ def _surface(
     np.maximum.at(ready, past.cell, at)
     packing.add(f"z.{name}", quantised(shown.drawn.z, *scale), "u2")
     packing.add(f"error.{name}", coloured(shown.error, result.setup.tolerance), "i1")
+    packing.add(f"wall.{name}", coloured(shown.wall, result.setup.tolerance), "i1")
     packing.add(f"ready.{name}", np.minimum(ready, len(frames) - 1), "u2")
     packing.add(f"cell.{name}", past.cell, "u4")
     packing.add(f"height.{name}", quantised(past.height, *scale), "u2")

@@ -50,6 +50,7 @@ def surface_picture(
         z=from_si(shown.drawn.z, "mm"),
         ideal=from_si(shown.ideal.z, "mm"),
         error=from_si(shown.error, error_unit),
+        wall=from_si(shown.wall, error_unit),
         limit=float(from_si(setup.tolerance, error_unit)),
         unit=unit_label(error_unit),
         bottom=float(from_si(setup.stock_block.lower[2], "mm")),

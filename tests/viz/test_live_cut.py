@@ -130,6 +130,23 @@ def test_colours_end_at_the_tolerance_and_what_is_not_cut_has_none(result: Simul
     assert np.abs(told[known] / 127.0 - share).max() <= 0.5 / 127.0 + 1e-9
 
 
+def test_the_faces_of_walls_have_the_error_that_a_gauge_reads_there(result: SimulationResult) -> None:
+    """The slot runs along X and has gone to the left: material stands on its right, too much went on its left."""
+    sent = parcel(result, TIMES)
+    arrays, (nx, ny, _, y0, _, dy) = unpacked(sent), sent.about["grid"]
+    share = result.verdict.wall.value / result.setup.tolerance * 127.0
+    for level, times in enumerate(TIMES):
+        told = arrays[f"wall.{level}"].reshape(nx, ny)[nx // 2].astype(int)
+        y = y0 + dy * np.arange(ny)
+        for side in (1.0, -1.0):
+            wall = side * 4.0 + times * 1e3 * result.verdict.wall.value
+            beside = np.abs(y - wall) < 0.99 * dy
+            assert beside.sum() in (1, 2)
+            assert np.abs(told[beside] + side * share).max() <= 1.0
+        off = np.min([np.abs(y - side * 4.0 - times * 1e3 * result.verdict.wall.value) for side in (1.0, -1.0)], axis=0)
+        assert (told[off > 3.0 * dy] == NO_ERROR).all()
+
+
 def test_the_arm_bends_by_the_shares_of_its_joints(result: SimulationResult) -> None:
     some = np.array([10, 50, 90])
     straight, bent = arm_frames(result, some)

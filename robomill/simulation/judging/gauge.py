@@ -44,6 +44,8 @@ class Readings(ReadOnly):
     and heights (q,) m that they stand for. Walls: left of the feed +; floors: up +; ends: along the feed +. ``own``
     (q,) m is the deviation of the sample itself: where several passes come by, one of them has made the surface.
     ``way`` (q, 3) is how far the error goes with the tip there, by feed, feed-normal and axial deviation.
+    ``place`` (q, 3) m in {W} is where on the commanded surface the gauge was put, ``out`` (q, 3) the unit vector from
+    the tool into the part there, and ``side`` (q,) is -1 where a positive error goes that way, else 1.
     """
 
     sample: IntArray
@@ -52,6 +54,14 @@ class Readings(ReadOnly):
     height: FloatArray
     own: FloatArray
     way: FloatArray
+    place: FloatArray
+    out: FloatArray
+    side: FloatArray
+
+    @property
+    def material_left(self) -> FloatArray:
+        """(q,) m normal to the surface: + where material was left, - where too much went."""
+        return self.error * self.side
 
     @property
     def worst(self) -> int:
@@ -119,7 +129,8 @@ def gauge(result: Run, most: int | None = None) -> Gauge:
     tool that lies leaves no surface to be read from above."""
     if lies(result.path).any() or not (result.judged.any() and result.removes.any()):
         none = np.zeros(0)
-        nothing = Readings(none.astype(np.int64), none, none, none, none, np.zeros((0, 3)))
+        rows = np.zeros((0, 3))
+        nothing = Readings(none.astype(np.int64), none, none, none, none, rows, rows, rows, none)
         return Gauge(nothing, nothing, nothing)
     at = places(result, most)
     walls, gone, thin = _walls(at)
@@ -193,7 +204,9 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
     reached = at.c[q] + (rims.radius + np.nan_to_num(left) + BESIDE)[:, None] * rims.u
     lost = _nothing_stands(at, rims, (left - told > most + SAME) | ~at.stands(q, reached, rims.height))
     way = rims.sign[:, None] * np.column_stack([ahead * upright, aside * upright, -slanting])
-    readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own * upright * rims.sign, way)
+    own = own * upright * rims.sign
+    where = (_place(at, rims), rims.u, -rims.sign)
+    readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own, way, *where)
     along = rims.only(rims.length > 0.0)
     return readings, np.unique(at.i[q[lost]]), np.unique(at.i[along.q[_thin(at, along)]])
 
@@ -211,6 +224,11 @@ def _wider(at: Places, q: IntArray, height: FloatArray) -> FloatArray:
     is more than 0.9 the surface is the rim's and no more the side's."""
     upright = _upright(at, q, height)
     return np.minimum(np.where(at.steep, 0.0, at.slope)[q] * np.sqrt(1.0 - upright**2) / upright, 0.9)
+
+
+def _place(at: Places, rims: Rims) -> FloatArray:
+    """(m, 3) m in {W}: where walls were told to stand."""
+    return np.asarray(at.c[rims.q] + rims.radius[:, None] * rims.u + rims.height[:, None] * at.axial[rims.q])
 
 
 def _thin(at: Places, rims: Rims) -> BoolArray:
@@ -288,17 +306,22 @@ def _floors(at: Places) -> Readings:
     rise = np.where(at.steep, 0.0, conditions.along[at.i])
     root = at.d[:, 2] * np.where(at.steep, 1.0, conditions.across[at.i]) - at.d[:, 0] * rise
     error[deepest] = np.fmin(error, root[q])[deepest]
-    q, error = q[found], error[found]
-    beside, off, normal = _on_noses(at, ~np.isin(np.arange(len(at.i)), q) & ~at.steep, aside)
+    where = at.c[q] + offset[:, None] * u + np.where(found, told, 0.0)[:, None] * at.axial[q]
+    q, error, where = q[found], error[found], where[found]
+    beside, off, height, normal = _on_noses(at, ~np.isin(np.arange(len(at.i)), q) & ~at.steep, aside)
+    where = np.concatenate([where, at.c[beside] + height])
     normal = np.concatenate([np.tile([0.0, 0.0, 1.0], (len(q), 1)), normal])
     q, error = np.concatenate([q, beside]), np.concatenate([error, off])
     length = at.length[q] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]
-    return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q], _dot(normal, at.d[q]), normal)
+    out = -(normal[:, 1:2] * at.left_of[q] + normal[:, 2:] * at.axial[q])
+    place = (where, out, np.ones(len(q)))
+    return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q], _dot(normal, at.d[q]), normal, *place)
 
 
-def _on_noses(at: Places, where: BoolArray, aside: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+def _on_noses(at: Places, where: BoolArray, aside: FloatArray) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
     """What noses and cones leave beside their axis ``where`` (q,) no floor lies beneath it, as along the edge of the
-    stock: places (m,), errors (m,) m normal to the surface, and its normals (m, 3) by feed, left and axis."""
+    stock: places (m,), errors (m,) m normal to the surface, where that is from the tip (m, 3) m in {W}, and its normals
+    (m, 3) by feed, left and axis."""
     chosen = np.flatnonzero(where & (at.number("flat_radius") < at.number("radius")))
     q = np.repeat(chosen, 2 * len(ON_NOSES))
     share = np.tile([*ON_NOSES, *(-each for each in ON_NOSES)], len(chosen))
@@ -314,7 +337,8 @@ def _on_noses(at: Places, where: BoolArray, aside: FloatArray) -> tuple[IntArray
     q, offset, own = q[found], offset[found], own[found]
     upright = _upright(at, q, own)
     normal = np.column_stack([np.zeros(len(q)), -np.sign(offset) * upright, np.sqrt(1.0 - upright**2)])
-    return q, error[found], normal
+    beside = offset[:, None] * at.left_of[q] + own[:, None] * at.axial[q]
+    return q, error[found], beside, normal
 
 
 def _alone(at: Places, aside: FloatArray) -> BoolArray:
@@ -362,7 +386,8 @@ def _ends(at: Places) -> Readings:
     rims = _rims(at, q, way[:, None] * at.feed[q], way, np.zeros(len(q)))
     rims = rims.only(_standing(at, rims).told <= SAME)
     way = np.tile([1.0, 0.0, 0.0], (len(rims.q), 1))
-    return Readings(at.i[rims.q], at.d[rims.q, 0], rims.length, rims.deep, at.d[rims.q, 0], way)
+    where = (_place(at, rims), rims.u, -rims.sign)
+    return Readings(at.i[rims.q], at.d[rims.q, 0], rims.length, rims.deep, at.d[rims.q, 0], way, *where)
 
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:

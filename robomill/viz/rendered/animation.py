@@ -35,6 +35,7 @@ def film_frame(result: SimulationResult, shown: Enlarged, picture: SurfacePictur
         picture,
         z=from_si(now.drawn.z, "mm"),
         error=now.error * (picture.limit / result.setup.tolerance),  # in the unit of its limit
+        wall=now.wall * (picture.limit / result.setup.tolerance),
         solids=posed(result, index, tip_drawn(result, shown, index), arm=False),
         captions=(*picture.captions, f"Line {result.path.block[index]}"),
     )

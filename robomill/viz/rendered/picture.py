@@ -25,11 +25,12 @@ class SurfacePicture:
     """x (nx,), y (ny,) mm; z, ideal (nx, ny) mm heights, NaN where there is no material; error (nx, ny), in ``unit``.
 
     ``z`` is drawn (it may be exaggerated; then ``captions`` say by how much), ``error`` colours it between
-    +-``limit``; ``camera`` is one of ``CAMERAS``. ``direction`` (2,) is the way of the cut at ``station`` (3,) mm,
-    where a section plane is drawn or, with ``cutaway``, what lies before it is taken away. ``layout`` "pair" shows
-    ideal and machined side by side under one camera; ``ghost`` lays the ideal over the machined; ``solids`` stand
-    beside them (tool, arm), ``headroom`` mm above the block stays in the picture for them, with ``whole`` they are
-    seen from end to end. Without ``scale`` the page says what the colours mean.
+    +-``limit``, and ``wall`` (nx, ny) the steep faces between its points, NaN beside none; ``camera`` is one of
+    ``CAMERAS``. ``direction`` (2,) is the way of the cut at ``station`` (3,) mm, where a section plane is drawn or,
+    with ``cutaway``, what lies before it is taken away. ``layout`` "pair" shows ideal and machined side by side under
+    one camera; ``ghost`` lays the ideal over the machined; ``solids`` stand beside them (tool, arm), ``headroom`` mm
+    above the block stays in the picture for them, with ``whole`` they are seen from end to end. Without ``scale`` the
+    page says what the colours mean.
     """
 
     x: FloatArray
@@ -53,3 +54,4 @@ class SurfacePicture:
     headroom: float = 0.0
     whole: bool = False
     scale: bool = True
+    wall: FloatArray | None = None

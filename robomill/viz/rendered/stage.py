@@ -19,6 +19,7 @@ ROLES = {
     "joint": ("#3D4E5A", "#C9D4DB"),
 }
 FACE_SAMPLES = 1201
+STEEP = 2.0  # of a cell: a face between points that differ by more in height is a wall
 
 
 def lights(plotter: Any) -> None:
@@ -36,26 +37,27 @@ def block(plotter: Any, picture: SurfacePicture, z: FloatArray, error: FloatArra
     """The part with heights ``z`` (nx, ny), coloured by ``error`` where known; cut open if the picture says so."""
     metal = METAL[picture.dark]
     top, sides = sheet(picture, z, error), skirt(picture, z)
+    top, walls = _parted(picture, top, z) if error is not None else (top, top.extract_cells([]))
     if picture.cutaway and picture.station is not None:
         along = (*picture.direction, 0.0)
-        top, sides = (mesh.clip(along, origin=picture.station, invert=False) for mesh in (top, sides))
+        top, walls, sides = (mesh.clip(along, origin=picture.station, invert=False) for mesh in (top, walls, sides))
         _face(plotter, picture, z)
-    if top.n_points and error is not None:
-        plotter.add_mesh(
-            top,
-            scalars="error",
-            cmap=colours,
-            clim=(-picture.limit, picture.limit),
-            nan_color=metal,
-            show_scalar_bar=False,
-            ambient=0.32,
-            diffuse=0.72,
-            specular=0.12,
-            specular_power=20,
-            interpolate_before_map=True,
-        )
-    elif top.n_points:
-        plotter.add_mesh(top, color=metal, ambient=0.32, diffuse=0.72, specular=0.12, specular_power=20)
+    lit = {"ambient": 0.32, "diffuse": 0.72, "specular": 0.12, "specular_power": 20}
+    upright = {**lit, "ambient": 0.72, "diffuse": 0.32}  # a wall turned from the light keeps a colour that can be read
+    for mesh, scalars, shine in ((top, "error", lit), (walls, "wall", upright)):
+        if mesh.n_points and error is not None:
+            plotter.add_mesh(
+                mesh,
+                scalars=scalars,
+                cmap=colours,
+                clim=(-picture.limit, picture.limit),
+                nan_color=metal,
+                show_scalar_bar=False,
+                interpolate_before_map=True,
+                **shine,
+            )
+    if top.n_points and error is None:
+        plotter.add_mesh(top, color=metal, **lit)
     if sides.n_points:
         plotter.add_mesh(sides, color=metal, ambient=0.3, diffuse=0.7)
 
@@ -69,6 +71,19 @@ def sheet(picture: SurfacePicture, z: FloatArray, error: FloatArray | None) -> A
     if error is not None:
         made["error"] = np.asarray(error, dtype=np.float32).ravel(order="F")
     return made
+
+
+def _parted(picture: SurfacePicture, top: Any, z: FloatArray) -> tuple[Any, Any]:
+    """The sheet without its steep faces beside walls, and these: a wall has one colour from its foot to its top, its
+    own, not what lies between those of the floor and the rim."""
+    if picture.wall is None:
+        return top, top.extract_cells([])
+    corners = [np.s_[:-1, :-1], np.s_[1:, :-1], np.s_[1:, 1:], np.s_[:-1, 1:]]
+    heights, told = (np.stack([field[at] for at in corners]) for field in (z, picture.wall))
+    size = max(float(np.diff(picture.x[:2])[0]), float(np.diff(picture.y[:2])[0]))
+    steep = (np.isfinite(told).all(axis=0) & (np.ptp(heights, axis=0) > STEEP * size)).ravel(order="F")
+    top.cell_data["wall"] = np.where(steep, told.mean(axis=0).ravel(order="F"), np.nan).astype(np.float32)
+    return top.extract_cells(np.flatnonzero(~steep)), top.extract_cells(np.flatnonzero(steep))
 
 
 def skirt(picture: SurfacePicture, z: FloatArray) -> Any:

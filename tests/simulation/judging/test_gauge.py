@@ -10,6 +10,7 @@ import pytest
 import shapely
 
 import robomill as rm
+from robomill.arrays import FloatArray
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.tool import Cutter
 from robomill.io.samples import samples_dir
@@ -342,24 +343,25 @@ def test_a_slot_has_as_much_wall_whatever_the_corner_of_its_cutter(corner):
     assert walls.length[walls.error > 0.09e-3].sum() == pytest.approx(walls.length.sum())
 
 
+def readings(error: FloatArray, length: FloatArray, height: FloatArray) -> Readings:
+    """Readings of which nothing else matters."""
+    m, rows = len(error), np.zeros((len(error), 3))
+    return Readings(np.arange(m), error, length, height, error, rows, rows, rows, np.ones(m))
+
+
 def test_an_area_is_lengths_times_heights_and_a_share_is_of_the_length():
     error = np.array([0.1, -0.3, 0.2, -0.2])
-    found = Readings(
-        np.arange(4), error, np.array([1.0, 2, 4, 8]), np.array([0.5, 3, 0.25, 0.1]), error, np.ones((4, 3))
-    )
+    found = readings(error, np.array([1.0, 2, 4, 8]), np.array([0.5, 3, 0.25, 0.1]))
     assert found.area_out(0.3) == pytest.approx((0.0, 0.5 + 6.0 + 1.0 + 0.8))
     assert found.area_out(0.15)[0] == pytest.approx(6.0 + 1.0 + 0.8)
     assert found.area_out(0.25)[0] == pytest.approx(6.0)
     assert found.share_out(0.15) == pytest.approx(14 / 15)
     assert found.share_out(0.3) == 0.0
     # A single place that stands for no length of its own is still out: a ten-thousandth, and all where nothing else is.
-    single = Readings(np.arange(2), np.array([0.1, 0.4]), np.array([5.0, 0.0]), np.ones(2), error[:2], np.ones((2, 3)))
+    single = readings(np.array([0.1, 0.4]), np.array([5.0, 0.0]), np.ones(2))
     assert single.share_out(0.3) == pytest.approx(1e-4)
     assert single.area_out(0.3) == pytest.approx((5e-4, 5.0))
-    assert (
-        Readings(np.arange(1), np.array([0.4]), np.zeros(1), np.ones(1), error[:1], np.ones((1, 3))).share_out(0.3)
-        == 1.0
-    )
+    assert readings(np.array([0.4]), np.zeros(1), np.ones(1)).share_out(0.3) == 1.0
     assert found.worst == 1
 
 
@@ -539,8 +541,7 @@ def test_the_histogram_of_a_straight_slot_is_its_two_walls_and_its_floor():
 def small(*cells: int) -> Readings:
     """Readings of (error in um, length, height) each."""
     error, length, height = np.array(cells, dtype=float).reshape(-1, 3).T
-    none = np.zeros(len(error))
-    return Readings(none.astype(int), error * 1e-6, length, height, none, np.zeros((len(error), 3)))
+    return readings(error * 1e-6, length, height)
 
 
 def test_walls_and_floors_are_spread_by_area() -> None:
@@ -645,3 +646,19 @@ def test_the_walls_of_a_cones_groove_on_a_slope_are_off_along_their_normals(angl
     near = np.abs(found[:, None] - expected)
     assert (near.min(axis=1) < 6e-6).all(), (found.min(), found.max(), expected)
     assert (near.min(axis=0) < 6e-6).all()
+
+
+@pytest.mark.parametrize("name", ["slot", "rib"])
+def test_a_reading_knows_where_it_was_taken_and_what_was_left_there(name):
+    """Pushed left: on the left too much went, on the right material was left; each wall is a radius from the tip."""
+    bent = pushed(run(*PARTS[name]), left=0.1e-3, up=-0.05e-3)
+    walls, floors = bent.gauge.walls, bent.gauge.floors
+    tip = bent.path.p[walls.sample]
+    whole = walls.length > 0.0
+    np.testing.assert_allclose(np.linalg.norm((walls.place - tip)[whole, :2], axis=1), R, atol=1e-9)
+    np.testing.assert_allclose((walls.place - tip)[whole, :2] / R, walls.out[whole, :2], atol=1e-6)
+    left_of = np.cross([0.0, 0.0, 1.0], bent.path.p[walls.sample] - bent.path.p[walls.sample - 1])
+    on_left = np.einsum("qi,qi->q", walls.out, left_of) > 0.0
+    np.testing.assert_array_equal(np.sign(walls.material_left[whole]), np.where(on_left, -1.0, 1.0)[whole])
+    np.testing.assert_allclose(floors.place[:, 2], -2e-3, atol=1e-9)
+    np.testing.assert_allclose(floors.material_left, -0.05e-3, atol=1e-9)

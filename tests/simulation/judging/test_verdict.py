@@ -18,7 +18,8 @@ TOLERANCES = (0.3e-3, 0.1e-3, 0.5e-3)  # wall, floor, feed
 def readings(*errors: float) -> Readings:
     """Readings one after the other along the path, of one length each."""
     m = len(errors)
-    return Readings(np.arange(m) + 20, np.array(errors), np.ones(m), np.ones(m), np.zeros(m), np.zeros((m, 3)))
+    row, rows = np.ones(m), np.zeros((m, 3))
+    return Readings(np.arange(m) + 20, np.array(errors), row, row, np.zeros(m), rows, rows, rows, row)
 
 
 def gauge(wall: float | None, floor: float | None, end: float | None) -> Gauge:

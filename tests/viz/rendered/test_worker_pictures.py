@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 from typing import Any
 
@@ -78,3 +79,32 @@ def test_a_film_of_an_arc_in_the_worker(worker: RenderWorker, process_result: Si
     first = np.asarray(opened.convert("RGB")).astype(int)
     opened.seek(opened.n_frames - 1)
     assert (np.abs(np.asarray(opened.convert("RGB")).astype(int) - first).max(axis=-1) > 20).mean() > 0.02
+
+
+def test_a_wall_is_seen_in_its_own_colour(worker: RenderWorker, result: SimulationResult) -> None:
+    """The slot's walls are 2 mm high; floor and rim are told to be right, so what is seen blue or orange are they."""
+    x, y = np.linspace(-30.0, 30.0, 241), np.linspace(-20.0, 20.0, 161)
+    floor = np.broadcast_to(np.abs(y) < 10.0, (len(x), len(y)))
+    beside = np.broadcast_to(np.abs(np.abs(y) - 10.0) < 0.3, floor.shape)
+    plain = dataclasses.replace(
+        picture(result, scale=False, captions=()),
+        x=x,
+        y=y,
+        z=np.where(floor, -6.0, 0.0),
+        ideal=np.where(floor, -6.0, 0.0),
+        error=np.where(floor, 0.0, np.nan),
+        wall=None,
+        station=None,
+    )
+
+    def seen(share: float | None) -> tuple[int, int]:
+        """How many pixels are orange, and blue."""
+        wall = None if share is None else np.where(beside, share * plain.limit, np.nan)
+        red, _, blue = np.moveaxis(pixels(worker.render(dataclasses.replace(plain, wall=wall))), -1, 0)
+        return int((red > blue + 40).sum()), int((blue > red + 60).sum())
+
+    nothing, left, deep = seen(None), seen(0.7), seen(-0.7)
+    assert left[0] > nothing[0] + 500
+    assert left[1] == pytest.approx(nothing[1], abs=50)
+    assert deep[1] > nothing[1] + 500
+    assert deep[0] == pytest.approx(nothing[0], abs=50)

@@ -20,7 +20,7 @@ function drawn(scene, { cut, state, place, turn, moving, colours: hex, size }) {
   }
   const upto = show.has("so_far") ? place.frame : cut.about.frames - 1;
   material.seek(upto);
-  scene.load(`${level} ${upto}`, material.z, material.error);
+  scene.load(`${level} ${upto}`, material.z, material);
   scene.drawField({ colours, moving, open });
   if (open) scene.draw(cap(cut, plane, material), colours.cut, { flat: true });
   if (!open) scene.draw(scene.outline, colours.line, { lines: true });

@@ -93,10 +93,11 @@ class Cut {
 class Material {
   constructor(cut, level) {
     const of = (name) => cut.arrays[`${name}.${level}`];
-    Object.assign(this, { cut, final: cut.heights(of("z")), told: of("error"), ready: of("ready") });
+    Object.assign(this, { cut, final: cut.heights(of("z")), told: of("error"), walls: of("wall"), ready: of("ready") });
     Object.assign(this, { cell: of("cell"), height: cut.heights(of("height")), frame: of("frame") });
     this.z = new Float32Array(cut.stock);
     this.error = new Int8Array(cut.count).fill(NO_ERROR);
+    this.wall = new Int8Array(cut.count).fill(NO_ERROR);
     this.now = -1;
     this.next = 0;
   }
@@ -107,7 +108,7 @@ class Material {
       this.z.set(this.cut.stock);
       this.next = 0;
     }
-    const { z, cell, height, final, ready, error, told } = this;
+    const { z, cell, height, final, ready, error, told, wall, walls } = this;
     while (this.next < cell.length && this.frame[this.next] <= frame) {
       z[cell[this.next]] = height[this.next];
       this.next += 1;
@@ -115,6 +116,7 @@ class Material {
     for (let c = 0; c < z.length; c++) {
       const done = ready[c] <= frame;
       error[c] = done ? told[c] : NO_ERROR;
+      wall[c] = done ? walls[c] : NO_ERROR;
       if (done) z[c] = final[c];
     }
     this.now = frame;

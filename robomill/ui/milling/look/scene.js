@@ -7,26 +7,30 @@ float lit(vec3 P) { vec3 n = normalize(cross(dFdx(P), dFdy(P))); if (dot(n, u_ey
 const FIELD = [`#version 300 es
 ${VIEW}
 uniform vec4 u_grid; uniform float u_bottom; uniform bool u_voids; uniform bool u_plain;
-in vec3 a_cell; in float a_z; in float a_error;
-out vec3 v_P; out float v_error; out float v_cut; out float v_side; out float v_void;
+in vec3 a_cell; in float a_z; in float a_error; in float a_wall;
+out vec3 v_P; out float v_error; out float v_cut; out float v_wall; out float v_beside; out float v_side; out float v_void;
 void main() {
   bool low = a_cell.z > 0.5;
   vec3 P = vec3(u_grid.xy + a_cell.xy * u_grid.zw, low ? u_bottom : a_z);
   v_P = P; v_error = a_error / 127.0; v_cut = u_plain || a_error < -127.5 ? 0.0 : 1.0; v_side = low ? 1.0 : 0.0;
   if (v_cut == 0.0) v_error = 0.0;
+  v_beside = u_plain || low || a_wall < -127.5 ? 0.0 : 1.0; v_wall = v_beside * a_wall / 127.0;
   v_void = u_voids && !low && a_z <= u_bottom + 1e-4 ? 1.0 : 0.0;
   gl_Position = seen(P);
 }`, `#version 300 es
 ${LIT}
 uniform vec3 u_metal; uniform vec3 u_stop[5]; uniform vec4 u_open; uniform float u_alpha; uniform vec3 u_tint;
-in vec3 v_P; in float v_error; in float v_cut; in float v_side; in float v_void;
+in vec3 v_P; in float v_error; in float v_cut; in float v_wall; in float v_beside; in float v_side; in float v_void;
 out vec4 colour;
 void main() {
   if (v_void > 0.5 || dot(u_open.xyz, v_P) > u_open.w) discard;
-  float at = clamp(v_error / max(v_cut, 1e-3), -1.0, 1.0) * 2.0 + 2.0;
+  // A wall has one colour from its foot to its top, its own: not what lies between those of the floor and the rim.
+  bool wall = v_beside > 0.99 && abs(normalize(cross(dFdx(v_P), dFdy(v_P))).z) < 0.5;
+  float error = wall ? v_wall : v_error / max(v_cut, 1e-3), cut = wall ? 1.0 : v_cut;
+  float at = clamp(error, -1.0, 1.0) * 2.0 + 2.0;
   int k = int(min(floor(at), 3.0));
   vec3 told = mix(u_stop[k], u_stop[k + 1], at - float(k));
-  vec3 base = mix(u_metal, told, v_side > 0.001 ? 0.0 : smoothstep(0.0, 0.6, v_cut));
+  vec3 base = mix(u_metal, told, v_side > 0.001 ? 0.0 : smoothstep(0.0, 0.6, cut));
   if (u_alpha < 1.0) base = u_tint;
   colour = vec4(base * lit(v_P), 1.0) * u_alpha;
 }`];
@@ -50,7 +54,7 @@ class Scene {
     const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true });
     if (!gl) throw new Error("no WebGL");
     Object.assign(this, { gl, canvas, shapes: new Map() });
-    this.field = program(gl, FIELD, ["a_cell", "a_z", "a_error"]);
+    this.field = program(gl, FIELD, ["a_cell", "a_z", "a_error", "a_wall"]);
     this.solid = program(gl, SOLID, ["a_point"]);
     this.loose = gl.createBuffer();
     const tube = [];
@@ -91,9 +95,11 @@ class Scene {
     this.cells = this.filled(cells);
     this.z = gl.createBuffer();
     this.error = gl.createBuffer();
-    this.made = [this.cells, this.z, this.error, ...this.nets.map((net) => net.buffer)];
+    this.wall = gl.createBuffer();
+    this.made = [this.cells, this.z, this.error, this.wall, ...this.nets.map((net) => net.buffer)];
     this.heights = new Float32Array(cut.count + rim.length);
     this.colours = new Int8Array(cut.count + rim.length).fill(NO_ERROR);
+    this.walls = new Int8Array(cut.count + rim.length).fill(NO_ERROR);
     this.loaded = "";
     this.outline = outline(cut);
     cut.about.tools.forEach((parts, t) => parts.forEach((part, n) => this.shapes.set(`${t}.${n}`, this.mesh(turned(part)))));
@@ -125,12 +131,15 @@ class Scene {
   }
 
   // Heights (and colours) of the field to the card, where they are not there already.
-  load(name, z, error) {
+  load(name, z, told) {
     if (this.loaded === name) return;
     const { gl, cut } = this;
     this.heights.set(z);
-    if (error) this.colours.set(error);
-    for (const [buffer, data] of [[this.z, this.heights], [this.error, this.colours]]) {
+    if (told) {
+      this.colours.set(told.error);
+      this.walls.set(told.wall);
+    }
+    for (const [buffer, data] of [[this.z, this.heights], [this.error, this.colours], [this.wall, this.walls]]) {
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
     }
@@ -194,9 +203,10 @@ class Scene {
     bind("a_cell", this.cells, 3, gl.UNSIGNED_SHORT);
     bind("a_z", this.z, 1, gl.FLOAT);
     bind("a_error", this.error, 1, gl.BYTE);
+    bind("a_wall", this.wall, 1, gl.BYTE);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, net.buffer);
     this.blended(alpha < 1, () => gl.drawElements(gl.TRIANGLES, net.count, gl.UNSIGNED_INT, 0));
-    for (const name of ["a_z", "a_error"]) gl.disableVertexAttribArray(made.at[name]);
+    for (const name of ["a_z", "a_error", "a_wall"]) gl.disableVertexAttribArray(made.at[name]);
   }
 
   blended(on, draw) {

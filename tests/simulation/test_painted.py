@@ -1,0 +1,98 @@
+"""What a picture paints on walls: their own error normal to them, however deep they are and whatever a plunge does."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+import shapely
+
+import robomill as rm
+from robomill.arrays import FloatArray
+from robomill.cutting.forces.along_path import PathForce
+from robomill.io.samples import samples_dir
+from robomill.simulation.enlarged import Enlarged, enlarged, so_far
+from robomill.simulation.result import SimulationResult
+from robomill.surface.stock import Stock
+from robomill.toolpath.source import GCodeSource
+
+R = 4e-3
+INWARDS, UP = 0.12e-3, 0.8e-3
+RINGS = [
+    line
+    for x, y in ((8, 2), (14, 8))
+    for line in (f"G1 X{x}", f"G1 Y{y}", f"G1 X-{x}", f"G1 Y-{y}", f"G1 X{x}", "G1 Y0")
+]
+LAYERS = [line for z in (-2, -4, -6) for line in ("G0 Z2", "G0 X0 Y0", f"G1 Z{z} F300", *RINGS)]
+
+
+@pytest.fixture(scope="module")
+def pocket() -> SimulationResult:
+    """A pocket in three layers, its tip pushed to the left of a counter-clockwise feed, inwards, and up in plunges."""
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    text = "\n".join(["G21 G90 S12000 M3", *LAYERS, "M2", ""])
+    stock = Stock([-30e-3, -20e-3, -10e-3], [30e-3, 20e-3, 0.0])
+    made = rm.simulate(
+        setup.replace(source=GCodeSource(text), stock=stock, cell=2e-4, force=PathForce(feed_normal=10.0))
+    )
+    down, cutting = made.conditions.mostly_axial, made.path.cutting
+    pushed = np.zeros((len(made.path), 3))
+    pushed[cutting & ~down, 1] = INWARDS
+    pushed[cutting & down, 2] = UP
+    return dataclasses.replace(made, delta=np.einsum("mij,mi->mj", made.R_MF.transpose(0, 2, 1), pushed))
+
+
+def covered(p: FloatArray, on: FloatArray) -> shapely.Geometry:
+    """What a flat mill covers."""
+    ways = [shapely.LineString(p[i - 1 : i + 1, :2]) for i in np.flatnonzero(on)]
+    return shapely.union_all([way.buffer(R, quad_segs=200) for way in ways])
+
+
+def far_from_corners(shown: Enlarged) -> FloatArray:
+    """Cells beside the straight parts of three walls; at the fourth the tool comes in and pushes along the wall."""
+    x, y = np.meshgrid(shown.drawn.x, shown.drawn.y, indexing="ij")
+    return np.asarray((np.abs(x) < 8e-3) | (np.abs(y) < 3e-3) & (x < 0.0))
+
+
+@pytest.mark.parametrize("times", [1.0, 5.0, 20.0])
+def test_the_walls_of_a_deep_pocket_are_painted_with_what_they_are_off(pocket: SimulationResult, times: float) -> None:
+    """The ring between the outlines told and drawn is uncut by 6 mm, more than the plunge's 0.8 mm at any scale."""
+    shown = enlarged(pocket, times)
+    told, moved = (
+        covered(p, pocket.removes) for p in (pocket.path.p, pocket.path.p + times * (pocket.p_machined - pocket.path.p))
+    )
+    x, y = np.meshgrid(shown.drawn.x, shown.drawn.y, indexing="ij")
+    cell = 0.75 * shown.drawn.dx
+    ring = shapely.contains_xy(told.buffer(-cell), x, y) & ~shapely.contains_xy(moved.buffer(cell), x, y)
+    if times > 1.0:
+        assert (ring & far_from_corners(shown)).sum() > 100
+        assert shown.drawn.z[ring] == pytest.approx(0.0)
+    assert shown.error[ring & far_from_corners(shown)] == pytest.approx(INWARDS, abs=2e-6)
+    assert np.nanmax(np.abs(shown.error)) < 1.05 * INWARDS, "nowhere is a wall told by its height"
+
+
+@pytest.mark.parametrize("times", [1.0, 10.0])
+def test_a_wall_has_its_own_error_from_its_foot_to_its_top(pocket: SimulationResult, times: float) -> None:
+    """Cells on either side of the outline drawn know it; where nothing is steep there is none."""
+    shown = enlarged(pocket, times)
+    moved = covered(pocket.path.p + times * (pocket.p_machined - pocket.path.p), pocket.removes)
+    x, y = np.meshgrid(shown.drawn.x, shown.drawn.y, indexing="ij")
+    off = shapely.distance(shapely.boundary(moved), shapely.points(x, y))
+    beside = (off < 0.9 * shown.drawn.dx) & far_from_corners(shown)
+    heights = shown.drawn.z[beside]
+    assert heights.min() < -5e-3
+    assert heights.max() == 0.0
+    assert shown.wall[beside] == pytest.approx(INWARDS, abs=2e-6)
+    assert np.isnan(shown.wall[off > 4.0 * shown.drawn.dx]).all()
+    half = so_far(pocket, shown, len(pocket.path) // 2)
+    assert np.isnan(half.wall[half.drawn.z != shown.drawn.z]).all()
+
+
+def test_a_cut_without_walls_paints_none(pocket: SimulationResult) -> None:
+    """A face cut all over the block."""
+    lines = [line for y in range(-24, 25, 4) for line in (f"G0 X-40 Y{y}", "G0 Z-1", "G1 X40 F900", "G0 Z5")]
+    text = "\n".join(["G21 G90 S12000 M3", "G0 Z5", *lines, "M2", ""])
+    shown = enlarged(rm.simulate(pocket.setup.replace(source=GCodeSource(text))), 10.0)
+    assert np.isfinite(shown.error).all()
+    assert np.isnan(shown.wall).all()
