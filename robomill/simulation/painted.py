@@ -69,7 +69,8 @@ class _Walls(NamedTuple):
 def _walls(result: SimulationResult) -> _Walls:
     """Walls along cuts and across their ends."""
     read = (result.gauge.walls, result.gauge.ends)
-    return _Walls(*(np.concatenate([getattr(r, name) for r in read]) for name in ("place", "out", "material_left")))
+    place, out = (np.concatenate([getattr(each, name) for each in read]) for name in ("place", "out"))
+    return _Walls(place, out, np.concatenate([each.material_left for each in read]))
 
 
 class _Nearest:

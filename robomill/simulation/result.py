@@ -22,6 +22,7 @@ from robomill.provenance import Finding
 from robomill.simulation.columns import path_columns
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
+from robomill.simulation.judging.finished import Finished, finished
 from robomill.simulation.judging.gauge import Gauge, gauge
 from robomill.simulation.judging.strays import Stray, stray
 from robomill.simulation.judging.verdict import decided, judge, thin_wall_notes
@@ -268,9 +269,9 @@ class SimulationResult(Tabled):
     @property
     def area_out(self) -> tuple[float, float]:
         """(out of tolerance, all) m^2 of the walls and floors that the verdict judges, each against its own tolerance:
-        their length by their height, or by the cutter's width."""
-        walls = self.gauge.walls.area_out(self.verdict.wall.tolerance)
-        floors = self.gauge.floors.area_out(self.verdict.floor.tolerance)
+        those that are finished in the end, each place once, however many passes have come by."""
+        walls = self.finished.walls.out(self.verdict.wall.tolerance)
+        floors = self.finished.floors.out(self.verdict.floor.tolerance)
         return walls[0] + floors[0], walls[1] + floors[1]
 
     @property
@@ -326,6 +327,11 @@ class SimulationResult(Tabled):
     def gauge(self) -> Gauge:
         """What a gauge would read on the walls, floors and ends that the run leaves."""
         return gauge(self)
+
+    @cached_property
+    def finished(self) -> Finished:
+        """The errors that the gauge read, with the area of finished surface that each stands for."""
+        return finished(self, self.gauge)
 
     @cached_property
     def stray(self) -> Stray | None:

@@ -9,7 +9,6 @@ material the wall across its end is moved by the deviation along the feed; that 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field, fields
 
 import numpy as np
@@ -35,15 +34,16 @@ LEVEL = 1.4e-3  # how far a path may rise on its way that counts as level
 CROWN = 0.5  # how steep across the feed a floor may be that the heel of a sinking or rising end has rounded
 SLENDER = 0.125  # of its height: a wall as thin gives way to a cutter as the arm does
 ALIKE = 2e-6  # m: readings, and deviations, that differ by less are one
-LEAST = 1e-4  # share that a single place stands for
+LEAST = 1e-4  # share of the length that a single place stands for
 
 
 @dataclass(frozen=True, eq=False)
 class Readings(ReadOnly):
     """Places on the part: samples (q,) of the path that made them, signed errors (q,) m, lengths (q,) m along the path
-    and heights (q,) m that they stand for. Walls: left of the feed +; floors: up +; ends: along the feed +. ``own``
-    (q,) m is the deviation of the sample itself: where several passes come by, one of them has made the surface.
-    ``way`` (q, 3) is how far the error goes with the tip there, by feed, feed-normal and axial deviation.
+    and heights (q,) m of the walls from the tip up (of floors the cutter's width). Walls: left of the feed +; floors:
+    up +; ends: along the feed +. ``own`` (q,) m is the deviation of the sample itself: where several passes come by,
+    one of them has made the surface. ``way`` (q, 3) is how far the error goes with the tip there, by feed, feed-normal
+    and axial deviation.
     ``place`` (q, 3) m in {W} is where on the commanded surface the gauge was put, ``out`` (q, 3) the unit vector from
     the tool into the part there, and ``side`` (q,) is -1 where a positive error goes that way, else 1.
     """
@@ -75,28 +75,10 @@ class Readings(ReadOnly):
     def share_out(self, tolerance: float) -> float:
         """Share of the length that is out of ``tolerance`` (m): 0 where nothing is, and never 0 where something is,
         however short."""
-        return self._share(tolerance, self.length)
-
-    def area_out(self, tolerance: float) -> tuple[float, float]:
-        """(out of ``tolerance`` (m), all) m^2, by length and height; the first is never 0 where something is out."""
-        area = self.length * self.height
-        return self._share(tolerance, area) * float(area.sum()), float(area.sum())
-
-    def histogram(self, edges: FloatArray) -> FloatArray:
-        """(bins,) m^2, by length and height, between ``edges`` (bins + 1,) m; the outer bins hold what is beyond."""
-        inside = np.clip(self.error, edges[0], edges[-1])
-        return np.histogram(inside, bins=edges, weights=self.length * self.height)[0]
-
-    @property
-    def squares(self) -> float:
-        """m^4: the squares of the errors over the area that they stand for."""
-        return float(np.sum(self.error**2 * self.length * self.height))
-
-    def _share(self, tolerance: float, weight: FloatArray) -> float:
-        out, total = np.abs(self.error) > tolerance, float(weight.sum())
+        out, total = np.abs(self.error) > tolerance, float(self.length.sum())
         if not out.any():
             return 0.0
-        return max(float(weight[out].sum()) / total if total > 0.0 else 1.0, LEAST)
+        return max(float(self.length[out].sum()) / total if total > 0.0 else 1.0, LEAST)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,19 +91,6 @@ class Gauge(ReadOnly):
     ends: Readings
     gone: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     thin: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-
-    @property
-    def rms(self) -> float:
-        """m: root mean square of the errors of walls and floors, each by its own area; NaN where there are none."""
-        area = sum(float(np.sum(each.length * each.height)) for each in (self.walls, self.floors))
-        return math.sqrt((self.walls.squares + self.floors.squares) / area) if area > 0.0 else math.nan
-
-    def edges(self, tolerance: float, bins: int) -> FloatArray:
-        """(bins + 1,) m: limits of the bins of a histogram of walls and floors, alike on both sides of zero: beyond
-        ``tolerance`` (m), as far as the largest error, but not further than three times the tolerance."""
-        largest = float(np.abs(np.concatenate([self.walls.error, self.floors.error])).max(initial=0.0))
-        limit = min(max(1.15 * tolerance, 1.05 * largest), 3.0 * tolerance)
-        return np.linspace(-limit, limit, bins + 1)
 
 
 def gauge(result: Run, most: int | None = None) -> Gauge:

@@ -8,6 +8,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.cutting.conditions import STEEP
 from robomill.cutting.tool import Cutter
 from robomill.simulation.judging.seen import Run
+from robomill.simulation.setup import SimulationSetup
 from robomill.surface.outline import Outline
 from robomill.surface.raster import stock_heights
 from robomill.surface.stock import stock_grid
@@ -57,15 +58,8 @@ class Places:
 
     def depth(self, q: IntArray, points: FloatArray) -> FloatArray:
         """How high (m) the stock stood over points (m, 3) m along the axes of places q; 0 beside it."""
-        stock = self.result.setup.stock_block
-        inside = ((points[:, :2] >= stock.lower[:2]) & (points[:, :2] <= stock.upper[:2])).all(axis=1)
-        top = np.full(len(points), float(stock.upper[2]))
-        if stock.triangles is not None:
-            cells = stock_grid(stock, self.result.setup.cell)
-            at = (points[:, :2] - [cells.x0, cells.y0]) / [cells.dx, cells.dy]
-            x, y = np.clip(np.rint(at).astype(int), 0, [cells.nx - 1, cells.ny - 1]).T
-            top = stock_heights(stock, cells.x, cells.y)[x, y]
-        return np.where(inside, np.maximum(top - points[:, 2], 0.0) / self.axial[q, 2], 0.0)
+        top = stock_top(self.result.setup, points[:, :2])
+        return np.asarray(np.maximum(top - points[:, 2], 0.0) / self.axial[q, 2])
 
     def stands(self, q: IntArray, points: FloatArray, height: FloatArray) -> BoolArray:
         """(m,) bool: whether the stock stood higher than ``height`` (m,) m above the tips of places q there."""
@@ -109,6 +103,20 @@ class Places:
         """(q,) how far the path rises or sinks on its way across the tool; a plunge counts as two for one."""
         conditions = self.result.conditions
         return np.asarray((np.abs(conditions.along) / np.maximum(conditions.across, STEEP))[self.i])
+
+
+def stock_top(setup: SimulationSetup, xy: FloatArray) -> FloatArray:
+    """(m,) m: how high the stock stood over points (m, 2) m of the plan; -inf beside it."""
+    stock = setup.stock_block
+    inside = ((xy >= stock.lower[:2]) & (xy <= stock.upper[:2])).all(axis=1)
+    top = np.full(len(xy), float(stock.upper[2]))
+    if stock.triangles is not None:
+        cells = stock_grid(stock, setup.cell)
+        x, y = np.clip(
+            np.rint((xy - [cells.x0, cells.y0]) / [cells.dx, cells.dy]).astype(int), 0, [cells.nx - 1, cells.ny - 1]
+        ).T
+        top = stock_heights(stock, cells.x, cells.y)[x, y]
+    return np.where(inside, top, -np.inf)
 
 
 def places(result: Run, most: int | None = None) -> Places:

@@ -8,7 +8,7 @@ import streamlit as st
 from robomill.arrays import IntArray
 from robomill.errors import RobomillError
 from robomill.io.measured.profiles import MeasuredProfile, read_profile
-from robomill.simulation.judging.gauge import Gauge
+from robomill.simulation.judging.finished import Finished
 from robomill.simulation.judging.verdict_words import way
 from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
@@ -42,6 +42,12 @@ WHAT = {
 def error_of(result: SimulationResult) -> Deviation:
     """The machined surface against the ideal one."""
     return result.error
+
+
+@shared(by_result, "Walls and floors that are left")
+def finished_of(result: SimulationResult) -> Finished:
+    """Errors of walls and floors by the area that is left of them."""
+    return result.finished
 
 
 @shared(by_result, "Measuring the groove along its length")
@@ -215,12 +221,15 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
         return
     if error is None:
         return
-    gauge, unit = result.gauge, session.project().view.length
-    if not len(gauge.walls.error) + len(gauge.floors.error):
+    unit = session.project().view.length
+    if not len(result.gauge.walls.error) + len(result.gauge.floors.error):
         pieces.note("No wall and no floor of this cut is judged, so there is no error to spread.")
         return
-    edges = gauge.edges(max(walls, floors), BINS)
-    area = {"walls": gauge.walls.histogram(edges), "floors": gauge.floors.histogram(edges)}
+    left = pieces.underway(finished_of, result)
+    if left is None:
+        return
+    edges = left.edges(max(walls, floors), BINS)
+    area = {"walls": left.walls.histogram(edges), "floors": left.floors.histogram(edges)}
     total = max(float(sum(each.sum() for each in area.values())), 1e-300)
     share = {name: 100.0 * each / total for name, each in area.items()}
     drawn, told = pieces.split([1.4, 1], "surface")
@@ -234,14 +243,14 @@ def spread_panel(result: SimulationResult, dark: bool) -> None:
                 "to_mm": from_si(edges[1:], "mm"),
                 **{f"{name}_mm2": from_si(each, "mm2") for name, each in area.items()},
             },
-            caption="Walls and floors as a gauge reads them, each by its own area: what the verdict rests on. "
-            "Walls: + to the left of the feed. Floors: + material left.",
+            caption="Walls and floors as a gauge reads them, by the area that is left in the end: what the verdict "
+            "rests on. Walls: + to the left of the feed. Floors: + material left.",
             alt="Histogram of the errors of walls and floors by their area; "
             + "; ".join(remark for _, _, remark in _out_of_tolerance(result))
             + ".",
         )
     with told:
-        pieces.facts([*_out_of_tolerance(result), *_volumes(error), _rms(gauge)])
+        pieces.facts([*_out_of_tolerance(result), *_volumes(error), _rms(left)])
     for finding in result.surface_notes:
         pieces.said("warning", finding.sentence, "layers")
 
@@ -272,7 +281,7 @@ def _volumes(error: Deviation) -> list[tuple[str, str, str]]:
     ]
 
 
-def _rms(gauge: Gauge) -> tuple[str, str, str]:
+def _rms(left: Finished) -> tuple[str, str, str]:
     """Of the walls and floors drawn above."""
-    told = format_si(gauge.rms, session.project().view.length, missing="–")
-    return "RMS error", told, "of walls and floors, each by its own area"
+    told = format_si(left.rms, session.project().view.length, missing="–")
+    return "RMS error", told, "of walls and floors, each by the area that is left of it"

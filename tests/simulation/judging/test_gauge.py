@@ -14,7 +14,7 @@ from robomill.arrays import FloatArray
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.tool import Cutter
 from robomill.io.samples import samples_dir
-from robomill.simulation.judging.gauge import Gauge, Readings, gauge
+from robomill.simulation.judging.gauge import Readings, gauge
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
 
@@ -349,18 +349,14 @@ def readings(error: FloatArray, length: FloatArray, height: FloatArray) -> Readi
     return Readings(np.arange(m), error, length, height, error, rows, rows, rows, np.ones(m))
 
 
-def test_an_area_is_lengths_times_heights_and_a_share_is_of_the_length():
+def test_a_share_is_of_the_length():
     error = np.array([0.1, -0.3, 0.2, -0.2])
     found = readings(error, np.array([1.0, 2, 4, 8]), np.array([0.5, 3, 0.25, 0.1]))
-    assert found.area_out(0.3) == pytest.approx((0.0, 0.5 + 6.0 + 1.0 + 0.8))
-    assert found.area_out(0.15)[0] == pytest.approx(6.0 + 1.0 + 0.8)
-    assert found.area_out(0.25)[0] == pytest.approx(6.0)
     assert found.share_out(0.15) == pytest.approx(14 / 15)
     assert found.share_out(0.3) == 0.0
     # A single place that stands for no length of its own is still out: a ten-thousandth, and all where nothing else is.
     single = readings(np.array([0.1, 0.4]), np.array([5.0, 0.0]), np.ones(2))
     assert single.share_out(0.3) == pytest.approx(1e-4)
-    assert single.area_out(0.3) == pytest.approx((5e-4, 5.0))
     assert readings(np.array([0.4]), np.zeros(1), np.ones(1)).share_out(0.3) == 1.0
     assert found.worst == 1
 
@@ -508,53 +504,16 @@ def test_the_bottom_of_a_plunge_beside_the_block_is_a_floor(place):
 
 @pytest.mark.parametrize("name", PARTS)
 def test_floors_of_a_sample_stand_for_its_length_together_and_so_does_each_wall(name):
-    """However many places and heights are looked at; the floor of a cut is as wide as the tool."""
+    """However many places and heights are looked at."""
     bent = pushed(run(*PARTS[name]), left=0.1e-3, up=-0.05e-3)
     found, length = bent.gauge, bent.path.step_length
     places = np.bincount(found.floors.sample, minlength=len(length))
     assert places.max() > 2
     over = np.bincount(found.floors.sample, found.floors.length, minlength=len(length))
     np.testing.assert_allclose(over[places > 0], length[places > 0], atol=1e-12)
-    assert found.floors.area_out(1.0)[1] == pytest.approx(2 * R * length[places > 0].sum())
     if name in ("slot", "spring pass", "rib"):  # both walls stand
         beside = np.bincount(found.walls.sample, found.walls.length, minlength=len(length))
         np.testing.assert_allclose(beside[places > 0], 2 * length[places > 0], atol=1e-12)
-        assert found.walls.area_out(1.0)[1] == pytest.approx(
-            2 * 2e-3 * length[places > 0].sum()
-        )  # the slots are 2 mm deep
-
-
-def test_the_histogram_of_a_straight_slot_is_its_two_walls_and_its_floor():
-    """Pushed left by 0.1 mm and down by 0.05 mm: the 2 x 60 mm of wall, 2 mm high, and 60 x 8 mm of floor."""
-    found = gauge(pushed(run("G0 X-40 Y0", "G0 Z-2", "G1 X40 F600"), left=1e-4, up=-5e-5))
-    edges = np.array([-2e-4, -7.5e-5, -2.5e-5, 7.5e-5, 1.25e-4])
-    walls, floors = found.walls.histogram(edges), found.floors.histogram(edges)
-    assert walls.sum() == pytest.approx(walls[-1])
-    assert floors.sum() == pytest.approx(floors[1])
-    assert walls[-1] == pytest.approx(2 * 60e-3 * 2e-3, rel=0.15)
-    assert floors[1] == pytest.approx(60e-3 * 8e-3, rel=0.15)
-    assert found.walls.histogram(edges / 4)[-1] == walls[-1], "what is beyond is in the outer bin"
-    for each, area in ((found.walls, walls.sum()), (found.floors, floors.sum())):
-        assert each.squares == pytest.approx(each.error[0] ** 2 * area), "the same error all along"
-
-
-def small(*cells: int) -> Readings:
-    """Readings of (error in um, length, height) each."""
-    error, length, height = np.array(cells, dtype=float).reshape(-1, 3).T
-    return readings(error * 1e-6, length, height)
-
-
-def test_walls_and_floors_are_spread_by_area() -> None:
-    """Each reading as many times as it has square metres: a plain root of the mean square of all of them."""
-    walls, floors = small(40, 3, 2, -25, 1, 4), small(-90, 2, 5)
-    found = Gauge(walls, floors, small(1000, 7, 7))
-    every = 1e-6 * np.repeat([40.0, -25.0, -90.0], [6, 4, 10])
-    assert found.rms == pytest.approx(np.sqrt(np.mean(every**2)))
-    assert np.isnan(Gauge(small(), small(), small()).rms)
-    for tolerance, limit in ((20e-6, 60e-6), (50e-6, 94.5e-6), (85e-6, 97.75e-6)):
-        edges = found.edges(tolerance, 10)
-        np.testing.assert_allclose(edges, np.linspace(-limit, limit, 11), atol=1e-18)
-        assert walls.histogram(edges).sum() + floors.histogram(edges).sum() == pytest.approx(20.0)
 
 
 @pytest.mark.parametrize("kind", ["flat", "chamfer", "ball"])
