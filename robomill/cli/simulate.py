@@ -141,8 +141,8 @@ def _section(result: Any) -> bytes:
     if found is None:
         raise SurfaceError(f"No section can be drawn: {result.sections[0].note}.")
     worst = result.worst >= 0 and found.station == float(result.path.s[result.worst])
-    words = f"Section after {format_si(found.station, 'mm', 1)} of cut{', at the largest deviation' * worst}"
-    words += "; looking along the feed"
+    words = f"Through the finished part, at {format_si(found.station, 'mm', 1)} of cut"
+    words += f"{', at the largest deviation' * worst}; looking along the feed"
     return png(section_figure(section_drawing(found, "mm"), dark=False), [result.setup.name, words])
 
 

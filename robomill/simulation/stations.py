@@ -12,6 +12,8 @@ from robomill.surface.sections.metrology import GrooveProfile
 from robomill.surface.swept import station_at
 from robomill.toolpath.path import Toolpath
 
+MET = 1e-9  # m: a sample that a station comes so close to is reached
+
 
 def nearest_feed(result: SimulationResult, station: float) -> int:
     """Index of the sample at feed nearest to ``station``."""
@@ -22,6 +24,16 @@ def nearest_judged(result: SimulationResult, station: float) -> int:
     """Index of the sample nearest to ``station`` among those that count for the verdict; -1 where none does."""
     judged = np.flatnonzero(result.judged)
     return _nearest(result, judged, station) if len(judged) else -1
+
+
+def move_at(result: SimulationResult, station: float) -> int:
+    """Index of the sample whose move is being made at ``station``, whether it counts for the verdict or not."""
+    path = result.path
+    shown = np.flatnonzero(path.cutting | np.append(path.cutting[1:], False))
+    passed = max(int(np.searchsorted(path.s[shown], station + MET, side="right")) - 1, 0)
+    here, after = int(shown[passed]), int(shown[min(passed + 1, len(shown) - 1)])
+    on_its_way = path.cutting[after] and path.s[here] + MET < station
+    return after if on_its_way else here
 
 
 def section_at(result: SimulationResult, i: int) -> GrooveSection | None:

@@ -154,3 +154,16 @@ def test_an_angle_beyond_its_bounds_is_refused_in_the_unit_of_its_box(app: AppTe
     box = next(b for b in app.text_input if b.label == "Helix angle, °")
     box.set_value("1220,5").run()
     assert errors(app) == ["Cutter, Helix angle: found 1220.5°; expected 0° to less than 85°."]
+
+
+def test_a_station_in_a_plunge_is_of_the_line_that_the_picture_tells(app: AppTest) -> None:
+    """The force stated along the path says nothing of the plunge in line 3; the sample that is judged is of line 4."""
+    kept = store(app)
+    text = "G21 G90 S9000 M3\nG0 X-40 Y0 Z3\nG1 Z-2 F300\nG1 X0 F900\nM2\n"
+    kept.project = kept.project.replace(setup=kept.project.setup.replace(source=GCodeSource(text, "plunge.nc")))
+    go(app, "6_Milling")
+    looked(app, station=0.05)
+    assert "Line 3</b> is not judged here; what follows is of the nearest point that is, line 4" in words(app)
+    looked(app, station=0.5)
+    assert "is not judged here" not in words(app)
+    assert "<b>Line 4</b> · the tip stands at" in words(app)

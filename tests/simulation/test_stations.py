@@ -18,6 +18,7 @@ from robomill.simulation.run import simulate
 from robomill.simulation.stations import (
     force_components,
     largest_deviations,
+    move_at,
     nearest_judged,
     offset_band,
     place_at,
@@ -25,6 +26,7 @@ from robomill.simulation.stations import (
 )
 from robomill.surface.sections.metrology import groove_profile
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.source import GCodeSource
 
 
 def test_place_is_on_the_path(result: SimulationResult) -> None:
@@ -148,3 +150,18 @@ def test_one_row_of_an_alloy_has_no_range_and_two_have(
     middle = int(np.argmin(np.abs(result.path.s - 0.5 * result.path.s[-1]) + ~result.path.cutting))
     more = 0.5 * float(result.R_MF[middle, :, 1] @ result.delta[middle])
     assert (low, high) == pytest.approx(tuple(sorted((offset, offset + more))), abs=1e-9)
+
+
+def test_the_move_at_a_station_is_the_one_that_is_being_made_even_where_it_is_not_judged() -> None:
+    """5 mm down, 40 along, a rapid, 4 down and 20 back: a force stated along the path says nothing of a plunge."""
+    setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    text = "G21 G90 S9000 M3\nG0 X-40 Y0 Z3\nG1 Z-2 F300\nG1 X0 F900\nG0 Z2\nG1 Z-2 F300\nG1 X-20 F900\nM2\n"
+    found = simulate(setup.replace(source=GCodeSource(text), stock=None, cell=1e-3))
+    ends = {3: 5e-3, 4: 45e-3, 6: 49e-3, 7: 69e-3}
+    for station in np.linspace(1e-4, 69e-3, 137):
+        line = min(line for line, end in ends.items() if station <= end + 1e-9)
+        here = move_at(found, station)
+        assert found.path.block[here] == line
+        assert found.judged[here] == (line in (4, 7))
+        assert found.path.s[here - 1] - 1e-9 <= station <= found.path.s[here] + 1e-9
+    assert found.path.block[nearest_judged(found, 2e-3)] == 4

@@ -10,7 +10,7 @@ import streamlit as st
 
 from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.stations import nearest_judged
+from robomill.simulation.stations import move_at, nearest_judged
 from robomill.ui import pieces, session
 from robomill.ui.judged import uncertainty
 from robomill.units import format_many, from_si
@@ -40,10 +40,11 @@ def where(result: SimulationResult, i: int, spread: AlloySpread | None) -> None:
         pieces.note(f"Nothing of this cut can be {how}.")
         return
     point = format_many(result.path.p[i], unit, 2, with_unit=False)
-    words = [
-        f"<b>Line {result.path.block[i]}</b>",
-        f"the tip stands at ({point}) {unit} in {{W}}",
-    ]
+    here, line = move_at(result, station_m(result)), f"line {result.path.block[i]}"
+    words = [f"<b>{line[0].upper()}{line[1:]}</b>", f"the tip stands at ({point}) {unit} in {{W}}"]
+    if not result.judged[here]:  # the picture tells of the move that is made there; what follows, of the nearest judged
+        why = "is not judged here" if result.reached[here] else "is not reached here"
+        words[0] = f"<b>Line {result.path.block[here]}</b> {why}; what follows is of the nearest point that is, {line}"
     if between := _range(spread, i, unit):
         words.append(f"tip off by {between}")
     if result.setup.tools:

@@ -135,8 +135,8 @@ def _section(
         f"linked-section{key}",
         name=f"sections{key}",
         table=lambda: result.sections.columns(),
-        caption=f"Section after {format_si(station_m(result), unit, 1)} of cut, looking along the feed, to scale, in "
-        f"{unit_label(unit)}. Dashed: the ideal surface."
+        caption=f"Through the finished part, at {format_si(station_m(result), unit, 1)} of cut, looking along "
+        f"the feed, to scale, in {unit_label(unit)}. Dashed: the ideal surface."
         + (f" {found.note[0].upper()}{found.note[1:]}." if found.kind == "nothing" else ""),
         alt=section_words(found, unit),
     )
