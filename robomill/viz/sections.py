@@ -21,6 +21,8 @@ OVER, UNDER = 74, 66  # px above the part and below its floor that dimensions ne
 CUT = 96  # px, at most, for the depth of the cut
 ROW = 22  # px from one row of words to the next
 NARROW = 0.25  # of the picture's width: words centred closer to its edge would run out of it
+ROOM_OF_WORDS, ROOM_OF_LINE = 0.2, 0.12  # of the width, that the depth needs beside a wall
+PAD = 0.02  # of the width, on either side: a wall at the end of the picture is drawn whole
 HEAD: dict[str, Any] = {"showarrow": True, "text": "", "arrowhead": 3, "arrowsize": 1.1, "arrowwidth": 1.1, "ay": 0}
 
 
@@ -115,7 +117,8 @@ def _ranges(d: SectionDrawing, u: FloatArray, z: FloatArray) -> tuple[list[float
     """What is shown across and upwards; the drawing is to scale, so the wider of the two decides."""
     low = d.floor if d.has("floor") else float(np.min(z))
     cut = max(d.top - low, 0.02 * float(np.ptp(u)))
-    return [float(np.min(u)), float(np.max(u))], [low - cut * UNDER / CUT, d.top + cut * OVER / CUT]
+    pad = PAD * float(np.ptp(u))
+    return [float(np.min(u)) - pad, float(np.max(u)) + pad], [low - cut * UNDER / CUT, d.top + cut * OVER / CUT]
 
 
 def _as_long(ends: list[float], other: list[float]) -> list[float]:
@@ -156,20 +159,24 @@ def _width(fig: Chart, d: SectionDrawing, dark: bool) -> None:
 
 
 def _depth(fig: Chart, d: SectionDrawing, dark: bool) -> None:
-    """A dimension line in the material beside a wall, with its number over the part."""
+    """A dimension line in the material beside a wall, with its number over the part; over the cut, each of them, where
+    the picture ends beside the wall."""
     walls = [(name, getattr(d, f"wall_{name}")) for name in ([d.near] if d.near else ["right", "left"])]
     walls = [(name, w) for name, w in walls if np.isfinite(w)] if all(name for name, _ in walls) else []
     if not d.has("depth", "floor") or not walls:
         return
     p, (name, wall) = palette(dark), walls[0]
-    way = 1 if name == "right" else -1  # px count to the right, where the right wall's material is
+    out = 1 if name == "right" else -1  # px count to the right, where the right wall's material is
+    room = (wall - float(np.min(d.u)) if out > 0 else float(np.max(d.u)) - wall) / float(np.ptp(d.u))
+    way, words = out if room > ROOM_OF_LINE else -out, out if room > ROOM_OF_WORDS else -out
     line = {"color": p.text, "width": 1.1}
     at: dict[str, Any] = {"xsizemode": "pixel", "xanchor": wall, "type": "line", "line": line}
     fig.shape(x0=20 * way, x1=20 * way, y0=d.floor, y1=d.top, **at)
     for y in (d.floor, d.top):
         fig.shape(x0=3 * way, x1=26 * way, y0=y, y1=y, **{**at, "line": {**line, "color": p.muted}})
-    anchor = "left" if way > 0 else "right"
-    _text(fig, wall, d.top, d.told("depth"), dark, yshift=ROW - 8, xshift=4 * way, xanchor=anchor)
+    beyond = _beyond(d, name, words)
+    anchor = "left" if words > 0 else "right"
+    _text(fig, beyond, d.top, d.told("depth"), dark, yshift=ROW - 8, xshift=4 * words, xanchor=anchor)
 
 
 def _floor(fig: Chart, d: SectionDrawing, dark: bool) -> None:
@@ -209,8 +216,15 @@ def _near_wall(fig: Chart, d: SectionDrawing, dark: bool) -> None:
     p, up = palette(dark), 2 * ROW
     wall, ideal = getattr(d, f"wall_{d.near}"), getattr(d, f"wall_{d.near}_ideal")
     for at, colour in ((ideal, p.accent), (wall, p.text)):
-        _upright(fig, at, (d.top, d.top), (4, up - 4), colour)
+        _upright(fig, at, (d.top, d.top), (4, up - ROW // 2), colour)
     _text(fig, wall, d.top, d.told(f"wall_{d.near}_error"), dark, yshift=up, xanchor=_anchor(d, wall))
+
+
+def _beyond(d: SectionDrawing, name: str, way: int) -> float:
+    """Of a wall as it stands and as it was told, the one that is further to the right (``way`` 1) or left (-1): words
+    beyond both are crossed by neither. Left is +u."""
+    both = (getattr(d, f"wall_{name}"), getattr(d, f"wall_{name}_ideal"))
+    return float(min(way * u for u in both if np.isfinite(u)) * way)
 
 
 def _middle(d: SectionDrawing) -> float:

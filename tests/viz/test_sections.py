@@ -79,3 +79,33 @@ def test_words_beside_the_edge_of_the_picture_are_anchored_inside_it():
     fig = section_figure(drawn([-32.0], -2.0), dark=True)
     wall = next(each for each in fig.layout["annotations"] if each["text"].startswith("left wall"))
     assert wall["xanchor"] == "right"
+
+
+def depth_of(drawing):
+    """The words of the depth, and the ends (px beside the wall) of its dimension line."""
+    fig = section_figure(drawing, dark=False)
+    told = next(each for each in fig.layout["annotations"] if each["text"].startswith("depth"))
+    lines = [each for each in fig.layout["shapes"] if each.get("xsizemode") == "pixel" and each["x0"] == each["x1"]]
+    return told, [each["x0"] for each in lines], fig.layout["xaxis"]["range"]
+
+
+def test_the_depth_beside_the_end_of_the_picture_stands_over_the_cut():
+    """Px count to the right: the material is there beside a right wall (here at the end of the picture), the cut
+    left."""
+    near = drawn([-22.0, -16.0, -10.0], -2.0, number=0)
+    assert near.near == "right"
+    told, lines, (left, right) = depth_of(near)
+    room = (near.wall_right - near.u.min()) / np.ptp(near.u)
+    assert room < 0.2
+    assert (told["xanchor"], told["xshift"]) == ("right", -4)
+    assert told["x"] == max(near.wall_right, near.wall_right_ideal)
+    assert lines == [20 if room > 0.12 else -20]
+    assert left > near.u.max()
+    assert right < near.u.min()
+
+
+def test_the_depth_of_a_groove_stands_beside_it_and_no_line_crosses_it():
+    groove = drawn([0.0], -2.0)
+    told, lines, _ = depth_of(groove)
+    assert (told["xanchor"], told["xshift"], lines) == ("left", 4, [20])
+    assert told["x"] == min(groove.wall_right, groove.wall_right_ideal)
