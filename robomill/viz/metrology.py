@@ -39,7 +39,8 @@ def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, da
     """The profile with its tolerance, its band, its best line and what was measured; ``block`` (q,) source lines."""
     p, unit = palette(dark), curves.unit
     plot = Along.begin(curves.station, unit, "profile", dark=dark, height=320)
-    limits = _limits(curves.wall_tolerance, curves.floor_tolerance)
+    only_floor = not np.isfinite(curves.offset).any() and curves.measured is None
+    limits = _limits(curves.floor_tolerance if only_floor else curves.wall_tolerance, curves.floor_tolerance)
     most = max(place for place, _ in limits)
     inside = {"fillcolor": rgba(p.muted, 0.07), "line": {"width": 0}, "layer": "below"}
     plot.fig.shape(type="rect", xref="x domain", x0=0, x1=1, y0=-most, y1=most, **inside)
@@ -68,7 +69,8 @@ def profile_figure(curves: ProfileCurves, block: IntArray, station: float, *, da
     if beyond := beyond_chart(curves):
         say(plot.fig, f"{beyond} beyond", 0, 1, p.muted, xref="paper", yref="paper", xanchor="left", yanchor="top")
     plot.station(station)
-    return plot.done(f"Error across the cut, {unit}", range=[-reach, reach])
+    plot.fig.lay_out(showlegend=True)  # of a single curve, too: one must know which of them is there
+    return plot.done(f"{'Floor error' if only_floor else 'Error across the cut'}, {unit}", range=[-reach, reach])
 
 
 def beyond_chart(curves: ProfileCurves) -> int:

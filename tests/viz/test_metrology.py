@@ -46,6 +46,12 @@ def test_what_is_further_out_than_twice_the_tolerance_is_counted_not_drawn():
 def test_a_curve_without_a_number_is_left_out():
     fig = chart(curves([np.nan] * 5, [-0.1] * 5))
     assert [trace["name"] for trace in fig.traces] == ["floor"]
+    assert fig.layout["showlegend"], "plotly leaves out the key of a single curve"
+    assert fig.layout["yaxis"]["title"]["text"] == "Floor error, mm"
+    limits = {each["text"]: each["y"] for each in fig.layout["annotations"] if "tolerance" in each["text"]}
+    assert limits == {"+ tolerance": 0.2, "− tolerance": -0.2}, "the floor's own"
+    both = chart(curves([0.1] * 5, [-0.1] * 5)).layout
+    assert both["yaxis"]["title"]["text"] == "Error across the cut, mm"
 
 
 def test_the_histogram_counts_in_the_unit_of_the_view():

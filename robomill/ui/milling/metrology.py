@@ -112,15 +112,20 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
         measured=None if measured is None else (from_si(measured.station, unit), from_si(measured.offset, unit)),
         joined=result.path.goes_one_way,
     )
-    missing = ""
-    if found.missing:
-        missing = f" At {found.missing} of {len(found.station)} places no groove has two walls: no middle there."
+    told = "Middle line of the groove and floor of the cut against the ideal ones; grey: the tolerance."
+    if found.missing == len(found.station):
+        told = (
+            "Floor of the cut against the ideal one; grey: the tolerance. Nowhere along it has a groove two walls, so "
+        )
+        told += "there is no middle line."
+    elif found.missing:
+        told += f" At {found.missing} of {len(found.station)} places no groove has two walls: no middle there."
     pieces.figure(
         profile_figure(curves, block, float(from_si(station_m(result), unit)), dark=dark),
         "profile",
         name="groove-profile",
         table=lambda: profile_columns(found, block),
-        caption="Middle line of the groove and floor of the cut against the ideal ones; grey: the tolerance." + missing,
+        caption=told,
         alt=_along_in_words(found, unit),
     )
     if fit is not None:
