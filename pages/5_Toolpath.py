@@ -32,6 +32,8 @@ reach = ui.attempt(path_reach, setup) if path is not None else None
 result = ui.attempt(ui.result, setup) if reach is not None else None
 
 view.headline(source, path, reach, result, unit)
+if result is not None:
+    ui.open_question(result, on="Toolpath")
 other.tiles(view.tiles(source, path, reach, result, unit), view.tiles_of_b)
 # there without a result, too: what comes between tiles and board later would push the board from beneath the mouse
 mathematics(partial(of_the_run, result, result.decided.sample) if result is not None else tuple, "toolpath")

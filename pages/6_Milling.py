@@ -14,5 +14,5 @@ ui.headline(kicker, "No result yet" if result is None else ui.verdict_sentence(r
 if result is None:
     panel.waiting(dark)
     st.stop()
-ui.open_question(result)
+ui.open_question(result, on="Milling")
 panel.workbench(dark)

@@ -15,10 +15,12 @@ title = f"Improve · {setup.name}"
 
 result = ui.attempt(ui.result, setup)
 if result is None or result.worst < 0 or result.setup.digest() != setup.digest():
-    ui.headline(title, "There is no cut to improve yet.")
     if result is None or result.setup.digest() != setup.digest():
+        ui.headline(title, "There is no cut to improve yet.")
         ui.note("The cut has no result: mend what is named above, or bring the path within reach on the Toolpath page.")
     else:
+        unjudged = result.verdict.level == "unjudged"
+        ui.headline(title, remedies.NOTHING_JUDGED if unjudged else "There is no cut to improve yet.")
         ui.note(ui.verdict_sentence(result, unit))
         ui.open_question(result)
     st.stop()

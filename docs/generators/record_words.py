@@ -185,7 +185,7 @@ WORDS: dict[str, dict[str, str]] = {
         "not_judged.of": "Of how many.",
         "not_judged.blocks": "Their lines.",
         "not_judged.rapids": "Rapids through material.",
-        "not_judged.reasons": "Why, with how many points each.",
+        "not_judged.reasons": "Why, with how many points each; `names`: numbers not given, as files call them.",
         "tolerance_mm": "What is allowed of walls.",
         "notes": "What to know of the numbers.",
         "rests_on[].what": "A block of numbers that the result rests on.",

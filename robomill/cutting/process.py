@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.arrays import FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions, beyond_flutes
 from robomill.cutting.course import CASES, TEETH, Course, force_over_pitch
 from robomill.cutting.edge import EdgeTerm, mean_force
@@ -23,7 +23,7 @@ from robomill.errors import CuttingError
 from robomill.lazy import cached_property
 from robomill.progress import checkpoint, slices
 from robomill.provenance import Finding, Provenance
-from robomill.quantities import quantity, switch
+from robomill.quantities import quantities, quantity, switch
 from robomill.units import format_short, format_si
 
 #: Share of a drill's tangential force that pushes along its axis, times the sine of half its point angle.
@@ -167,12 +167,12 @@ class ProcessForce(ForceModel):
             ("chip", c < RUBS, f"a tooth that is fed less than {format_si(RUBS, 'um', 0)} rubs and has no chip"),
             ("feed_per_tooth", c > tooling.each("radius"), "teeth fed farther than their radius have no force model"),
             ("drill_sideways", drill & (conditions.across > DISH), "a drill led sideways has no force model"),
-            self._unknown(conditions, tooling),
         ]
         found = (Unjudged.at(code, engaged & where, why) for code, where, why in reasons)
-        return against_hand(conditions, tooling) + tuple(chain.from_iterable(found))
+        lacking = self._unknown(conditions, tooling)
+        return (*against_hand(conditions, tooling), *chain.from_iterable(found), *lacking)
 
-    def _unknown(self, conditions: CutConditions, tooling: Tooling) -> tuple[str, BoolArray, str]:
+    def _unknown(self, conditions: CutConditions, tooling: Tooling) -> tuple[Unjudged, ...]:
         """Steps whose force has a part that the material does not give: every mill's the radial one; the axial one,
         where the helix pulls, along the axis, on a nose or at the end face."""
         mills = ~tooling.drills
@@ -180,11 +180,13 @@ class ProcessForce(ForceModel):
         needs = {"radial": mills, "axial": mills & (tooling.each("pull") != 0.0) & (self.axial | nose)}
         lacking = [part for part in self.row.unknown if (needs[part] & conditions.engaged).any()]
         where = np.any([needs[part] for part in lacking], axis=0) if lacking else np.zeros_like(mills)
-        names = " and ".join(name for name in self.row.missing if self.material.gives[name] in lacking)
-        shares = ", ".join(f"{part}_share" for part in lacking)
-        why = f"{self.material.title} gives no {' and no '.join(lacking)} force: add {names} to the row, or assume a "
-        why += f"share of the tangential force ({shares})"
-        return "coefficient", where, why
+        names = (name for name in self.row.missing if self.material.gives[name] in lacking)
+        shares = " and ".join(quantities(type(self))[f"{part}_share"].label for part in lacking)
+        why = (
+            f"the {' and the '.join(lacking)} force of {self.material.title} is not known; assume a share of the "
+            f"tangential force ({shares}), or take another material"
+        )
+        return Unjudged.at("coefficient", conditions.engaged & where, why, (*names, *(f"{p}_share" for p in lacking)))
 
     def components(self, conditions: CutConditions) -> FloatArray:
         """Mean force ON the tool (m, 3) N: feed, feed-normal, axial; 0 in air and on rapids.

@@ -13,16 +13,20 @@ from robomill.cutting.tooling import Tooling
 
 @dataclass(frozen=True, eq=False)
 class Unjudged:
-    """Steps ``where`` (m,) that are not judged, for one reason: its ``code``, and ``why`` in words for people."""
+    """Steps ``where`` (m,) that are not judged, for one reason: its ``code``, and ``why`` in words for people.
+
+    ``names`` are the numbers that are not given, as files call them; any one kind of them would do.
+    """
 
     code: str
     where: BoolArray
     why: str
+    names: tuple[str, ...] = ()
 
     @classmethod
-    def at(cls, code: str, where: BoolArray, why: str) -> tuple[Unjudged, ...]:
+    def at(cls, code: str, where: BoolArray, why: str, names: tuple[str, ...] = ()) -> tuple[Unjudged, ...]:
         """The one of ``where``; none where that is nowhere."""
-        return (cls(code, where, why),) if where.any() else ()
+        return (cls(code, where, why, names),) if where.any() else ()
 
 
 def against_hand(conditions: CutConditions, tooling: Tooling) -> tuple[Unjudged, ...]:

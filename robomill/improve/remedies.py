@@ -14,7 +14,7 @@ from robomill.improve.errors import largest
 from robomill.improve.judged import judged
 from robomill.improve.placed import Place, Placement
 from robomill.improve.turning import Turning
-from robomill.simulation.judging.verdict_words import Level
+from robomill.simulation.judging.verdict_words import NO_NUMBER, Level
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import Simulate
 from robomill.simulation.setup import SimulationSetup
@@ -67,10 +67,13 @@ class Both:
 def stiffened(setup: SimulationSetup, run: Simulate) -> Stiffened:
     """The cheapest stiffer joints that keep the tolerance; where it is kept, that halve what is used of it. ``run`` is
     what simulates a set-up. Raises the refusal of ``design``."""
-    share = judged(run(setup)).share
-    if not share <= 1.0:
+    now = run(setup)
+    share = judged(now).share
+    if not share <= 1.0 or now.verdict.level in NO_NUMBER:
         found = design(setup)
         return Stiffened(found, found.after)
+    if share < LEAST:
+        raise SetupError("No error to reduce: the cut is as it was told to be.")
     halved = design(setup, 0.5 * share * setup.tolerance)
     return Stiffened(halved, run(setup.replace(robot=halved.setup.robot)), half=True)
 

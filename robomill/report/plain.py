@@ -136,7 +136,7 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
             else "not added: the part is zeroed with the arm sagged"
         )
         lines.append(f"sag       {vector(record['sag_mm'], 'mm')}   {what}")
-    lines += [f"{name:9} {_reading(record[name])}" for name in ("wall", "floor", "feed")]
+    lines += [f"{name:9} {_reading(record[name], record['verdict'])}" for name in ("wall", "floor", "feed")]
     if tip := record["tip"]:
         lines.append(
             f"tip       {format_value(tip['value_mm'], 'mm')} off its path at line {tip['line']}; {WORDS[tip['fate']]}"
@@ -151,7 +151,11 @@ def simulation_lines(record: dict[str, Any]) -> list[str]:
     lost = record["not_judged"]
     if lost["count"]:
         lines.append(f"not judged {lost['count']} of {lost['of']} points of the cut, line {named(lost['blocks'])}")
-        lines += [f"          {reason['why']} ({reason['count']} points)" for reason in lost["reasons"]]
+        lines += [
+            f"          {reason['why']} ({reason['count']} points)"
+            + (f"; in a file: {', '.join(reason['names'])}" if reason["names"] else "")
+            for reason in lost["reasons"]
+        ]
     lines.append("sections  station  kind     what is measured there (mm)")
     lines += [_section_line(section) for section in record["groove"]]
     return lines + finding_lines([f for f in record["findings"] if f["level"] != "ignored"])
@@ -176,11 +180,16 @@ def _section_line(section: dict[str, Any]) -> str:
     return start + (", ".join(found) or str(section["note"]) or "nothing can be measured")
 
 
-def _reading(found: dict[str, Any]) -> str:
+def _reading(found: dict[str, Any], level: str) -> str:
     """One quantity of the verdict: its largest value, where, and how much of its tolerance it uses."""
     if found["line"] is None:
-        return "none is left to measure"
+        return no_reading(level)
     return f"{reading_value(found)} at line {found['line']}, {reading_share(found)}"
+
+
+def no_reading(level: str) -> str:
+    """Why a quantity of a verdict of that ``level`` has no value."""
+    return "not judged" if level == "unjudged" else "none is left to measure"
 
 
 def reading_value(found: dict[str, Any]) -> str:

@@ -5,7 +5,7 @@ from typing import Any
 
 from robomill.cutting.force import COMPONENTS
 from robomill.provenance import Finding, named
-from robomill.report.plain import reading_share, reading_value
+from robomill.report.plain import no_reading, reading_share, reading_value
 from robomill.report.remedies_told import Told
 from robomill.report.tags import Html, joined, table, tag
 from robomill.simulation.judging.strays import WORDS
@@ -74,7 +74,7 @@ def tiles(record: dict[str, Any]) -> Html:
         if kind in (END, FEED) and not found["judged"]:
             continue
         if found["line"] is None:
-            made.append(_tile(kind.label, "–", "none is left to measure"))
+            made.append(_tile(kind.label, "–", no_reading(record["verdict"])))
         else:
             made.append(_tile(kind.label, reading_value(found), f"{reading_share(found)}, line\u00a0{found['line']}"))
     if record["worst_block"]:

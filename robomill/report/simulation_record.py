@@ -162,7 +162,12 @@ def judged_record(result: SimulationResult) -> dict[str, Any]:
             "blocks": sorted(set(path.block[lost].tolist())),
             "rapids": list(result.rapids),
             "reasons": [
-                {"code": each.code, "why": each.why, "count": int((each.where & lost).sum())}
+                {
+                    "code": each.code,
+                    "why": each.why,
+                    "names": list(each.names),
+                    "count": int((each.where & lost).sum()),
+                }
                 for each in result.unjudged
             ],
         },

@@ -23,6 +23,7 @@ from robomill.simulation.columns import path_columns
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.judging.finished import Finished, finished
+from robomill.simulation.judging.enough import counted
 from robomill.simulation.judging.gauge import Gauge, gauge
 from robomill.simulation.judging.strays import Stray, stray
 from robomill.simulation.judging.verdict import decided, judge, thin_wall_notes
@@ -148,9 +149,10 @@ class SimulationResult(Tabled):
     @cached_property
     def judged(self) -> BoolArray:
         """(m,) samples that count for the verdict: at feed, with an answer, the cutter within the stock's block; of a
-        corrected program, which goes beside its path in the air, too, those that cut."""
+        corrected program, which goes beside its path in the air, too, those that cut. Where some of the cut has no
+        number, those that ``counted`` lets stand."""
         cuts = self.path.cutting & self.answered & self.over_stock
-        return np.asarray(cuts if self.ahead is None else cuts & self.conditions.engaged)
+        return counted(self, np.asarray(cuts if self.ahead is None else cuts & self.conditions.engaged))
 
     @cached_property
     def over_stock(self) -> BoolArray:

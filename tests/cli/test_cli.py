@@ -181,8 +181,8 @@ def test_a_force_of_which_a_part_is_not_known_is_never_green(capsys, tmp_path: P
         assert found["not_judged"]["count"] == found["not_judged"]["of"]
         (reason,) = found["not_judged"]["reasons"]
         assert reason["code"] == "coefficient"
-        assert ("radial_ratio" in reason["why"]) == (not given)
-        assert "axial_share" in reason["why"]
+        assert ("radial_ratio" in reason["names"]) == (not given)
+        assert "axial_share" in reason["names"]
     code, assumed = simulated("shares", 0.4, 0.1)
     held_code, held = simulated("row", 0.4, 0.1)
     assert (code, assumed["verdict"]) == (held_code, held["verdict"]) == (0, "ok")

@@ -50,7 +50,8 @@ def test_judged_is_what_does_not_change_with_the_unknown(cutter, way, axial):
         if changes or way == "level":
             assert bool(reasons) == changes
         for each in reasons:
-            assert ("radial_ratio" in each.why) == (known[0] is None)
+            assert ("radial_ratio" in each.names) == (known[0] is None)
+            assert ("the radial" in each.why) == (known[0] is None)
 
 
 def test_a_share_stands_for_what_the_source_does_not_give():
@@ -64,13 +65,17 @@ def test_a_share_stands_for_what_the_source_does_not_give():
     np.testing.assert_array_equal(own.components(SLOT), KienzleForce(MILL, given).components(SLOT))
     assert (own.findings(SLOT), own.provenance.kind) == ((), "computed")
     half = KienzleForce(MILL, TURNED, radial_share=0.4).unjudged(SLOT)
-    assert [("axial_ratio" in each.why, "radial_ratio" in each.why) for each in half] == [(True, False)]
+    assert [each.names for each in half] == [("axial_ratio", "axial_share")]
+    assert half[0].why.startswith(f"the axial force of {TURNED.title} is not known")
 
 
 def test_a_mechanistic_row_without_axial_coefficients():
     force = MechanisticForce(MILL, NO_AXIAL)
     assert [each.code for each in force.unjudged(SLOT)] == ["coefficient"]
-    assert "Kac and Kae" in force.unjudged(SLOT)[0].why
+    (lacking,) = force.unjudged(SLOT)
+    assert lacking.names == ("Kac", "Kae", "axial_share")
+    assert f"the axial force of {NO_AXIAL.title} is not known" in lacking.why
+    assert not any(name in lacking.why for name in lacking.names), "names of files are no words for a screen"
     assert replace(force, axial=False).unjudged(SLOT) == ()
     filled = NO_AXIAL.replace(Kac=0.1 * NO_AXIAL.Ktc, Kae=0.1 * NO_AXIAL.Kte)
     np.testing.assert_allclose(

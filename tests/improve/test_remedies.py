@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
+from robomill.cutting.forces.along_path import PathForce
 from robomill.errors import SetupError
 from robomill.improve.advice import Advice, Way
 from robomill.improve.errors import Errors
@@ -66,6 +67,18 @@ def test_stiffer_joints_halve_an_error_that_keeps_its_tolerance_and_are_judged_b
     (row,) = told(found)
     assert row.what.endswith(", which halves what is used of the tolerance")
     assert row.leaves == again.verdict.sentence
+
+
+def test_where_nothing_pushes_or_nothing_is_judged_no_joint_is_made_stiffer() -> None:
+    """In words, and not as a tolerance of 0 mm that nobody has asked for."""
+    free = SLOT.replace(force=rm.ConstantForce((0.0, 0.0, 0.0)))
+    with pytest.raises(SetupError, match="^No error to reduce: the cut is as it was told to be"):
+        stiffened(free, rm.simulate)
+    plunge = rm.Toolpath.from_points(p_mm=[[0, 0, 2], [0, 0, -2], [40, 0, -2]], feed_mm_min=1800)
+    partly = free.replace(source=plunge, force=PathForce())
+    assert rm.simulate(partly).verdict.level == "unjudged"
+    with pytest.raises(SetupError, match="^There is no number to design for: "):
+        stiffened(partly, rm.simulate)
 
 
 def test_stiffer_joints_keep_a_tolerance_that_is_not_kept() -> None:

@@ -6,12 +6,15 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+import pytest
 from conftest import go, store, words
 from streamlit.testing.v1 import AppTest
 
 import robomill as rm
+from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.improve.design import design
 from robomill.improve.stiffening import Stiffening, some_stiffer
+from robomill.io.materials import load_material, sample_materials
 from robomill.io.robot.robots import load_robot
 from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup
@@ -89,6 +92,26 @@ def test_a_cut_that_is_not_judged_is_not_called_good_with_a_stiffer_joint(app: A
     assert not app.exception
     assert "met with that joint" not in words(app)
     assert "Not judged" in words(app)
+
+
+@pytest.mark.parametrize("page", ["5_Toolpath", "6_Milling", "7_Improve"])
+def test_where_the_force_is_not_known_no_page_has_a_number_and_all_say_what_to_do(app: AppTest, page: str) -> None:
+    kept = store(app)
+    setup, row = kept.project.setup, load_material("al6061_t6_carbide_ref160")
+    blind = setup.replace(force=MechanisticForce(setup.cutter, row), engagement=True)
+    kept.project = kept.project.replace(setup=blind)
+    go(app, page)
+    assert not app.exception
+    told = words(app)
+    assert f"annot be judged: the axial force of {row.title} is not known" in told
+    assert not [each for each in ("up to 0.0", "0.000 mm", "of it used", "ithin tolerance") if each in told]
+    assert ("No error to reduce: nothing of this cut is judged." in told) == (page == "7_Improve")
+    if page == "6_Milling":
+        (listed,) = [each for each in app.selectbox if each.label == "Material"]
+        marked = {title for title in listed.options if title.endswith("force not known")}
+        mechanistic = [each for each in sample_materials() if each.kind == row.kind]
+        assert len(marked) == sum(None in (each.Kac, each.Kae) for each in mechanistic) > 0
+        assert len(listed.options) == len(mechanistic)
 
 
 def test_a_cut_out_of_reach_has_nothing_to_improve(app: AppTest) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from robomill.arguments import made_by
 from robomill.arrays import with_article
 from robomill.provenance import named
+from robomill.simulation.judging.enough import mostly_judged
 from robomill.simulation.judging.seen import Run
 from robomill.units import format_beside, format_count, format_percent, format_share
 from robomill.values import Value
@@ -181,8 +182,12 @@ class Verdict(Value):
 def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
     """What a gauge would read on the part and what follows from it; and beside it how much of the cut is not judged and
     which rapids run through material. Either may be ""."""
-    beside = " ".join(_sentence(words) for words in (_unjudged(result), _early(result)) if words)
     level = verdict.level
+    nothing = result.worst < 0 and level == "unjudged" and bool(result.not_judged.any())
+    told = (_unjudged(result, why=not nothing), _early(result))
+    beside = " ".join(_sentence(words) for words in told if words)
+    if nothing:
+        return f"Cannot be judged: {_why(result)}.", beside
     if result.worst < 0:
         if level == "unreached" and result.reached[result.path.cutting].any():
             return "No point of the cut lies inside the measured map.", beside
@@ -191,7 +196,9 @@ def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
         return NOTHING.get(level, ""), beside
     if level == "unjudged" and result.not_judged.any() and not verdict.decides:
         return "", beside
-    judged = f"{_measured(result, verdict, unit)}: {WORDS[verdict.grade]} ({_used(verdict)})"
+    judged = _measured(result, verdict, unit)
+    if verdict.grade == "out" or mostly_judged(result):
+        judged += f": {WORDS[verdict.grade]} ({_used(verdict)})"
     if verdict.premise:  # a grade by the force of another cut would be none
         judged, beside = f"{_measured(result, verdict, unit)}, {verdict.premise}", f"{verdict.asked} {beside}".rstrip()
     if level == "unreached":
@@ -260,18 +267,25 @@ def _aside(result: Run, wall: Reading) -> str:
     return f"in {axis}" if axis else way("wall", wall)
 
 
-def _unjudged(result: Run) -> str:
-    """How many points of the cut are not judged, on which lines, and why, and which rapids; "" where all is."""
+def _unjudged(result: Run, *, why: bool) -> str:
+    """How many points of the cut are not judged, on which lines, ``why`` too, and which rapids; "" where all is."""
     lost, told = result.not_judged, []
     if lost.any():
-        why = result.unjudged[0].why if result.unjudged else "no number of the force is known there."
-        more = f" (and {format_count(len(result.unjudged) - 1, 'more reason')})" if len(result.unjudged) > 1 else ""
         lost_points, every = format_count(int(lost.sum())), format_count(int(result.path.cutting.sum()))
         points = f"{lost_points} of {every} points of the cut are not judged"
-        told.append(f"{points} {_at(result, result.path.block[lost].tolist())}: {why.rstrip('.')}{more}")
+        reason = f": {_why(result)}" if why else ""
+        told.append(f"{points} {_at(result, result.path.block[lost].tolist())}{reason}")
     if result.rapids:
         told.append(f"{RAPID[0].upper()}{RAPID[1:]} {_at(result, result.rapids)}: not judged")
     return ". ".join(told)
+
+
+def _why(result: Run) -> str:
+    """The first reason why points are not judged, and how many more there are."""
+    reasons = result.unjudged
+    why = reasons[0].why if reasons else "no number of the force is known there"
+    more = f" (and {format_count(len(reasons) - 1, 'more reason')})" if len(reasons) > 1 else ""
+    return f"{why.rstrip('.')}{more}"
 
 
 def _early(result: Run) -> str:

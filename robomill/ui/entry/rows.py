@@ -29,6 +29,15 @@ def rows(kind: str = "") -> dict[str, Material]:
     return {row.name: row for row in every if kind in ("", row.kind)}
 
 
+def titles(kind: str = "") -> dict[str, str]:
+    """What a list of ``rows`` calls each of them: its title, and which force is not known of it."""
+    return {name: f"{row.title}{_lacking(row)}" for name, row in rows(kind).items()}
+
+
+def _lacking(row: Material) -> str:
+    return f" · {' and '.join(row.unknown)} force not known" if row.unknown else ""
+
+
 def keep(row: Material) -> None:
     """Add or replace a row of this session."""
     session.keep(OWN, {**session.kept(OWN, {}), row.name: row})

@@ -58,6 +58,7 @@ NOMINAL, SURE = "nominal", "sure"
 JUDGED = {NOMINAL: "what is predicted", SURE: "what 95 % of the draws keep"}
 TURNED = to_si(0.5, "deg")  # what turns the part by less is not said to turn it
 IN_FULL = "simulated in full"
+NOTHING_JUDGED = "No error to reduce: nothing of this cut is judged."
 
 
 @dataclass(frozen=True, eq=False)

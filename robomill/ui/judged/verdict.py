@@ -144,12 +144,19 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
     return " ".join(said(result, result.verdict, unit)).strip()
 
 
-def open_question(result: SimulationResult) -> None:
-    """The way to where it is said what the project's program cuts, or with how many flutes, while nobody has."""
-    if result.verdict.premise and not result.setup.carried_from:
-        st.page_link(file_of("Milling"), label="Say it on the Milling page", icon=":material/help:")
-    elif result.setup.carried_from:
-        st.page_link(file_of("Toolpath"), label="Say what it cuts", icon=":material/help:")
+def open_question(result: SimulationResult, on: str = "") -> None:
+    """The way to where that is said for want of which nothing is judged: what the project's program cuts, with how many
+    flutes, or a force of the material that its source does not give. None where that is the page one is ``on``."""
+    if result.setup.carried_from:
+        page, label = "Toolpath", "Say what it cuts"
+    elif result.verdict.premise:
+        page, label = "Milling", "Say it on the Milling page"
+    elif any(each.names for each in result.unjudged):
+        page, label = "Milling", "Give an assumed share or take another material, on the Milling page"
+    else:
+        return
+    if page != on:
+        st.page_link(file_of(page), label=label, icon=":material/help:")
 
 
 def previous(result: SimulationResult) -> SimulationResult | None:

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 import streamlit as st
 
-from robomill.cutting.materials import Material
+from robomill.cutting.materials import PUBLISHED, Material
 from robomill.errors import CuttingError
 from robomill.files import MATERIAL
 from robomill.io.materials import material_from_toml, material_to_toml
@@ -18,7 +18,7 @@ from robomill.quantities import quantities
 from robomill.ui import pieces, session
 from robomill.ui.entry import grid, inputs
 from robomill.ui.entry.box import box_of
-from robomill.ui.entry.rows import force_of, keep, others, rows
+from robomill.ui.entry.rows import force_of, keep, others, rows, titles
 from robomill.units import unit_label
 
 NEW = "milling.material"
@@ -42,7 +42,7 @@ def picker(force: Any) -> None:
     inputs.choice(
         "Material",
         f"force.material.{force.kind}",
-        {m.name: m.title for m in found.values()},
+        titles(force.takes.kind),
         material.name,
         lambda name: _use(found[name]),
         inputs.LISTED,
@@ -52,6 +52,13 @@ def picker(force: Any) -> None:
     source = material.provenance.source
     pieces.note(pieces.badge(material.provenance.kind), f"{source}.{words}")
     for part in material.unknown:
+        if getattr(force, f"{part}_share") is None:
+            low, high = PUBLISHED[part]
+            text = (
+                f"Its source gives no {part} force, so no cut that needs it is judged: assume a share of the "
+                f"tangential force here (published for aluminium: {low:g} to {high:g}), or take another material."
+            )
+            pieces.said("warning", text, "help")
         inputs.number(f"force.{part}_share")
     left, right = st.columns(2)
     with left, st.popover("Coefficients", icon=":material/tune:", width="stretch"):

@@ -265,7 +265,8 @@ def _out_of_tolerance(result: SimulationResult) -> list[tuple[str, str, str]]:
     verdict, unit, rows = result.verdict, session.project().view.length, []
     for name, reading in (("wall", verdict.wall), ("floor", verdict.floor)):
         if reading.worst < 0:
-            rows.append((f"{name.capitalize()}s", "–", f"the cut leaves no {name}"))
+            unknown = verdict.level == "unjudged"
+            rows.append((f"{name.capitalize()}s", "–", "not judged" if unknown else f"the cut leaves no {name}"))
             continue
         size = format_beside(abs(reading.value), reading.tolerance, unit)
         remark = f"at most {size} {way(name, reading)}, {format_limit(reading.tolerance, unit)} allowed"

@@ -23,7 +23,7 @@ from robomill.toolpath.source import GCodeSource
 from robomill.ui import pieces, session
 from robomill.ui.entry import declared, inputs, typed
 from robomill.ui.entry.box import NumberBox, box_of
-from robomill.ui.entry.rows import force_of, rows
+from robomill.ui.entry.rows import force_of, rows, titles
 from robomill.ui.entry.tools import missing
 from robomill.units import format_many, format_si
 
@@ -56,8 +56,7 @@ def panel(path: Toolpath | None, premise: str) -> bool:
             _row_of(_of_tool(number))
         first, rest = pieces.split([1.0, 0.42 * len(boxes)], "question")
         with first:
-            titles = {name: row.title for name, row in rows().items()}
-            inputs.pick("Material", f"{KEY}.{MATERIAL}", titles, _first(setup.force).name, inputs.LISTED)
+            inputs.pick("Material", f"{KEY}.{MATERIAL}", titles(), _first(setup.force).name, inputs.LISTED)
         with rest:
             _row_of(boxes)
         with typed.said_below(), st.container(horizontal=True, gap="small"):

@@ -128,5 +128,6 @@ def _error_tile(result: SimulationResult | None, unit: str) -> pieces.Tile:
     if result is None:
         return pieces.Tile(WALL.label, "–", "not simulated yet")
     verdict, kind = result.verdict, result.decided.kind
+    kind = WALL if result.worst < 0 else kind
     found = reading_tile(kind, verdict, None, unit) if kind in (WALL, FLOOR) else tip_tile(result, unit)
     return dataclasses.replace(found, tone=tone(verdict))
