@@ -23,6 +23,7 @@ from robomill.simulation.columns import path_columns
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
 from robomill.simulation.judging.finished import Finished, finished
+from robomill.simulation.edges import edge_notes
 from robomill.simulation.judging.enough import counted
 from robomill.simulation.judging.gauge import Gauge, gauge
 from robomill.simulation.judging.strays import Stray, stray
@@ -208,6 +209,7 @@ class SimulationResult(Tabled):
             *jump_notes(self.path, self.ahead),
             *cut_notes(self.setup, self.conditions, ~self.not_judged),
             *tool_notes(self.setup, self.path),
+            *edge_notes(self.setup, self.path),
         ]
         found += [*feed_notes(self.setup, self.path), *map_notes(self.setup, self.path)]
         pushed = self.judged & self.conditions.engaged

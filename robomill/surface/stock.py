@@ -93,11 +93,6 @@ class Stock(Value):
         """(3,) m."""
         return self.upper - self.lower
 
-    def holds(self, lower: FloatArray, upper: FloatArray) -> bool:
-        """Whether cuts between these corners (3,) m all lie over it, and the lowest of them within it."""
-        beside = (lower < self.lower)[:2] | (upper > self.upper)[:2]
-        return bool(not beside.any() and self.lower[2] <= lower[2] < self.upper[2])
-
     def _said(self) -> str:
         mesh = "" if self.triangles is None else f", solid of {format_count(len(self.triangles), 'triangle')}"
         size, lower = format_many(self.size, "mm", 2, between=" × "), format_many(self.lower, "mm", 2)

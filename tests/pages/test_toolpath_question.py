@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
-from conftest import box, errors, go, store, words
+from conftest import box, errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
 from robomill.io.materials import load_material, sample_materials
@@ -125,11 +126,35 @@ def test_a_force_of_ones_own_is_not_asked_for_again(app: AppTest) -> None:
     assert ASKED not in words(app)
 
 
-def test_a_program_beside_the_stock_brings_its_own(app: AppTest) -> None:
-    """The paper's blank ends at x = 64 mm; these cuts lie beyond it."""
-    bring(app, POCKET.replace("X-20", "X100").replace("X20", "X140"))
-    assert store(app).project.setup.stock is None
+@pytest.mark.parametrize("by", [0, 120])
+def test_a_program_brings_its_own_stock(app: AppTest, by: int) -> None:
+    """Beyond the paper's blank, which ends at x = 64 mm, or within it: that is the stock of another part."""
+    bring(app, POCKET.replace("X-20", f"X{by - 20}").replace("X20", f"X{by + 20}"))
+    setup = store(app).project.setup
+    assert setup.stock is None
+    assert setup.provenance["stock"].kind == "assumed"
+    low, high = setup.stock_block.lower[:2] * 1e3, setup.stock_block.upper[:2] * 1e3
+    cut_low, cut_high = (np.array([by + end, 0.0]) for end in (-20, 20))
+    assert (low < cut_low - 4.0).all() & (low > cut_low - 10.0).all()
+    assert (high > cut_high + 4.0).all() & (high < cut_high + 10.0).all()
+    assert "Stock: a block around the cuts, assumed" in words(app)
     assert verdict(app) == "unjudged"
+
+
+def test_a_stock_that_was_typed_by_hand_stays_with_the_next_program(app: AppTest) -> None:
+    """As do the numbers of a cutter that was typed."""
+    go(app, "6_Milling")
+    number(app, "stock.upper[1]:mm").set_value(25.0).run()
+    box(app, "Diameter, mm").set_value(6.0).run()
+    typed = store(app).project.setup
+    assert typed.provenance["stock"].kind == "user"
+    bring(app, POCKET)
+    setup = store(app).project.setup
+    assert setup.stock is not None
+    np.testing.assert_array_equal(setup.stock.upper, typed.stock.upper)
+    assert setup.cutter.diameter == typed.cutter.diameter
+    assert setup.provenance["cutter"].carried_from == ""
+    assert "Stock: the one you gave, 110.0" in words(app)
 
 
 def test_the_question_is_saved_with_the_project(app: AppTest) -> None:
@@ -143,7 +168,7 @@ def test_the_question_is_saved_with_the_project(app: AppTest) -> None:
 def test_a_program_of_holes_alone_is_told_alike_on_every_page(app: AppTest) -> None:
     """A force along the path says nothing of a plunge: nothing is judged, all is reached, and it is still asked for."""
     bring(app, "G21 G90\nG0 X0 Y0 Z5\nG81 X10 Y10 Z-5 R2 F100\nX30\nG80\nG0 Z20\nM2\n")
-    stock = "Stock: that of Reference groove (Slavkovic 2013), 110.0 × 40.0 × 10.0 mm, its top at Z = 0.0 mm."
+    stock = "Stock: a block around the cuts, assumed, 32.0 × 12.0 × 10.0 mm, its top at Z = 0.0 mm."
     assert stock in words(app).replace("\u00a0", " ")
     for page in ("app", "6_Milling", "7_Improve"):
         go(app, page)
@@ -159,9 +184,9 @@ def test_a_program_of_holes_alone_is_told_alike_on_every_page(app: AppTest) -> N
 def test_the_block_around_a_path_in_the_air_says_how_high_it_stands(app: AppTest) -> None:
     """Cut 30 mm over part zero the path goes through a block that was made for it, which nobody saw."""
     bring(app, "G21 G90\nS9000 M3\nG0 X0 Y0 Z50\nG1 Z30 F500\nG1 X180 F1500\nG0 Z50\nM2\n")
-    assert "Stock: a block around the cuts, 192.0 × 12.0 × 26.0 mm, its top at Z = 51.0 mm." in words(app).replace(
-        "\u00a0", " "
-    )
+    assert "Stock: a block around the cuts, assumed, 192.0 × 12.0 × 26.0 mm, its top at Z = 51.0 mm." in words(
+        app
+    ).replace("\u00a0", " ")
 
 
 TWO_TOOLS = (

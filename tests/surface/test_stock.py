@@ -88,16 +88,6 @@ def test_a_stock_round_a_path():
     np.testing.assert_allclose(stock.size, [0.062, 0.032, 0.014], atol=1e-15)
 
 
-def test_a_stock_holds_cuts_that_lie_over_it_and_reach_into_it():
-    """Every corner of the cuts over the block, and their lowest one between its bottom and its top."""
-    block = Stock(np.array([-0.03, -0.02, -0.01]), np.array([0.03, 0.02, 0.0]))
-    rng = np.random.default_rng(5)
-    for low, high in np.sort(rng.uniform(-0.035, 0.035, (400, 2, 3)), axis=1) * [1.0, 1.0, 0.5]:
-        over = shapely.box(-0.03, -0.02, 0.03, 0.02).covers(shapely.box(*low[:2], *high[:2]))
-        assert block.holds(low, high) == (over and -0.01 <= low[2] < 0.0)
-    assert block.holds(block.lower, block.upper)
-
-
 def test_odd_stocks_are_said():
     assert "check the unit" in Stock((0, 0, 0), (6.0, 1, 1)).warnings(CUTTER)[0].message
     assert "check the unit" in Stock((0, 0, 0), (1e-3, 1e-3, 1e-3)).warnings(CUTTER)[0].message

@@ -5,6 +5,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.cutting.force import COMPONENTS, ForceSpread
 from robomill.simulation.coupling import COUPLING
+from robomill.simulation.edges import NO_WALL
 from robomill.simulation.origin.spread import AlloySpread
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.stations import force_components, largest_deviations
@@ -18,6 +19,7 @@ OF_CUTTER = (
     "stock-size",
     OUTSIDE,
     "wide-cutter",
+    NO_WALL,
     "beyond-flutes",
 )  # codes of findings that stand beside cutter and stock
 

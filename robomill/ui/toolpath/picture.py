@@ -8,6 +8,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import FloatArray, IntArray
+from robomill.simulation.edges import edge_notes
 from robomill.simulation.reach import PathReach
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
@@ -156,17 +157,26 @@ def _columns(reach: PathReach, result: SimulationResult | None) -> dict[str, Flo
 
 
 def stock_note(setup: SimulationSetup) -> None:
-    """Where a stated stock does not hold the path, say so and offer the stock that does."""
+    """Where a stated stock does not hold the path, or leaves no wall beside it, say so and offer the stock that
+    does."""
     if setup.stock is None:
         return
+    odd = _outside(setup) or "".join(each.sentence for each in edge_notes(setup, setup.toolpath))
+    if not odd:
+        return
+    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
+        pieces.note(odd)
+        follow = partial(session.change, stock=None)
+        inputs.button("Let the stock follow the path", "toolpath.stock", "fit_screen", follow, type="tertiary")
+
+
+def _outside(setup: SimulationSetup) -> str:
+    """That a stated stock does not hold the path; "" where it does."""
+    assert setup.stock is not None
     summary = path_summary(setup.toolpath)
     low, high = summary.low, summary.high
     room = 1e-6 + np.array([setup.cutter.radius, setup.cutter.radius, np.inf])
     beside = np.maximum(setup.stock.lower - low - room, high - setup.stock.upper - room)
     below = float(setup.stock.lower[2] - low[2])
-    if max(float(beside[:2].max()), below) <= 1e-6:
-        return
-    with st.container(horizontal=True, vertical_alignment="center", gap="small"):
-        pieces.note("The path leaves the stock that is stated: what lies outside cuts air.")
-        follow = partial(session.change, stock=None)
-        inputs.button("Let the stock follow the path", "toolpath.stock", "fit_screen", follow, type="tertiary")
+    leaves = max(float(beside[:2].max()), below) > 1e-6
+    return "The path leaves the stock that is stated: what lies outside cuts air." if leaves else ""

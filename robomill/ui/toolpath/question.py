@@ -106,11 +106,10 @@ def _tools(setup: SimulationSetup, lacking: Sequence[int]) -> ToolTable:
 def _stock(setup: SimulationSetup) -> str:
     """The block that is cut, with the height up to which it stands, and whose it is."""
     unit, block = session.project().view.length, setup.stock_block
-    said = setup.provenance.get("stock")
-    whose = "yours" if said is not None and said.kind == "user" else f"that of {setup.carried_from}"
+    whose = "a block around the cuts, assumed" if setup.stock is None else "the one you gave"
     size = format_many(block.upper - block.lower, unit, 1, " × ")
     top = format_si(block.upper[2], unit, 1)
-    return f"Stock: {'a block around the cuts' if setup.stock is None else whose}, {size}, its top at Z = {top}."
+    return f"Stock: {whose}, {size}, its top at Z = {top}."
 
 
 def _row_of(boxes: dict[str, tuple[NumberBox, float | None]]) -> None:

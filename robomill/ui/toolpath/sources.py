@@ -49,17 +49,18 @@ def put(source: PathSource, words: str, from_editor: bool = False, **more: Any) 
 
 def put_dropped(source: PathSource) -> None:
     """Make a program, points or a drawing that somebody brought the project's path. What was not stated by a person
-    stands open until somebody says that it holds for this path, too; a stock that does not hold it goes. Raises its
-    refusal."""
+    stands open until somebody says that it holds for this path, too; a stock that no person has given is that of
+    another part, and goes. Raises its refusal."""
     setup = session.project().setup
     others = {name: said for name, said in setup.provenance.items() if name in STATED and said.kind != "user"}
     carried = {name: said.carried(setup.name) for name, said in others.items()}
     more: dict[str, Any] = {"engagement": True} if "force" in carried else {}
     stated = setup.provenance.get("stock")
     given = stated is None or stated.kind == "user"
-    if setup.stock is not None and not given and not setup.stock.holds(*read_with(source, setup.tools).extents):
+    if not given:
         more["stock"] = None
-        carried["stock"] = Provenance("computed", f"a block around the feed moves of {source.name}")
+        words = f"a block around what {source.name} cuts: nobody has said from which stock"
+        carried["stock"] = Provenance("assumed", words)
     question.forget()
     put(source, f"{WHAT[source.kind]} {source.name}", provenance=carried, **more)
 

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 
 from robomill.provenance import Finding
+from robomill.simulation.edges import edge_notes
 from robomill.simulation.judging.verdict_words import FLOOR, WALL, said
 from robomill.simulation.reach import PathReach
 from robomill.simulation.result import SimulationResult
@@ -119,8 +120,11 @@ def tiles_of_b(project: Project) -> list[pieces.Tile]:
 
 
 def findings(path: Toolpath, result: SimulationResult | None) -> tuple[Finding, ...]:
-    """What was noticed while the program was read, and feeds that no cutter takes once the cutter is known."""
-    return path.findings if result is None else (*path.findings, *feed_notes(result.setup, result.path))
+    """What was noticed while the program was read; once cutter and stock are known, feeds that no cutter takes and
+    sides of the stock along which no wall can stand."""
+    if result is None:
+        return path.findings
+    return (*path.findings, *feed_notes(result.setup, result.path), *edge_notes(result.setup, result.path))
 
 
 def _error_tile(result: SimulationResult | None, unit: str) -> pieces.Tile:
