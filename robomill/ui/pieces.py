@@ -52,7 +52,7 @@ MIME = {
 class Tile:
     """One number: ``value`` as formatted text with its unit after a space, ``was`` the value before the last change.
 
-    ``change`` says by how much it moved; both take the place of ``note`` while they are there.
+    ``change`` says by how much it moved; both stand in a line of their own beneath ``note``, which they do not replace.
     ``tone`` is "", "ok", "tight", "out" or "unjudged" (an edge; the words carry the meaning), or "open" (hatched);
     ``kind`` is a provenance; ``ranges`` are lines that say between which ends the value may lie instead, and over what.
     ``other`` is the value of the project that this one, A, is held against, B.
@@ -77,17 +77,17 @@ def tiles(items: Sequence[Tile]) -> None:
 def _tile(tile: Tile) -> str:
     number, unit = split_unit(tile.value)
     value = html.escape(number) + (f"<small>{html.escape(unit)}</small>" if unit else "")
-    note = unparted(subscripts(tile.note))
+    note, before = unparted(subscripts(tile.note)), ""
     if tile.was and tile.was != tile.value:
         moved = f" · {unparted(html.escape(tile.change))}" if tile.change else ""
-        note = Html(f'was <span class="rm-was">{html.escape(tile.was)}</span>{moved}')
+        before = f'<div class="rm-sub">was <span class="rm-was">{html.escape(tile.was)}</span>{moved}</div>'
     mark = f"{badge(tile.kind)} " if tile.kind else ""
     look = " rm-long" if "×" in number else ""
     value, beside = (f"<i>A</i>{value}", _of_b(tile.other)) if tile.other else (value, "")
     ranges = "".join(f'<div class="rm-range">{unparted(html.escape(words))}</div>' for words in tile.ranges)
     return (
         f'<div class="rm-tile {html.escape(tile.tone)}"><div class="rm-label">{subscripts(tile.label)}</div>'
-        f'<div class="rm-value{look}">{value}</div>{beside}<div class="rm-sub">{mark}{note}</div>{ranges}</div>'
+        f'<div class="rm-value{look}">{value}</div>{beside}<div class="rm-sub">{mark}{note}</div>{before}{ranges}</div>'
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from conftest import errors, go, number, store, words
@@ -45,6 +47,10 @@ def test_an_edit_reaches_the_start_page_and_undo_takes_it_back(app: AppTest) -> 
     assert '<span class="rm-was">0.251 mm</span> · −0.037 mm' in words(app)
     go(app, "app")
     assert "0.19 mm off in Y" in words(app)
+    tiles = dict(re.findall(r'<div class="rm-label">([^<]*)</div>(.*?)(?=<div class="rm-label">|$)', words(app)))
+    for label, note in (("Wall error", "to the left · "), ("Tip off its path", "most at line ")):
+        assert 'class="rm-was"' in tiles[label], "what was stands beside what is said of the number, not in its place"
+        assert note in tiles[label]
     app.button(key="undo").click().run()
     assert "0.23 mm off in Y" in words(app)
     app.button(key="redo").click().run()
