@@ -50,7 +50,7 @@ def every(robot: Robot, arm: Decoupled, T_MT: FloatArray) -> tuple[FloatArray, B
 
     theta, sound = np.empty((len(T_MT), 8, robot.n)), np.empty((len(T_MT), 8), dtype=bool)
     poses = np.ascontiguousarray(T_MT)
-    for some in slices(len(poses), "How the arm can stand"):
+    for some in slices(len(poses), "Finding arm positions"):
         inverse_kernels.every_of(poses[some], arm, robot.chain, theta[some], sound[some])
     return theta, sound
 

@@ -69,7 +69,7 @@ def join(robot: Robot, theta: FloatArray, possible: BoolArray, T_MT: FloatArray,
         np.array([-1, 0, 0]),
         np.zeros(1),
     )
-    for some in slices(m, "How the arm stands"):
+    for some in slices(m, "Trying arm positions"):
         joining_kernels.go_on(course, some.start, some.stop, way, index)
     cost = joining_kernels.come_back(course, way, joined, index)
     return Joined(joined, index, int((index < 0).sum()), cost)

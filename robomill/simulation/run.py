@@ -128,7 +128,7 @@ def along(
     ``led`` says where the tool goes if not as the path tells it to; ``softer`` is what all that gives is multiplied by,
     ``stronger`` what the force is: how a result changes where they are wrong.
     """
-    checkpoint(0.0, "How the arm stands")
+    checkpoint(0.0, "Trying arm positions")
     ik = configurations(setup, path)
     checkpoint(0.0, "Compliance")
     C_joint, C_spring = compliances(setup, path, ik.theta)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from collections.abc import Iterator
 from functools import partial
@@ -76,6 +77,24 @@ def test_progress_over_the_run_before_and_then_the_new_one(app: AppTest, slow: S
     assert running.PLACE not in store(app).values
     assert "of 0.10 mm" in words(app)
     assert not app.exception
+
+
+def test_bar_and_words_say_one_share_while_the_work_goes_on(
+    app: AppTest, slow: Slow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Between the two the work is made to come as far as the end of its stage."""
+    told = beside.words
+
+    def late(doing: str, now: Job) -> str:
+        running_job(app).progress.share = 0.99
+        return told(doing, now)
+
+    monkeypatch.setattr(beside, "words", late)
+    edit(app, 0.1e-3)
+    (bar,) = app.get("progress")
+    assert running_job(app).progress.share == 0.99
+    assert re.findall(r"\d+", bar.proto.text)[:1] == [str(bar.proto.value)]
+    assert not bar.proto.text.startswith("Marching:"), "a share after a colon reads as a result"
 
 
 def test_cancel_stops_the_work_and_offers_to_run(app: AppTest, slow: Slow) -> None:

@@ -55,7 +55,7 @@ def test_it_stops_at_every_stage_and_a_watched_run_is_the_same(setups: dict[str,
     np.testing.assert_array_equal(seen.machined.z, plain.machined.z)
     assert sentence == plain.verdict.sentence
     names = list(dict.fromkeys(stages))
-    assert {"How the arm stands", "Compliance", "Walls", "Floors"} <= set(names)
+    assert {"Trying arm positions", "Compliance", "Walls", "Floors"} <= set(names)
     assert ("Force and deflection, step by step" in names) == setup.coupling
     assert ("What each step meets" in names) == setup.engagement
     for name in names:

@@ -64,7 +64,7 @@ def _supersede(group: str) -> None:
 
 def words(doing: str, now: Job) -> str:
     """How far a job is."""
-    return f"{now.progress.stage or doing}: {format_percent(now.progress.share)}{left(now)}"
+    return f"{now.progress.stage or doing}, {format_percent(now.progress.share)}{left(now)}"
 
 
 def left(now: Job) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -136,6 +136,7 @@ def waiting(key: str, words: Callable[[Job], str], stop: Callable[[], Any] | Non
         st.rerun()
         return
     job.seen = time.monotonic()
+    now = replace(job, progress=replace(job.progress))  # looked at once: the work goes on between bar and words
     with st.container(key=box(key), horizontal=True, vertical_alignment="center", gap="medium"):
-        st.progress(job.progress.share, words(job), width="stretch")
+        st.progress(now.progress.share, words(now), width="stretch")
         inputs.button("Cancel", f"{key}.cancel", "close", stop or partial(give_up, key), width="content")
