@@ -50,6 +50,12 @@ class PathPicture:
         return decimate(self.points, self.cutting, self.reached, BUDGET, must)
 
     @property
+    def unknown(self) -> BoolArray:
+        """(m,) points of the cuts that are reached and have no value, where the cuts are coloured by one."""
+        lost = np.zeros(len(self.points), dtype=bool) if self.value is None else ~np.isfinite(self.value)
+        return np.asarray(lost & self.cutting & self.reached)
+
+    @property
     def caption(self) -> str:
         """How much of the path is drawn, in words; "" where it is all of it."""
         segments = max(self.total, len(self.points) - 1)

@@ -52,6 +52,7 @@ class Palette:
     good: str
     caution: str
     bad: str
+    unjudged: str
 
 
 # Each colour in light, and in dark.
@@ -71,6 +72,7 @@ _COLOURS = {
     "good": ("#0072B2", "#5CB6DA"),
     "caution": ("#B07400", "#E9B949"),
     "bad": ("#B3400A", "#F0803C"),
+    "unjudged": ("#7A4FB5", "#C3A6F0"),
 }
 LIGHT, DARK = (Palette(**{name: both[k] for name, both in _COLOURS.items()}) for k in range(2))
 

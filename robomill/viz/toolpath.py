@@ -1,6 +1,6 @@
 """The whole toolpath as a picture, from above or turnable: coloured by a quantity, with the line that is pointed at."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from plotly.colors import sample_colorscale
@@ -13,6 +13,8 @@ from robomill.viz.theme import SEQUENTIAL, axis, axis3d, colour_bar, figure, pal
 VECTOR_LINES = 5_000
 MAX_PICKS = 3_000
 CLASSES = 16
+HOLES = {"solid": "circle", "dash": "circle-open"}  # how a drilled hole is marked, by how a line of its kind is broken
+NAMED = {True: "<br>not judged", False: ""}
 MARGIN = 0.04  # of the stock, beyond it
 
 
@@ -34,10 +36,10 @@ def plan_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> Char
     draw(cut, {"color": rgba(p.text, 0.18), "width": 2 * width}, showlegend=False)
     _halo(fig, picture, dark)
     upright = cut & (np.abs(ends[1] - ends[0])[:, :2].max(axis=1) < 1e-9)  # from above a drilled hole is a point
-    for name, colour, chosen, legend in _classes(picture, dark):
-        draw(chosen, {"color": colour, "width": width}, name=name, showlegend=legend)
+    for name, colour, chosen, legend, dash in _classes(picture, dark):
+        draw(chosen, {"color": colour, "width": width, "dash": dash}, name=name, showlegend=legend)
         if (chosen & upright).any():
-            _dots(fig, ends[1][chosen & upright], {"size": 8, "color": colour})
+            _dots(fig, ends[1][chosen & upright], {"size": 8, "color": colour, "symbol": HOLES[dash]})
     if lost.any():
         at = picture.points[kept][lost]
         cross = {"size": 8, "symbol": "x-thin", "line": {"width": 1.8, "color": p.bad}}
@@ -70,8 +72,9 @@ def turnable_picture(picture: PathPicture, *, dark: bool, height: int = 430) -> 
     if len(here):
         xyz = dict(zip("xyz", here.T, strict=True))
         draw(xyz, {"color": rgba(p.text, 0.7), "width": 14}, showlegend=False)
-    for name, colour, chosen, legend in _classes(picture, dark):
-        draw(_lines(picture, ends, chosen, every), {"color": colour, "width": 5}, name=name, showlegend=legend)
+    for name, colour, chosen, legend, dash in _classes(picture, dark):
+        line = {"color": colour, "width": 5, "dash": dash}
+        draw(_lines(picture, ends, chosen, every), line, name=name, showlegend=legend)
     if picture.value is not None:
         fig.add("scatter3d", x=[None], y=[None], z=[None], mode="markers", marker=_scale(picture, dark), **QUIET)
     size = np.maximum(np.ptp(picture.points, axis=0), 1e-9)
@@ -131,21 +134,32 @@ def _lines(
     return {"xyz"[c]: out[:, c] for c in columns}
 
 
-def _classes(picture: PathPicture, dark: bool) -> list[tuple[str, str, BoolArray, bool]]:
-    """Name, colour, chosen segments and whether it is named in the legend."""
+class _Class(NamedTuple):
+    """Segments that are drawn alike: their name, their colour, which they are, whether the legend names them, and how
+    their line is broken: what has no value is, since its colour would be one of the scale."""
+
+    name: str
+    colour: str
+    chosen: BoolArray
+    named: bool
+    dash: str = "solid"
+
+
+def _classes(picture: PathPicture, dark: bool) -> list[_Class]:
+    """The kinds of segments of the cuts."""
     p = palette(dark)
     kept = picture.kept
     cut, reached = picture.cutting[kept], picture.reached[kept]
     lost = cut & ~reached
     missed = int((picture.cutting & ~picture.reached).sum())
-    found = [(f"out of reach ({missed} points)", p.bad, lost, True)] if missed else []
+    found = [_Class(f"out of reach ({missed} points)", p.bad, lost, True)] if missed else []
     if picture.tools is not None:
         tool = picture.tools[kept]
         colours = tool_colours(picture.tool_names, dark)
-        made = [(name, colours[n], cut & reached & (tool == n), True) for n, name in picture.tool_names.items()]
+        made = [_Class(name, colours[n], cut & reached & (tool == n), True) for n, name in picture.tool_names.items()]
         return [*made, *found]
     if picture.value is None:
-        return [("in reach", p.good, cut & reached, True), *found]
+        return [_Class("in reach", p.good, cut & reached, True), *found]
     # The value of a segment is the largest since the segment before: thinning must not hide a peak.
     value = np.maximum.reduceat(np.nan_to_num(picture.value, nan=-np.inf), np.append(0, kept[:-1] + 1))
     known = cut & reached & np.isfinite(value)
@@ -154,10 +168,12 @@ def _classes(picture: PathPicture, dark: bool) -> list[tuple[str, str, BoolArray
     index = np.minimum((share * CLASSES).astype(int), CLASSES - 1)
     over = known & (value > picture.limit) if picture.limit is not None else np.zeros(len(kept), dtype=bool)
     colours = sample_colorscale(SEQUENTIAL, list((np.arange(CLASSES) + 0.5) / CLASSES))
-    made = [("", colours[c], known & ~over & (index == c), False) for c in range(CLASSES)]
-    made = [entry for entry in made if entry[2].any()]
+    made = [_Class("", colours[c], known & ~over & (index == c), False) for c in range(CLASSES)]
+    made = [entry for entry in made if entry.chosen.any()]
     if over.any():
-        made.append((f"above {picture.limit:g} {picture.unit}", p.bad, over, True))
+        made.append(_Class(f"above {picture.limit:g} {picture.unit}", p.bad, over, True))
+    if unknown := int(picture.unknown.sum()):
+        made.append(_Class(f"not judged ({unknown} points)", p.unjudged, cut & reached & ~known, True, "dash"))
     return made + found
 
 
@@ -229,8 +245,9 @@ def _picks(fig: Chart, picture: PathPicture, dark: bool) -> None:
         value = picture.value[kept]
         data.append(value)
         words = [
-            w + (f"<br>{picture.title.lower()} {v:.{picture.digits}f} {picture.unit}" if np.isfinite(v) else "")
-            for w, v in zip(words, value, strict=True)
+            w
+            + (f"<br>{picture.title.lower()} {v:.{picture.digits}f} {picture.unit}" if np.isfinite(v) else NAMED[lost])
+            for w, v, lost in zip(words, value, picture.unknown[kept].tolist(), strict=True)
         ]
     faint = {"opacity": 0.01}
     said: dict[str, Any] = {"text": words, "customdata": np.column_stack(data)}

@@ -7,6 +7,7 @@ import pytest
 
 from robomill.units import format_short_count
 from robomill.viz.path_picture import BUDGET, PathPicture, decimate
+from robomill.viz.theme import CIVIDIS
 from robomill.viz.toolpath import plan_picture, turnable_picture
 
 
@@ -106,3 +107,33 @@ def test_what_is_out_of_reach_is_counted_in_the_legend() -> None:
     r[100:140] = False
     fig = plan_picture(PathPicture(p, c, r, np.arange(3000)), dark=False)
     assert any(t.name == "out of reach (40 points)" for t in fig.figure.data)
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_what_has_no_value_is_broken_and_named_and_has_no_colour_of_the_scale(dark: bool) -> None:
+    """A square of which one side has no value, from above and turnable; a hole without one is a ring."""
+    p = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 0], [3, 3, 1], [3, 3, 0]], dtype=float)
+    cutting = np.array([False, True, True, True, True, False, True])
+    value = np.array([0.0, 0.1, np.nan, 0.1, 0.15, np.nan, np.nan])
+    picture = PathPicture(p, cutting, np.ones(7, dtype=bool), np.arange(7), value=value, limit=0.3, unit="mm")
+    pictures = plan_picture(picture, dark=dark), turnable_picture(picture, dark=dark)[0]
+    for chart in pictures:
+        (line,) = [t for t in chart.figure.data if t.name == "not judged (2 points)"]
+        assert line.showlegend
+        assert line.line.dash == "dash"
+        x = np.asarray(line.x, dtype=float)
+        np.testing.assert_array_equal(x[np.isfinite(x)], [1, 1, 3, 3])
+        red, green, blue = (int(line.line.color[i : i + 2], 16) for i in (1, 3, 5))
+        for colour in CIVIDIS:
+            other = [int(colour[i : i + 2], 16) for i in (1, 3, 5)]
+            assert np.linalg.norm(np.subtract(other, (red, green, blue))) > 60.0
+        for other in (t for t in chart.figure.data if t.mode == "lines" and t.name not in (line.name, "rapid")):
+            assert other.line.dash in (None, "solid")
+    (ring,) = [
+        t for t in pictures[0].figure.data if t.mode == "markers" and t.marker.symbol == "circle-open" and not t.name
+    ]
+    np.testing.assert_array_equal(ring.x, [3])
+    hovered = next(t for t in pictures[0].figure.data if t.name == "points").text
+    assert [("not judged" in words) for words in hovered] == [False, False, True, False, False, False, True]
+    known = PathPicture(p, cutting, np.ones(7, dtype=bool), np.arange(7), value=np.ones(7), limit=0.3)
+    assert not [t for t in plan_picture(known, dark=dark).figure.data if (t.name or "").startswith("not judged")]
