@@ -51,14 +51,16 @@ def picker(force: Any) -> None:
     words = f" The band comes from {count} other rows of {material.alloy}." if count else " No other row: no band."
     source = material.provenance.source
     pieces.note(pieces.badge(material.provenance.kind), f"{source}.{words}")
+    if lacking := [part for part in material.unknown if getattr(force, f"{part}_share") is None]:
+        published = ", ".join(
+            f"{part} {low:g} to {high:g}" for part, (low, high) in PUBLISHED.items() if part in lacking
+        )
+        text = (
+            f"Its source gives no {' and no '.join(lacking)} force, so no cut that needs it is judged: assume a share "
+            f"of the tangential force here (published for aluminium: {published}), or take another material."
+        )
+        pieces.said("warning", text, "help")
     for part in material.unknown:
-        if getattr(force, f"{part}_share") is None:
-            low, high = PUBLISHED[part]
-            text = (
-                f"Its source gives no {part} force, so no cut that needs it is judged: assume a share of the "
-                f"tangential force here (published for aluminium: {low:g} to {high:g}), or take another material."
-            )
-            pieces.said("warning", text, "help")
         inputs.number(f"force.{part}_share")
     left, right = st.columns(2)
     with left, st.popover("Coefficients", icon=":material/tune:", width="stretch"):
