@@ -22,9 +22,9 @@ from robomill.provenance import Finding
 from robomill.simulation.columns import path_columns
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import cut_notes, moved_points, suspicions
-from robomill.simulation.judging.finished import Finished, finished
 from robomill.simulation.edges import edge_notes
 from robomill.simulation.judging.enough import counted
+from robomill.simulation.judging.finished import Finished, finished
 from robomill.simulation.judging.gauge import Gauge, gauge
 from robomill.simulation.judging.strays import Stray, stray
 from robomill.simulation.judging.verdict import decided, judge, thin_wall_notes

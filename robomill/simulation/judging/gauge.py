@@ -262,7 +262,7 @@ def _floors(at: Places) -> Readings:
     inside &= at.below[q] <= SAME  # there is no floor beneath a cut through the stock
     q, offset, u = q[inside], offset[inside], u[inside]
     lines = np.hstack([at.c[q], at.axial[q], u])
-    along_itself = np.maximum(at.slope, np.minimum(at.slope / math.sqrt(1.0 - RIM**2), CROWN))
+    along_itself = np.maximum(at.slope, np.minimum(at.slope / np.sqrt(1.0 - RIM**2), CROWN))
     told, error, found = at.outline.floors(lines, offset, (along_itself * aside)[q])
     found &= ~(at.bottoms[q] & (told < -SAME))  # a peck's end is drilled away
     found &= told >= -((at.slope * at.number("radius"))[q] + SAME)  # a deeper one is of the pass that has made it
