@@ -290,9 +290,9 @@ def nearest(errors: Errors, weight: FloatArray, low: FloatArray, high: FloatArra
 def linear(result: SimulationResult, found: Judged, x: FloatArray, rest_goes: bool = True) -> Errors:
     """What is judged of a run as it goes with the joints' compliances, x (n,) times what they were first.
 
-    An error goes as its own sample's deviation does. What another pass has left or taken there, the rest of it, goes
-    with the size of that deviation (``rest_goes``; of the largest, where nothing pushes), so that it vanishes where
-    nothing gives; or it stays.
+    An error goes as the deviations of those samples do that have made what is read. The rest of it, which none
+    explains, goes with the size of its own sample's (``rest_goes``; of the largest, where nothing pushes), so that it
+    vanishes where nothing gives; or it stays.
     """
     i, parts = found.sample, result.delta_joint
     if result.sag is not None and result.setup.add_sag:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import SetupError
+from robomill.improve.makers import made
 from robomill.simulation.judging.gauge import Readings
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup, check_setup
@@ -21,12 +22,13 @@ MEASURES: tuple[Measure, ...] = get_args(Measure)
 
 @dataclass(frozen=True, eq=False)
 class Judged(ReadOnly):
-    """Errors (q,) m of a run at samples (q,) of its path, each with its tolerance (q,) m. A signed error goes by
-    ``way`` (q, 3) with the feed, feed-normal and axial deviation of its sample: (q, d, 3) where it is the size of a
-    vector of d components (``error`` is (q, d) then)."""
+    """Errors (q, d) m of a run beside samples (q,) of its path, each with its tolerance (q,) m: signed (d is 1), or the
+    size of a vector of d components. They go by ``way`` (q, 2, d, 3) with the feed, feed-normal and axial deviations of
+    the samples ``by`` (q, 2) that have made what is read there."""
 
     sample: IntArray
     error: FloatArray
+    by: IntArray
     way: FloatArray
     tolerance: FloatArray
 
@@ -42,7 +44,7 @@ class Judged(ReadOnly):
     def along(self, vectors: FloatArray) -> FloatArray:
         """(q, d, ...) m: how far the errors go by ``vectors`` (m, 3, ...) m along feed, feed-normal and axis, one a
         sample."""
-        return np.asarray(np.einsum("qdk,qk...->qd...", self.way, vectors[self.sample]))
+        return np.asarray(np.einsum("qbdk,qbk...->qd...", self.way, vectors[self.by]))
 
 
 def check_improvable(setup: Any) -> None:
@@ -74,25 +76,32 @@ def judged(result: SimulationResult, measure: Measure = "verdict", tolerance: fl
     limits = setup.limits if tolerance is None else dict.fromkeys(("wall", "floor", "tip"), tolerance)
     parts = []
     if measure in ("verdict", "wall"):
-        parts.append(_of(gauge.walls, limits["wall"]))
+        parts.append(_of(gauge.walls, limits["wall"], result))
     if measure in ("verdict", "floor"):
-        parts.append(_of(gauge.floors, limits["floor"]))
+        parts.append(_of(gauge.floors, limits["floor"], result))
     if measure == "verdict" and setup.feed_tolerance is not None:
-        parts += [_of(gauge.ends, setup.feed_tolerance), _along(result, setup.feed_tolerance)]
+        parts += [_of(gauge.ends, setup.feed_tolerance, result), _along(result, setup.feed_tolerance)]
     if any(len(part.sample) for part in parts):
-        columns = ("sample", "error", "way", "tolerance")
-        return Judged(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))
+        return Judged(*(np.concatenate([getattr(part, each.name) for part in parts]) for each in fields(Judged)))
     i = np.flatnonzero(result.judged)
     if measure in ("wall", "floor"):
         i = i[:0]
-    return Judged(i, result.delta_in_cut[i], np.tile(np.eye(3), (len(i), 1, 1)), np.full(len(i), limits["tip"]))
+    return _at(i, result.delta_in_cut[i], np.eye(3), limits["tip"])
 
 
-def _of(found: Readings, tolerance: float) -> Judged:
-    return Judged(found.sample, found.error[:, None], found.way[:, None], np.full(len(found.sample), tolerance))
+def _of(found: Readings, tolerance: float, result: SimulationResult) -> Judged:
+    told = made(found, result)
+    limits = np.full(len(found.sample), tolerance)
+    return Judged(found.sample, found.error[:, None], told.by, told.way[:, :, None], limits)
 
 
 def _along(result: SimulationResult, tolerance: float) -> Judged:
     i = np.flatnonzero(result.judged)
-    way = np.tile([[1.0, 0.0, 0.0]], (len(i), 1, 1))
-    return Judged(i, result.delta_in_cut[i, :1], way, np.full(len(i), tolerance))
+    return _at(i, result.delta_in_cut[i, :1], np.array([[1.0, 0.0, 0.0]]), tolerance)
+
+
+def _at(i: IntArray, error: FloatArray, way: FloatArray, tolerance: float) -> Judged:
+    """Of the tip itself at samples i (q,), which go one ``way`` (d, 3)."""
+    ways = np.zeros((len(i), 2, *way.shape))
+    ways[:, 1] = way
+    return Judged(i, error, np.repeat(i[:, None], 2, axis=1), ways, np.full(len(i), tolerance))

@@ -16,13 +16,16 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.compliance.deflection import displacement
 from robomill.improve.judged import MEASURES, Measure
+from robomill.improve.makers import made, only
+from robomill.improve.surfaces import Surfaces, surfaces
 from robomill.kinematics.choice import spins
 from robomill.kinematics.decoupled import decoupled
 from robomill.kinematics.dexterity import determinant, largest_determinant, limit_distance
 from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_kinematics
 from robomill.kinematics.spin import LEAST_DEVIATION, spin_matters
+from robomill.lazy import cached_property
 from robomill.progress import checkpoint
-from robomill.simulation.judging.gauge import ALIKE, Readings
+from robomill.simulation.judging.gauge import Readings
 from robomill.simulation.mapped import total_compliance
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import compliances, sags, tool_frames
@@ -90,7 +93,6 @@ class Screen:
     setup     as it is; its T_MW is not used          path (s samples), at: their numbers on the whole path
     T_WT      (s, 4, 4) the tool in {W}                R_WF (s, 3, 3) the axes of the cut in {W}
     F         (s, 3) N in {W} where the force ``turns`` with the part, else in {M}
-    surfaces  what a gauge reads of each kind
     judged    (s,) samples that count        near (s, n) where arms begin that are solved numerically
     reference the run that it was made from
     """
@@ -102,10 +104,14 @@ class Screen:
     R_WF: FloatArray
     F: FloatArray
     turns: bool
-    surfaces: dict[str, Surfaces]
     judged: BoolArray
     near: FloatArray
     reference: SimulationResult
+
+    @cached_property
+    def surfaces(self) -> dict[str, Surfaces]:
+        """What a gauge reads of each kind."""
+        return {name: surfaces(read, self.reference, self.at) for name, read in _read(self.reference).items()}
 
     def over(self, T_MW: FloatArray) -> Screened:
         """Of parts that lie at T_MW (k, 4, 4)."""
@@ -178,49 +184,6 @@ def configurations(setup: SimulationSetup, T_MT: FloatArray, near: FloatArray, s
     return inverse_kinematics(robot, T_MT, near="path", spin=spin)
 
 
-class Surfaces(NamedTuple):
-    """What a gauge reads of walls, floors or ends, as far as it moves with the tip: of sample ``at`` (q,) of a screen,
-    moved ``toward`` (q, 3); (``low``, ``high``) (q,) m is what the readings were more than that. NaN where another pass
-    had made the surface: there the sample counts as far as it goes deeper, which is the way of ``toward``."""
-
-    at: IntArray
-    toward: FloatArray
-    low: FloatArray
-    high: FloatArray
-
-    def largest(self, d: FloatArray) -> FloatArray:
-        """(k,) m with deviations d (k, s, 3) m; NaN without a reading."""
-        return np.asarray(self._each(d).max(axis=-1)) if len(self.at) else np.full(len(d), np.nan)
-
-    def by_sample(self, d: FloatArray) -> FloatArray:
-        """(k, s) m with deviations d (k, s, 3) m; 0 where a sample has no reading."""
-        found = np.zeros((d.shape[1], d.shape[0]))
-        np.maximum.at(found, self.at, self._each(d).T)
-        return found.T
-
-    def _each(self, d: FloatArray) -> FloatArray:
-        """(k, q) m."""
-        own = np.einsum("kqi,qi->kq", d[:, self.at], self.toward)
-        made = np.maximum(np.abs(own + self.low), np.abs(own + self.high))
-        return np.asarray(np.where(np.isnan(self.low), np.maximum(own, 0.0), made))
-
-
-def surfaces(read: Readings, d: FloatArray, at: IntArray) -> Surfaces:
-    """Of readings of a run with deviations d (m, 3) m along feed, left and axial, those of samples ``at``."""
-    there = np.isin(read.sample, at)
-    sample, toward = np.searchsorted(at, read.sample[there]), read.way[there]
-    more = read.error[there] - np.einsum("qi,qi->q", d[read.sample[there]], toward)
-    other = np.abs(more) > ALIKE
-    toward = np.where(other[:, None], toward * np.sign(more)[:, None], toward)
-    key = np.column_stack([sample, other, np.round(toward, 9)])
-    _, first, which = np.unique(key, axis=0, return_index=True, return_inverse=True)
-    low, high = np.full(len(first), np.inf), np.full(len(first), -np.inf)
-    np.minimum.at(low, which.ravel(), more)
-    np.maximum.at(high, which.ravel(), more)
-    low[other[first]] = np.nan
-    return Surfaces(sample[first], toward[first], low, high)
-
-
 def screen(result: SimulationResult, also: IntArray | None = None, most: int | None = None) -> Screen:
     """From a run without coupling all of whose samples are reached; samples ``also`` are looked at in any case, and
     about ``most`` of them (None: as many as a thousand places can afford)."""
@@ -241,7 +204,6 @@ def screen(result: SimulationResult, also: IntArray | None = None, most: int | N
         R_WF=setup.T_MW[:3, :3].T @ result.R_MF[at],
         F=setup.to_part(result.F[at]) if turns else result.F[at],
         turns=turns,
-        surfaces={name: surfaces(read, result.delta_in_cut, at) for name, read in _read(result).items()},
         judged=result.judged[at],
         near=home[at],
         reference=result,
@@ -259,7 +221,7 @@ def _read(result: SimulationResult) -> dict[str, Readings]:
 
 def _few(result: SimulationResult, most: int, also: IntArray) -> IntArray:
     """Samples of a path: all where there are few, else some all along it, the ends of its extent, the largest readings
-    in every direction of the feed, and the first of every tool."""
+    in every direction of the feed with what has made them, and the first of every tool."""
     path, m = result.path, len(result.path)
     if m <= most:
         return np.arange(m)
@@ -275,5 +237,6 @@ def _few(result: SimulationResult, most: int, also: IntArray) -> IntArray:
         for error in (read.error, -read.error):
             for each in range(SECTORS):
                 some = np.flatnonzero(sector[read.sample] == each)
-                kept.append(read.sample[some[np.argmax(error[some])][None]] if len(some) else read.sample[:0])
+                most_of = some[[np.argmax(error[some])]] if len(some) else some
+                kept += [read.sample[most_of], made(only(read, most_of), result).by.ravel()]
     return np.unique(np.concatenate(kept))

@@ -29,7 +29,8 @@ from robomill.simulation.setup import SimulationSetup, check_setup
 from robomill.units import format_percent
 
 MANY, FULL, MOST = 10_000, 200, 1_000_000  # draws: usual, usual where each is a run in full, and most
-CHECKED = 6  # draws that are run in full, too: those with the largest errors
+CHECKED = 6  # draws that are run in full, too: those with the largest errors, and
+DECIDING = 3  # those nearest to the tolerance, which decide how probably it is kept
 AGREES = 0.02  # of the tolerance: by how much these may differ
 NAMES = ("wall", "floor", "end", "feed", "tip")
 DIFFERS, REDRAWN, IN_FULL = "draws-differ", "draws-again", "draws-in-full"
@@ -80,8 +81,9 @@ def uncertainty(
     Inputs are normal; compliances and coefficients that would change their sign are drawn again. Each draw is the cut
     run with those numbers, the joints solved anew. Exact in compliances, force components and coefficients per area or
     length; of second order in lengths and places, first in exponents; what a gauge reads moves with the tip. The draws
-    with the largest errors are run in full besides (``checked``). What a length or the tool's length changes
-    of where the tool stands, rather than of how much it gives, is taken up when the part is set up, and is not in it.
+    with the largest errors, and those nearest to the tolerance, are run in full besides (``checked``). What a length or
+    the tool's length changes of where the tool stands, rather than of how much it gives, is taken up when the part is
+    set up, and is not in it.
 
     Examples
     --------
@@ -186,8 +188,9 @@ class _Work:
             return 0, 0.0
         names = ("wall", "floor", "tip") if self.measure == "verdict" else (self.measure,)
         ends = [int(np.argmax(np.nan_to_num(errors[name]))) for name in names]
+        near = np.argsort(np.abs(np.nan_to_num(share) - 1.0), kind="stable")[:DECIDING]
         worst = np.argsort(-np.nan_to_num(share), kind="stable")[:CHECKED]
-        told = change[list(dict.fromkeys([*ends, *worst]))[:CHECKED]]
+        told = change[list(dict.fromkeys([*ends, *near, *worst]))[:CHECKED]]
         told[:, self.unsure.named("springs", "model")] = 0.0  # which no set-up says
         said, found = self.expansion.errors(told), []
         for i, each in enumerate(told):

@@ -10,6 +10,7 @@ from robomill.errors import SetupError
 from robomill.improve.design import design
 from robomill.improve.judged import judged
 from robomill.improve.sensitivity import stiffened
+from tests.improve.shoulder import shoulder
 
 
 def short(name: str = "paper_flute") -> rm.SimulationSetup:
@@ -57,6 +58,19 @@ def test_what_is_found_keeps_the_tolerance_in_a_run_of_its_own(name: str, part: 
     assert run.verdict.share <= 1.0
     assert found.share == pytest.approx(1.0, abs=0.02)
     np.testing.assert_allclose(found.C_theta, setup.robot.C_theta / found.stiffness_ratio)
+
+
+def test_nothing_tried_is_cheaper_where_a_wall_is_made_between_two_samples() -> None:
+    """Runs with joints about those that were found: none keeps the tolerance at a lower cost."""
+    setup = shoulder().replace(tolerance=0.02e-3)
+    found = design(setup)
+    assert found.feasible
+    assert found.share == pytest.approx(1.0, abs=0.01)
+    about, rng = np.log2(found.stiffness_ratio), np.random.default_rng(1)
+    for _ in range(150):
+        tried = np.maximum(about + rng.normal(0.0, 0.15, 5) * (rng.random(5) < 0.6), 0.0)
+        if tried.sum() < found.cost - 1e-3:
+            assert rm.simulate(setup.replace(robot=stiffened(setup.robot, 2.0**tried))).verdict.share > 1.0
 
 
 @pytest.mark.parametrize("name", ["paper_flute", "two_tools", "heart"])

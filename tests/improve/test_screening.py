@@ -11,6 +11,7 @@ import robomill as rm
 from robomill.improve.area import area
 from robomill.improve.screening import screen, share_of, standing
 from robomill.kinematics.dexterity import determinant, largest_determinant, limit_distance
+from tests.improve.shoulder import shoulder
 
 PLACES = np.array([[0.1, -1.25, 0.0, 0.3], [-0.2, -1.5, 0.05, -0.8], [0.3, -1.1, -0.05, 2.0], [0.0, -1.4, 0.002, 0.0]])
 
@@ -130,3 +131,28 @@ def test_many_places_are_as_one_by_one() -> None:
     T_MW = where.T_MW(np.random.default_rng(1).uniform([-0.3, -1.5, 0.0, -3.0], [0.3, -1.1, 0.0, 3.0], (230, 4)))
     together = looking.over(T_MW).share("verdict", setup)
     np.testing.assert_array_equal(together, [looking.over(T[None]).share("verdict", setup)[0] for T in T_MW])
+
+
+@pytest.mark.parametrize("make", [slot, stated_feed, tools, arcs, shoulder])
+def test_where_it_was_made_the_screen_says_what_the_run_does(make: Callable[[], rm.SimulationSetup]) -> None:
+    """At the place of the reference nothing is expanded: each reading is what the gauge found."""
+    setup = make()
+    run = rm.simulate(setup)
+    looking = screen(run)
+    found = looking.errors(run.delta_in_cut[looking.at][None])
+    for name in ("wall", "floor"):
+        assert found[name][0] == pytest.approx(abs(getattr(run.verdict, name).value), abs=2e-6)
+
+
+def test_walls_made_between_two_samples_go_with_both() -> None:
+    """A wall that its own sample alone says nothing of decides here: beside the place it was found at, in full runs."""
+    setup = shoulder()
+    run = rm.simulate(setup)
+    assert np.abs(run.gauge.walls.error).max() > 30e-6
+    places = np.array([[0.02, -1.31, 0.002, 0.0], [-0.03, -1.28, 0.01, 0.1], [0.0, -1.35, 0.0, -0.1]])
+    T_MW = area(setup, {"z": (-0.1, 0.1), "yaw_deg": (-180, 180)}).T_MW(places)
+    found = screen(run).over(T_MW)
+    for k, T in enumerate(T_MW):
+        verdict = rm.simulate(setup.replace(T_MW=T)).verdict
+        assert found.errors["wall"][k] == pytest.approx(abs(verdict.wall.value), abs=2e-6)
+        assert found.errors["floor"][k] == pytest.approx(abs(verdict.floor.value), abs=2e-6)

@@ -12,7 +12,10 @@ from robomill.identification.fit.model_error import ModelError
 from robomill.identification.fit.models import Model
 from robomill.identification.knowledge import Knowledge
 from robomill.improve import uncertainty as module
+from robomill.improve.expansion import Expansion
+from robomill.improve.screening import share_of
 from robomill.simulation.band import deviation_band, size_band
+from tests.improve.shoulder import shoulder
 
 NOTHING = dict(compliance=0.0, force=0.0, lengths=0.0, part=0.0, part_turn=0.0, tool_length=0.0)
 
@@ -59,6 +62,34 @@ def test_draws_are_what_a_plain_loop_over_simulate_gives(name: str) -> None:
         assert found.tip[k] == pytest.approx(run.max_deviation, abs=2e-8)
         assert found.wall[k] == pytest.approx(abs(run.verdict.wall.value), abs=0.6e-6)
         assert found.floor[k] == pytest.approx(abs(run.verdict.floor.value), abs=0.6e-6)
+
+
+def test_a_wall_made_between_two_samples_is_drawn_as_runs_have_it() -> None:
+    """Where each draw is all but the cut as it is, each reads what that does; wider ones as a plain loop does."""
+    setup = shoulder()
+    wall = abs(rm.simulate(setup).verdict.wall.value)
+    near = rm.uncertainty(setup, spread(compliance=1e-4), samples=20)
+    np.testing.assert_allclose(near.wall, wall, rtol=1e-3)
+    found = rm.uncertainty(setup, spread(compliance=0.2), samples=24, seed=5)
+    values = {each.key: each.value + found.change[:, i] for i, each in enumerate(found.inputs)}
+    for k in range(24):
+        verdict = by_hand(setup, {key: float(value[k]) for key, value in values.items()}).verdict
+        assert found.share[k] == pytest.approx(verdict.share, abs=0.05)
+
+
+def test_the_draws_that_decide_are_run_in_full_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draws that are told wrongly only where the tolerance is just kept, and not where errors are largest."""
+    setup = slot().replace(tolerance_mm=0.25)
+    told = Expansion.errors
+
+    def wrong(self: Expansion, change: np.ndarray) -> dict[str, np.ndarray]:
+        found = told(self, change)
+        just = np.abs(share_of("verdict", setup, found) - 1.0) < 0.2
+        return found | {"wall": np.where(just, 1.05 * found["wall"], found["wall"])}
+
+    monkeypatch.setattr(Expansion, "errors", wrong)
+    found = rm.uncertainty(setup, spread(compliance=0.2), samples=400)
+    assert module.DIFFERS in [each.code for each in found.findings]
 
 
 def test_places_of_centimetres_are_still_of_second_order() -> None:
