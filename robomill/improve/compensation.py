@@ -229,11 +229,7 @@ def _measured(
     bound, known = asked
     before, after = errors_of(wanted, gauge), errors_of(led)
     if not after.max < before.max:
-        raise CompensationError(
-            f"The path is not corrected: {format_si(before.max, 'mm', 4)} would become "
-            f"{format_si(after.max, 'mm', 4)}, since what is pushed aside here is not what was chosen to be corrected; "
-            "choose other components."
-        )
+        raise CompensationError(_no_better(before, after, led, chosen))
     softer, stronger = _wrong(led)
     sprung = springs(led)
     findings = (*_met(after, softer, stronger, led), *closer(led, after), *_findings(found, led, written, sprung))
@@ -256,6 +252,15 @@ def _measured(
         findings=findings,
         sprung=sprung,
     )
+
+
+def _no_better(before: Errors, after: Errors, led: SimulationResult, chosen: tuple[str, ...]) -> str:
+    """Why there is no corrected program that leaves less, by what the best one, run as ``led``, would leave."""
+    became = f"{format_si(before.max, 'mm', 4)} would become {format_si(after.max, 'mm', 4)}"
+    if not {"normal", "axial"} <= set(chosen):
+        why = "since what is pushed aside here is not what was chosen to be corrected; choose other components."
+        return f"The path is not corrected: {became}, {why}"
+    return f"The path is not corrected: {became}. {judge(led, measured(led)).sentence}"
 
 
 def checked_components(components: Iterable[str]) -> tuple[str, ...]:

@@ -7,10 +7,10 @@ import numpy as np
 from robomill.errors import CompensationError
 from robomill.improve.correction import Correction
 from robomill.provenance import named
+from robomill.simulation.corners import FARTHEST
 from robomill.simulation.judging.gauge import Gauge
 from robomill.simulation.judging.verdict import judge
 from robomill.simulation.judging.verdict_words import NO_NUMBER
-from robomill.simulation.meant import FARTHEST
 from robomill.simulation.result import SimulationResult
 from robomill.units import format_si, to_si
 

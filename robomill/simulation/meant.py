@@ -17,6 +17,7 @@ from robomill.cutting.conditions import STEEP
 from robomill.errors import ToolpathError
 from robomill.progress import checkpoint
 from robomill.provenance import Finding, named
+from robomill.simulation.corners import FARTHEST, Ways, at_corners
 from robomill.simulation.samples import ways
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
@@ -28,9 +29,9 @@ from robomill.vectors import angle_between
 WANTED = "wanted-path"  # the findings that say from which path a corrected program's deviation is told
 LINK = 20e-6  # m: corrections at one place that differ by more are joined by a link
 SAME = 1e-6  # m: steps that go no further stay at one place
-FARTHEST = 2e-3  # m: no corrected program goes further beside its path, and none leaves out more of it: an arm that is
-# pushed further off is not predicted by its springs at rest
 TURNED = 2e-3  # m: a place where the path goes the other way counts as so much further off, twice
+LEFT_OUT = 2e-3  # m: what is left out of the path counts as its length times this
+STILL = 1e-9  # m: less is none
 DIRECTED = 0.5e-3  # m: shorter steps may be links, which go any way
 ITS_WAY = 0.5  # cosine of the angle within which a sample goes the way of a step
 PLUNGING = math.sqrt(1.0 - STEEP**2)  # cosine of the angle to the tool's axis within which a step is a plunge's
@@ -89,7 +90,10 @@ def meant(path: Toolpath, wanted: Toolpath, step: float) -> Toolpath:
         moves[0] = True
         some = every[moves]
         near = _aligned(path.p[some], here[some] * directed[some, None], wanted.p[all_], there[all_])
-        p[some], worst, at = _places(path.p[some], here[some], wanted.p[all_], near)
+        q, k = path.p[some], path.k[some]
+        s = _nearest(q, here[some], wanted.p[all_], near)
+        s = at_corners(q, k, path.block[some], s, Ways.of(wanted.p[all_], wanted.k[all_]))
+        p[some], worst, at = _places(q, wanted.p[all_], s)
         _bottoms(p, path, wanted, some, all_)
         for i in every[~moves].tolist():  # what turns on the spot stays at its place
             p[i] = p[i - 1]
@@ -157,12 +161,11 @@ def straight_on(path: Toolpath, wanted: Toolpath) -> BoolArray:
     return found
 
 
-def _places(q: FloatArray, t: FloatArray, p: FloatArray, near: IntArray) -> tuple[FloatArray, float, int]:
-    """(n, 3) m: where on one cut of the wanted path, p (m, 3) m, the samples q (n, 3) m of one cut belong, each about
-    the sample ``near`` (n,); how far (m) they are off it, or leave some of it out, and which sample is or does so most.
-    t (n, 3) are their directions."""
+def _places(q: FloatArray, p: FloatArray, s_q: FloatArray) -> tuple[FloatArray, float, int]:
+    """(n, 3) m: where on one cut of the wanted path, p (m, 3) m, the samples q (n, 3) m of one cut belong, about s_q
+    (n,) m along it; how far (m) they are off it, or leave some of it out, and which sample is or does so most."""
     s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1)))
-    s_q = np.maximum.accumulate(_nearest(q, t, p, near))
+    s_q = np.maximum.accumulate(s_q)
     found = np.column_stack([np.interp(s_q, s, p[:, i]) for i in range(3)])
     left_out = np.diff(s_q, prepend=0.0, append=s[-1])
     left_out[1:-1] -= np.linalg.norm(np.diff(q, axis=0), axis=1)
@@ -174,8 +177,11 @@ def _places(q: FloatArray, t: FloatArray, p: FloatArray, near: IntArray) -> tupl
 
 def _aligned(q: FloatArray, t: FloatArray, p: FloatArray, u: FloatArray) -> IntArray:
     """(n,) samples of p (m, 3) m, in order, to which samples q (n, 3) m belong; t (n, 3) and u (m, 3) are their
-    directions, 0 where one has none. The first belongs to the first, the last to the last."""
+    directions, 0 where one has none. The first belongs to the first, the last to the last, and what the samples leave
+    out of p costs, so that where a path comes back to itself nothing is left out between."""
     n, m = len(q), len(p)
+    s, gone = (np.append(0.0, np.cumsum(np.linalg.norm(np.diff(each, axis=0), axis=1))) for each in (p, q))
+    steps = s - np.append(0.0, s)[np.searchsorted(s, s - STILL, "left")]
     width = min(m, WINDOW)
     every = np.arange(width)
     total = np.full(width, np.inf)
@@ -185,8 +191,8 @@ def _aligned(q: FloatArray, t: FloatArray, p: FloatArray, u: FloatArray) -> IntA
     for i in range(1, n):
         if i % SAID == 0:
             checkpoint(i / n, "Where the program was meant to go")
-        least = np.minimum.accumulate(total)
-        source = np.maximum.accumulate(np.where(total <= least, every, 0))
+        window = slice(first, first + width)
+        least, source = _stepped(total, s[window], np.maximum(gone[i] - gone[i - 1], steps[window]))
         moved = min(max(first + int(np.argmin(total)) - width // 2, first), m - width) - first
         first += moved
         shift = np.minimum(every + moved, width - 1)
@@ -200,6 +206,25 @@ def _aligned(q: FloatArray, t: FloatArray, p: FloatArray, u: FloatArray) -> IntA
     for i in range(n - 1, 0, -1):
         at[i - 1] = came[i, at[i] - begun[i]]
     return at
+
+
+def _stepped(total: FloatArray, s: FloatArray, far: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Least cost (w,) of coming to each of samples at s (w,) m from those before it, which cost ``total`` (w,), and
+    from which: ``LEFT_OUT`` of what is further than ``far`` (w,) m."""
+    every = np.arange(len(s))
+    ahead = total - LEFT_OUT * s
+    least = np.minimum.accumulate(ahead)
+    source = np.maximum.accumulate(np.where(ahead <= least, every, 0))
+    near = np.searchsorted(s, s - far - STILL, "left")  # the first from which nothing is left out
+    best, of = total.copy(), every.copy()
+    for back in range(1, int((every - near).max(initial=0)) + 1):
+        begin = np.maximum(every - back, near)
+        better = total[begin] < best
+        best, of = np.where(better, total[begin], best), np.where(better, begin, of)
+    beyond = np.maximum(near - 1, 0)
+    cost = least[beyond] + LEFT_OUT * (s - far)
+    skips = (near > 0) & (cost < best)
+    return np.where(skips, cost, best), np.where(skips, source[beyond], of)
 
 
 def _nearest(q: FloatArray, t: FloatArray, p: FloatArray, at: IntArray) -> FloatArray:

@@ -1,6 +1,8 @@
 """The corrected program against runs that know nothing of it: its text, read and simulated as any other program."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -431,3 +433,69 @@ def test_what_a_closer_look_finds_is_what_is_told_or_it_is_said(name: str) -> No
     assert bool(said) == (more > 5e-6)
     for each in said:
         assert "every 0.25 mm instead of every 1.0 mm" in each
+
+
+RECTANGLE = [(-66, -30), (30, -30), (30, 20), (-30, 20), (-30, -30), (-10, -30)]
+
+
+def around(places: list[tuple[float, float, float]]) -> rm.GCodeSource:
+    """A program through places, mm."""
+    (x, y, z), *others = places
+    lines = [
+        f"G0 X{x:.4f} Y{y:.4f} Z5",
+        f"G0 Z{z:.4f}",
+        *(f"G1 X{x:.4f} Y{y:.4f} Z{z:.4f} F1800" for x, y, z in others),
+    ]
+    return rm.GCodeSource("\n".join(["G21 G90 G17", "S12000 M3", *lines, "G0 Z20", "M2"]), "rectangle.nc")
+
+
+@pytest.mark.parametrize("step_mm", [0.25, 1.0])
+def test_a_rectangle_is_corrected_at_its_corners_as_by_hand(step_mm: float) -> None:
+    """By hand: each leg is moved by what undoes the deflection in its middle, with straight lines across at corners."""
+    stock = rm.Stock(lower_mm=(-60, -60, -20), upper_mm=(60, 60, 0))
+    setup = rm.load_setup("paper_flute").replace(
+        source=around([(x, y, -2.0) for x, y in RECTANGLE]), stock=stock, step_mm=step_mm
+    )
+    run, places = rm.simulate(setup), []
+    for (x0, y0), (x1, y1) in pairwise(RECTANGLE):
+        middle = np.array([x0 + x1, y0 + y1]) / 2.0
+        i = int(np.argmin(np.linalg.norm(run.path.p[:, :2] * 1e3 - middle, axis=1)))
+        d = run.delta[i] @ setup.T_MW[:3, :3] * 1e3
+        d[0 if x0 != x1 else 1] = 0.0  # not along the feed
+        places += [(x0 - d[0], y0 - d[1], -2.0 - d[2]), (x1 - d[0], y1 - d[1], -2.0 - d[2])]
+    by_hand = rm.simulate(setup.replace(source=replace(around(places), wanted=setup.source)))
+    found = rm.compensate(setup)
+    assert abs(run.verdict.wall.value) > 0.2e-3
+    assert abs(by_hand.verdict.wall.value) < 0.012e-3
+    assert found.after.max < 0.001e-3
+    tip, plain = tip_of(setup, found.text)
+    legs = plain.path.cutting & (plain.path.step_length > 0.5e-3 * min(step_mm, 1.0))
+    legs &= np.abs(plain.R_MF[:, :2, 0]).max(axis=1) > 1.0 - 1e-3  # not on the links across
+    x, y, z = tip[legs].T * 1e3
+    off = np.min([np.abs(y + 30), np.abs(x - 30), np.abs(y - 20), np.abs(x + 30)], axis=0)
+    assert off.max() < 0.002
+    assert np.median(np.abs(z + 2.0)) < 0.001
+
+
+def test_rectangles_one_in_another_are_corrected_with_a_force_that_follows_the_cut() -> None:
+    """A pocket: the way out to each larger rectangle goes on in the direction in which it came."""
+    lines = ["G21 G90 G17", "S12000 M3", "G0 X0 Y0 Z5", "G1 Z-2 F200"]
+    for x, y in ((2.0, 1.4), (7.0, 4.9), (12.0, 8.4)):
+        lines += [f"G1 X{x} Y{-y} F1500", f"Y{y}", f"X{-x}", f"Y{-y}", f"X{x}"]
+    source = rm.GCodeSource("\n".join([*lines, "G0 Z20", "M2"]), "pocket.nc")
+    flute = rm.load_setup("paper_flute")
+    setup = flute.replace(
+        source=source,
+        stock=rm.Stock(lower_mm=(-60, -60, -20), upper_mm=(60, 60, 0)),
+        force=rm.process_force("al7075_t6_carbide_ref190", flute.cutter),
+        engagement=True,
+        step_mm=1.0,
+    )
+    found = rm.compensate(setup)
+    assert found.before.max > 0.2e-3
+    assert found.after.max < 0.005e-3
+    tip, plain = tip_of(setup, found.text)
+    legs = plain.path.cutting & (plain.path.step_length > 0.4e-3) & (np.abs(plain.R_MF[:, :2, 0]).max(axis=1) > 0.999)
+    x, y, _ = np.abs(tip[legs & (np.abs(tip[:, :2]) > [6e-3, 4e-3]).any(axis=1)].T) * 1e3
+    off = np.min([np.abs(x - 7.0), np.abs(x - 12.0), np.abs(y - 4.9), np.abs(y - 8.4)], axis=0)
+    assert np.median(off) < 0.002

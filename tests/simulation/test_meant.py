@@ -1,5 +1,6 @@
 """Where the samples of a corrected program were meant to be, against paths offset by hand."""
 
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -48,6 +49,40 @@ def test_there_and_back_along_one_line_are_not_taken_for_each_other() -> None:
     found = places(cut((0, 0.2), (50, 0.2), (50, -0.2), (0, -0.2)), cut((0, 0), (50, 0), (0, 0)))
     np.testing.assert_allclose(found[:, 2], np.clip(found[:, 0], 0.0, 50.0), atol=1e-9)
     assert (np.abs(np.diff(found[:, 2])) <= 1.0 + 1e-9).all()
+
+
+def legs_moved(
+    corners: list[tuple[float, float]], normal: float, feed: float
+) -> tuple[list[tuple[float, float]], np.ndarray]:
+    """Each leg moved to its right and along itself, mm, with straight lines across at the corners; and the corner or
+    leg that each of the points was meant for."""
+    points, at = [], []
+    for a, b in pairwise(np.array(corners)):
+        u = (b - a) / np.linalg.norm(b - a)
+        c = normal * np.array([u[1], -u[0]]) + feed * u
+        points += [tuple(a + c), tuple(b + c)]
+        at += [a, b]
+    return points, np.array(at)
+
+
+@pytest.mark.parametrize("normal", [-0.3, 0.05, 0.25])
+@pytest.mark.parametrize("feed", [-0.15, -0.0025, 0.0, 0.0025, 0.15])
+def test_the_ends_of_legs_belong_to_their_corners_however_far_they_fall_short(normal: float, feed: float) -> None:
+    """Around a rectangle and on from it to a larger one: through places and in directions where it has been before."""
+    rectangle = [(30.0, -20.0), (30.0, 20.0), (-30.0, 20.0), (-30.0, -20.0), (30.0, -20.0)]
+    larger = [(1.5 * x, 1.5 * y) for x, y in rectangle]
+    corners = [(0.0, 0.0), *rectangle, *larger]
+    points, meant_for = legs_moved(corners, normal, feed)
+    path = resample(cut(*points), STEP)
+    found = meant(path, resample(cut(*corners), STEP), STEP)
+    places = np.column_stack([path.p, found.p])[path.cutting][:, [0, 1, 3, 4]] * 1e3
+    after = 0
+    for point, corner in zip(points[1:-1], meant_for[1:-1], strict=True):
+        i = after + int(np.argmax(np.abs(places[after:, :2] - point).max(axis=1) < 1e-9))
+        np.testing.assert_allclose(places[i, :2], point, atol=1e-9)
+        np.testing.assert_allclose(places[i, 2:], corner, atol=1e-6)
+        after = i
+    assert linked(path, found).sum() >= len(corners) - 2
 
 
 def test_a_ring_cut_twice_belongs_turn_by_turn() -> None:
