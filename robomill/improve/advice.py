@@ -28,6 +28,9 @@ from robomill.values import Said, Tabled
 SLOWEST, FASTEST, HALVED = 0.1, 4.0, 7  # times the feed, and how often the way between is halved
 MOST_LEVELS = 4
 ALLOWANCE = 0.1  # of the depth: what roughing leaves for a last pass
+AGAIN = ("allowance", "once more")  # ways whose last pass cuts what the one before was too far off to take away
+MARCHED = 5_000  # samples of a path: of longer ones no such way is run step by step
+TOLD = " (met as it was told)"  # by a last pass, where that is too long a run
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -148,7 +151,9 @@ def advise(setup: SimulationSetup, run: Simulate | None = None) -> Advice:
 
     Notes
     -----
-    A path cut once more meets the stock as the deflected first pass has left it.
+    A last pass, after roughing or once more, meets the stock as the deflected pass before it has left it: these ways
+    are coupled runs. Of a path of more than some thousand samples they are not, and their titles say that what they met
+    was the stock as it was told.
 
     Examples
     --------
@@ -176,7 +181,10 @@ def advise(setup: SimulationSetup, run: Simulate | None = None) -> Advice:
         found.append(_feed(now, run))
     for k, (name, title, path) in enumerate(asked_for, 1):
         with step(k, len(asked_for) + 1, title):
-            found.append(_way(name, title, partial(_run_along, setup, path, run)))
+            if name in AGAIN:
+                found.append(_again(name, title, now, path, run))
+            else:
+                found.append(_way(name, title, partial(_run_along, setup, path, run)))
     return Advice(setup, tuple(found))
 
 
@@ -209,6 +217,15 @@ def _way(name: str, title: str, run: Callable[[], SimulationResult], factor: flo
         return Way(name, title, run(), factor=factor)
     except RobomillError as refusal:
         return Way(name, title, None, str(refusal))
+
+
+def _again(name: str, title: str, now: SimulationResult, path: Callable[[], Toolpath], run: Simulate) -> Way:
+    """A way whose last pass meets what the one before, deflected, has left: a coupled run, unless that is too long."""
+    setup = now.setup
+    if not setup.coupling and len(now.path) > MARCHED:
+        return _way(name, f"{title}{TOLD}", partial(_run_along, setup, path, run))
+    coupled = setup.replace(coupling=True, provenance=dict(setup.provenance))
+    return _way(name, title, partial(_run_along, coupled, path, run))
 
 
 def _feed(now: SimulationResult, run: Simulate) -> Way:

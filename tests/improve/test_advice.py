@@ -7,7 +7,9 @@ import pytest
 
 import robomill as rm
 from robomill.errors import SetupError
+from robomill.improve import advice as module
 from robomill.improve.advice import advise
+from tests.improve.shoulder import shoulder
 
 SETUP = rm.load_setup("paper_flute/setup_process").replace(step=4e-3, cell=5e-4)
 
@@ -72,6 +74,27 @@ def test_the_best_is_the_quickest_within_tolerance(advice: rm.Advice) -> None:
     assert not any(each.keeps for each in strict.ways)
     assert "no feed keeps the tolerance" in way(strict, "feed").title
     assert strict.best.share == min(each.share for each in strict.ways)
+
+
+def test_a_last_pass_meets_what_the_deflected_one_before_it_has_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two programs written by hand, run with force and deflection coupled; otherwise where a path is too long."""
+    passes = "S12000 M3\n" + "".join(f"G0 X-70 Y-32 Z5\nG0 Z{z}\nG1 X70 F1500\nG0 Z20\n" for z in (-4.5, -5.0)) + "M2\n"
+    setup = shoulder()
+    coupled = {
+        name: rm.simulate(setup.replace(source=rm.GCodeSource(text), coupling=True)).verdict
+        for name, text in (("allowance", passes), ("once more", passes.replace("-4.5", "-5.0")))
+    }
+    advice = advise(setup)
+    for name, verdict in coupled.items():
+        found = way(advice, name)
+        assert found.share == pytest.approx(verdict.share, rel=1e-3)
+        assert rm.simulate(found.run.setup).verdict.share == found.share
+    told = rm.simulate(setup.replace(source=rm.GCodeSource(passes))).verdict.share
+    assert told < 0.7 * coupled["allowance"].share
+    monkeypatch.setattr(module, "MARCHED", 10)
+    other = way(advise(setup), "allowance")
+    assert other.title.endswith("(met as it was told)")
+    assert other.share == pytest.approx(told, rel=1e-3)
 
 
 @pytest.mark.parametrize(
