@@ -28,7 +28,7 @@ from robomill.simulation.judging.gauge import Gauge
 from robomill.simulation.judging.verdict import judge
 from robomill.simulation.judging.verdict_words import LEVELS, Level, level_of_share
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import along, ran
+from robomill.simulation.run import along, ran, spin_of
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource, PathSource
@@ -175,7 +175,7 @@ def compensation(
         check_trusted(wanted, before)
         back.moves = back.moves.finer(wanted)
         if back.moves.wanted is not wanted.path:
-            wanted = along(setup, back.moves.wanted)
+            wanted = along(setup, back.moves.wanted, spin=spin_of(wanted.ik))
             before = measured(wanted)
     with step(1, 4, "Correcting the path"):
         found = correct(setup, wanted, chosen)

@@ -17,7 +17,7 @@ from robomill.simulation.judging.places import cut_axes
 from robomill.simulation.led import led_beside, plunges, tip_error
 from robomill.simulation.meant import LINK
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import along
+from robomill.simulation.run import along, spin_of
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 
@@ -166,7 +166,7 @@ def corrected_run(wanted: SimulationResult, p: FloatArray, **wrong: float) -> Si
     ``along``."""
     path = wanted.path
     led = led_beside(path, p, plunges(path, wanted.conditions))
-    return along(wanted.setup, replace(path, p=p), led=led, **wrong)
+    return along(wanted.setup, replace(path, p=p), led=led, spin=spin_of(wanted.ik), **wrong)
 
 
 @dataclass(frozen=True, eq=False)

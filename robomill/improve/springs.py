@@ -11,7 +11,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.provenance import Finding, named
 from robomill.simulation.meant import LINK, SAME, linked
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import along, stepped
+from robomill.simulation.run import along, spin_of, stepped
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_count, format_si
 
@@ -49,7 +49,7 @@ def springs(led: SimulationResult) -> tuple[Springs, ...]:
     path = stepped(led.setup, led.setup.toolpath)
     links = linked(path, led.path)
     if links.any():
-        plain = along(led.setup, path)
+        plain = along(led.setup, path, spin=spin_of(led.ik))
         tips = path.p + led.setup.to_part(np.nan_to_num(plain.delta))
         off = _beside(tips, led.path, np.flatnonzero(links))
         begins = links & ~np.append(False, links[:-1])

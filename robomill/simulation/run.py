@@ -20,7 +20,7 @@ from robomill.errors import ToolpathError
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
-from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins
+from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins, spin_matters
 from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
 from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
@@ -96,11 +96,12 @@ def ran(setup: SimulationSetup, *, softer: float = 1.0, stronger: float = 1.0) -
     if setup.wanted_path is None:
         return along(setup, path, softer=softer, stronger=stronger)
     checkpoint(0.0, "Where the program was meant to go")
-    wanted = meant(path, stepped(setup, setup.wanted_path), setup.step)
+    asked_for = stepped(setup, setup.wanted_path)
+    wanted = meant(path, asked_for, setup.step)
     told = told_conditions(setup, wanted, np.ones(len(wanted), dtype=bool))
     links = linked(path, wanted)
     led = led_beside(wanted, path.p, plunges(wanted, told), links)
-    run = along(setup, path, led=led, softer=softer, stronger=stronger)
+    run = along(setup, path, led=led, spin=spin_along(setup, asked_for), softer=softer, stronger=stronger)
     return against(run, wanted, feed_directions(setup, wanted), links | straight_on(path, wanted))
 
 
@@ -120,16 +121,18 @@ def along(
     path: Toolpath,
     *,
     led: Led | None = None,
+    spin: float | None = None,
     softer: float = 1.0,
     stronger: float = 1.0,
 ) -> SimulationResult:
     """The run of ``setup`` along a path in {W} as it is sampled.
 
-    ``led`` says where the tool goes if not as the path tells it to; ``softer`` is what all that gives is multiplied by,
-    ``stronger`` what the force is: how a result changes where they are wrong.
+    ``led`` says where the tool goes if not as the path tells it to, ``spin`` (rad) how the arm holds it if not as the
+    set-up says; ``softer`` is what all that gives is multiplied by, ``stronger`` what the force is: how a result
+    changes where they are wrong.
     """
     checkpoint(0.0, "Trying arm positions")
-    ik = configurations(setup, path)
+    ik = configurations(setup, path, spin)
     checkpoint(0.0, "Compliance")
     C_joint, C_spring = compliances(setup, path, ik.theta)
     C = softer * total_compliance(setup, path, C_joint, C_spring)
@@ -161,13 +164,29 @@ def along(
     )
 
 
-def configurations(setup: SimulationSetup, path: Toolpath) -> IKResult:
-    """How the arm stands along the sampled path: branches joined, the spin about the tool as the set-up has it."""
+def configurations(setup: SimulationSetup, path: Toolpath, held: float | None = None) -> IKResult:
+    """How the arm stands along the sampled path: branches joined, the spin about the tool as the set-up has it, or as
+    it is ``held`` (rad)."""
     spin: Spin = setup.spin if isinstance(setup.spin, float) else LEAST_MOTION
-    if setup.spin == LEAST_DEVIATION and setup.robot.n >= 6:
+    if held is not None:
+        spin = held
+    elif setup.spin == LEAST_DEVIATION and setup.robot.n >= 6:
         over = deviation_over_spin(setup, path)
         spin = float(over.angle[over.best])
     return inverse_kinematics(setup.robot, tool_poses(setup, path), near="path", spin=spin)
+
+
+def spin_along(setup: SimulationSetup, path: Toolpath) -> float | None:
+    """The spin (rad) that the arm chooses along a path, which a program that was corrected for it keeps, wherever it
+    comes from; None where there is none to choose."""
+    if isinstance(setup.spin, float) or not spin_matters(setup.robot):
+        return None
+    return spin_of(configurations(setup, path))
+
+
+def spin_of(ik: IKResult) -> float | None:
+    """The one spin (rad) of configurations along a path; None where there is none, or more than one."""
+    return float(ik.spin[0]) if ik.spin is not None and len(ik.spin) and np.ptp(ik.spin) == 0.0 else None
 
 
 def deviation_over_spin(setup: SimulationSetup, path: Toolpath) -> OverSpin:

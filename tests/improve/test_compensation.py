@@ -499,3 +499,28 @@ def test_rectangles_one_in_another_are_corrected_with_a_force_that_follows_the_c
     x, y, _ = np.abs(tip[legs & (np.abs(tip[:, :2]) > [6e-3, 4e-3]).any(axis=1)].T) * 1e3
     off = np.min([np.abs(x - 7.0), np.abs(x - 12.0), np.abs(y - 4.9), np.abs(y - 8.4)], axis=0)
     assert np.median(off) < 0.002
+
+
+@pytest.mark.parametrize("rule", ["least_motion", "least_deviation"])
+def test_an_arm_that_may_choose_its_spin_keeps_the_one_it_has_along_points(rule: str) -> None:
+    """What is written begins elsewhere than the points, and the arm would turn the tool otherwise from there."""
+    x = np.linspace(-40.0, 40.0, 41)
+    wave = rm.Toolpath.from_points(
+        p_mm=np.column_stack([x, 10.0 * np.sin(x / 15.0), np.full(41, -2.0)]), feed_mm_min=[0] + [1500] * 40
+    )
+    setup = rm.SimulationSetup(
+        robot=rm.load_robot("fanuc_r2000ic"),
+        source=wave,
+        cutter=rm.Cutter("ball", diameter_mm=8, flutes=2),
+        force=rm.PathForce(feed_normal_N=100, axial_N=-30),
+        stock=rm.Stock(lower_mm=(-60, -40, -20), upper_mm=(60, 40, 0)),
+        part_zero_mm=(1300, 0, 500),
+        spin=rule,
+    )
+    spin = float(rm.simulate(setup).ik.spin[0])
+    found = rm.compensate(setup)
+    for run in (found.wanted, found.led, rm.simulate(setup.replace(source=found.source))):
+        np.testing.assert_array_equal(run.ik.spin, spin)
+    held = rm.compensate(setup.replace(spin=spin))
+    assert found.after.max == pytest.approx(held.after.max, abs=1e-6)
+    assert found.after.max < 0.02 * found.before.max
