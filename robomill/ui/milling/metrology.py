@@ -152,6 +152,22 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     _overlay(found, measured, unit)
 
 
+<<<<<<< HEAD
+=======
+def _of_the_chart(found: GrooveProfile) -> str:
+    """What the chart shows, and where it has no middle line."""
+    if found.missing == len(found.station):
+        return (
+            "Floor of the cut against the ideal one; grey: the tolerance. No groove with two walls lies along the cut, "
+            "so there is no middle line."
+        )
+    told = "Middle line of the groove and floor of the cut against the ideal ones; grey: the tolerance."
+    if found.missing:
+        told += f" At {found.missing} of {len(found.station)} places no groove has two walls: no middle there."
+    return told
+
+
+>>>>>>> d412c447 (A line of the chart's words within its length)
 def _along_in_words(found: GrooveProfile, unit: str) -> str:
     """The chart in words, with the ends of its curves."""
     told = []
