@@ -112,20 +112,12 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
         measured=None if measured is None else (from_si(measured.station, unit), from_si(measured.offset, unit)),
         joined=result.path.goes_one_way,
     )
-    told = "Middle line of the groove and floor of the cut against the ideal ones; grey: the tolerance."
-    if found.missing == len(found.station):
-        told = (
-            "Floor of the cut against the ideal one; grey: the tolerance. Nowhere along it has a groove two walls, so "
-        )
-        told += "there is no middle line."
-    elif found.missing:
-        told += f" At {found.missing} of {len(found.station)} places no groove has two walls: no middle there."
     pieces.figure(
         profile_figure(curves, block, float(from_si(station_m(result), unit)), dark=dark),
         "profile",
         name="groove-profile",
         table=lambda: profile_columns(found, block),
-        caption=told,
+        caption=_of_the_chart(found),
         alt=_along_in_words(found, unit),
     )
     if fit is not None:
@@ -152,8 +144,6 @@ def profile_panel(result: SimulationResult, spread: AlloySpread | None, dark: bo
     _overlay(found, measured, unit)
 
 
-<<<<<<< HEAD
-=======
 def _of_the_chart(found: GrooveProfile) -> str:
     """What the chart shows, and where it has no middle line."""
     if found.missing == len(found.station):
@@ -167,7 +157,6 @@ def _of_the_chart(found: GrooveProfile) -> str:
     return told
 
 
->>>>>>> d412c447 (A line of the chart's words within its length)
 def _along_in_words(found: GrooveProfile, unit: str) -> str:
     """The chart in words, with the ends of its curves."""
     told = []
