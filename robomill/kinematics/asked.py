@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Concatenate, ParamSpec
+from typing import Any, Concatenate, ParamSpec
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import KinematicsError
 from robomill.kinematics import inverse
 from robomill.kinematics.extent import stretch
+from robomill.kinematics.forward import joint_angles
 from robomill.kinematics.result import IKResult
 from robomill.kinematics.transforms import poses
 from robomill.robot.model import Robot, check_robot
@@ -33,9 +34,18 @@ def _in_metres(
         check_robot(robot)
         found = poses(T_MT)
         _check_places(robot, found[..., :3, 3])
+        _check_angles(robot, choices.get("near"), choices.get("spin"))
         return solve(robot, found, *args, **choices)
 
     return in_metres
+
+
+def _check_angles(robot: Robot, near: Any, spin: Any) -> None:
+    """Refuse a configuration or a turn that was meant in degrees."""
+    if near is not None and not isinstance(near, str):
+        joint_angles(robot, near)
+    if isinstance(spin, (int, float)) and abs(spin) > 2.0 * np.pi:
+        raise KinematicsError(f"spin: found {spin:g} rad, more than a turn; {spin:g}° are {to_si(spin, 'deg'):.5g}.")
 
 
 def longest_reach(robot: Robot) -> float:

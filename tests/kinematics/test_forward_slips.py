@@ -57,3 +57,19 @@ def test_a_place_out_of_reach_is_not_reached_and_not_refused() -> None:
     far = rm.inverse_kinematics(ARM, rm.pose_from_world([0, -60.0, 0, 0, 0]))
     assert not far.reached
     assert rm.inverse_kinematics(GANTRY, rm.pose_from_world([0, 100.0, 0, 0, 0])).reached.shape == ()
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"near": [10, -90, 100, 170, 60, 100]}, "joint 2 is at -90 rad, far beyond its limits"),
+        ({"spin": 90}, "spin: found 90 rad, more than a turn; 90° are 1.5708"),
+    ],
+)
+def test_degrees_are_refused_where_inverse_kinematics_is_asked_too(given: dict, said: str) -> None:
+    robot = rm.load_robot("fanuc_r2000ic")
+    pose = rm.tool_pose(robot, robot.home)
+    with pytest.raises(KinematicsError, match=said):
+        rm.inverse_kinematics(robot, pose, **given)
+    assert rm.inverse_kinematics(robot, pose, near=robot.home, spin=-1.0).reached
+    assert rm.inverse_kinematics(robot, pose[None], near="path").reached.all()
