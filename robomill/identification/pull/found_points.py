@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray, frozen
-from robomill.identification.fit.confidence import half_width
+from robomill.identification.fit.confidence import LEVEL, half_width
 from robomill.identification.load_test import LoadTests
 from robomill.identification.pull.points import Point, PointFit
 from robomill.provenance import Finding
@@ -14,6 +14,7 @@ from robomill.robot.model import Robot
 from robomill.units import format_si
 
 TITLES: dict[Point, str] = {"force": "load point", "gauge": "gauge point"}
+NEAREST = 2e-3  # m: a shift below this is none
 FLAT = 1.0  # m: a half interval from which a direction counts as not known
 
 
@@ -59,6 +60,17 @@ class FoundPoint:
         """m, half the 95 % interval of the distance from the stated point, along it; infinite where it is not seen."""
         along = self.shift / self.off if self.off > 0.0 else np.zeros(3)
         return float(self._half(along @ self.covariance @ along))
+
+    @property
+    def is_off(self) -> bool:
+        """Whether it lies elsewhere than stated: by more than ``NEAREST``, and by more than chance makes of three
+        coordinates together in 95 of 100 fits."""
+        from scipy.special import fdtri
+
+        if self.off <= NEAREST or not np.isfinite(self.covariance).all():
+            return False
+        far = float(self.shift @ np.linalg.pinv(self.covariance) @ self.shift)
+        return far > 3.0 * float(fdtri(3, max(self.dof, 1), LEVEL))
 
     @property
     def flat(self) -> FloatArray | None:

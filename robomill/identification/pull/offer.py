@@ -21,7 +21,6 @@ MOST = 600  # tests that are looked at; more are thinned evenly
 CHANCE = 1e-4  # with which noise alone would ask for other points
 PAYS = 0.9  # share of the error on poses left out to which fitting points must bring it
 FURTHER = 0.95  # the same for a second point
-NEAREST = 2e-3  # m: a shift below this is none
 
 
 def offer_of(robot: Robot, tests: LoadTests, choice: Model, treatment: Treatment) -> Offer | None:
@@ -43,17 +42,13 @@ def offer_of(robot: Robot, tests: LoadTests, choice: Model, treatment: Treatment
             continue
         found[name] = error, found_points(robot, tests, how.freed, fitted.found)
     before = found.pop("none", (np.nan, ()))[0]
-    good = {name: each for name, each in found.items() if all(_sure(point) for point in each[1])}
+    good = {name: each for name, each in found.items() if all(point.is_off for point in each[1])}
     if not good:
         return None
     least = min(error for error, _ in good.values())
     name = min((n for n in good if good[n][0] <= least / FURTHER), key=lambda n: len(FREED[n]))
     after, points = good[name]
     return Offer(name, points, before, after) if after < PAYS * before else None
-
-
-def _sure(point: FoundPoint) -> bool:
-    return bool(point.off > max(point.off_half, NEAREST))
 
 
 def _asked_for(robot: Robot, tests: LoadTests, choice: Model) -> bool:

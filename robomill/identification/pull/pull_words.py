@@ -56,7 +56,7 @@ def pull_findings(found: LinesOfPull, robot: Robot, tests: LoadTests) -> list[Fi
             "load point."
         )
         said.append(Finding("info", text, count=many, code="pull-met"))
-    elif point.off > max(point.off_half, 2e-3):
+    elif point.is_off:
         gap = format_si(float(np.median(found.gap)), "mm", 1)
         text = (
             f"{point.sentence()} That is by the lines of pull alone: with it they pass {where} by {gap} (median), with "

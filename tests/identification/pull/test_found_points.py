@@ -55,3 +55,21 @@ def test_a_direction_that_is_not_held_is_told():
         "gauge-point-not-held",
     ]
     assert found([1e-3] * 3, dof=0).flat is not None
+
+
+@pytest.mark.parametrize("dof", [10, 1000])
+def test_chance_alone_calls_a_point_off_in_five_of_a_hundred_fits(dof: int) -> None:
+    """Three coordinates together, which one interval along the shift itself would call off in 28 of 100."""
+    rng = np.random.default_rng(4)
+    root = np.array([[20.0, 0.0, 0.0], [8.0, 10.0, 0.0], [-4.0, 3.0, 6.0]]) * 1e-3
+    called = 0
+    for _ in range(3000):
+        shift = root @ rng.normal(size=3)
+        spread = rng.chisquare(dof) / dof  # what a fit with so many degrees of freedom takes its noise for
+        found = FoundPoint("force", shift, root @ root.T * spread, np.zeros(3), np.eye(4), dof)
+        called += found.is_off
+    assert 0.038 < called / 3000 < 0.062
+    far = FoundPoint("force", np.array([0.15, 0.0, 0.0]), root @ root.T, np.zeros(3), np.eye(4), dof)
+    assert far.is_off
+    near = FoundPoint("force", np.array([1e-3, 0.0, 0.0]), np.eye(3) * 1e-12, np.zeros(3), np.eye(4), dof)
+    assert not near.is_off
