@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.simulation.judging.leaning import lies
 from robomill.simulation.judging.places import Places, places
 from robomill.simulation.judging.seen import Run
@@ -61,7 +61,7 @@ class Readings(ReadOnly):
     @property
     def material_left(self) -> FloatArray:
         """(q,) m normal to the surface: + where material was left, - where too much went."""
-        return self.error * self.side
+        return frozen(self.error * self.side)
 
     @property
     def worst(self) -> int:
