@@ -171,7 +171,8 @@ def model_findings(error: float) -> tuple[Finding, ...]:
     if not error > MISSES:
         return ()
     text = (
-        f"Poses left out are missed by {format_si(error, '%', 0)}: springs or points may be missing from this model, "
-        "and then a compliance can be off by more than its interval says, which knows scatter only."
+        f"Poses left out are missed by {format_si(error, '%', 0)}: that is noise, or something is missing from this "
+        "model (a spring, a joint that bends, another load or gauge point, a joint's zero), and then a compliance can "
+        "be off by more than its interval says, which knows scatter only."
     )
     return (Finding("warning", text, code="model-misses"),)
