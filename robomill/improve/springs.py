@@ -9,7 +9,8 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.provenance import Finding, named
-from robomill.simulation.meant import LINK, SAME, linked
+from robomill.simulation.corners import SAME
+from robomill.simulation.meant import LINK, linked
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, spin_of, stepped
 from robomill.toolpath.path import Toolpath

@@ -15,7 +15,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.toolpath.sampling import CORNER
 from robomill.vectors import angle_between
 
-STILL = 1e-6  # m: steps that go no further stay at one place
+SAME = 1e-6  # m: steps that go no further stay at one place
 FARTHEST = 2e-3  # m: no corrected program goes further beside its path, and none leaves out more of it: an arm that is
 # pushed further off is not predicted by its springs at rest
 LINKED = 0.05  # of its length: what a link costs; a step of a cut costs as much as it leads aside
@@ -39,7 +39,7 @@ class Ways:
         """Of a cut p (m, 3) m with tool axes k (m, 3)."""
         step = np.diff(p, axis=0)
         length = np.linalg.norm(step, axis=1)
-        moving = np.flatnonzero(length >= STILL)
+        moving = np.flatnonzero(length >= SAME)
         s, step, length = np.cumsum(length)[moving], step[moving], length[moving]
         across = _across(step, k[moving + 1])
         size = np.linalg.norm(across, axis=1)
@@ -81,7 +81,7 @@ def _link(q: FloatArray, k: FloatArray, ends: IntArray, s: FloatArray, where: tu
     """The samples of q (n, 3) m, about s (n,) m along a cut, at which it ends at a corner and begins anew: two of the
     ``ends`` of lines with one line between them, or the same where no link leads across."""
     cut, corner = where
-    of = np.minimum(np.searchsorted(cut.s, s[1:] - STILL), len(cut.s) - 1)
+    of = np.minimum(np.searchsorted(cut.s, s[1:] - SAME), len(cut.s) - 1)
     step = np.diff(q, axis=0)
     across = _across(step, k[1:])
     up = np.linalg.norm(step - across, axis=1)

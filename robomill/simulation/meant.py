@@ -17,7 +17,7 @@ from robomill.cutting.conditions import STEEP
 from robomill.errors import ToolpathError
 from robomill.progress import checkpoint
 from robomill.provenance import Finding, named
-from robomill.simulation.corners import FARTHEST, Ways, at_corners
+from robomill.simulation.corners import FARTHEST, SAME, Ways, at_corners
 from robomill.simulation.samples import ways
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
@@ -28,7 +28,6 @@ from robomill.vectors import angle_between
 
 WANTED = "wanted-path"  # the findings that say from which path a corrected program's deviation is told
 LINK = 20e-6  # m: corrections at one place that differ by more are joined by a link
-SAME = 1e-6  # m: steps that go no further stay at one place
 TURNED = 2e-3  # m: a place where the path goes the other way counts as so much further off, twice
 LEFT_OUT = 2e-3  # m: what is left out of the path counts as its length times this
 STILL = 1e-9  # m: less is none

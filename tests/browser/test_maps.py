@@ -164,7 +164,9 @@ def test_table_2_against_table_3_in_two_clicks(page: Any) -> None:
         page.get_by_role("button", name="Compare", exact=True)
     ).first.click()
     page.locator(MAP, has_text="Table 3 − Table 2").wait_for(timeout=30_000)
-    page.get_by_text("+16 % against Table 2").wait_for(timeout=30_000)
+    tile = page.get_by_text("+16 % against Table 2")
+    tile.wait_for(timeout=30_000)
+    assert tile.is_visible()
 
 
 def test_keys_walk_over_a_map_and_select(page: Any) -> None:

@@ -18,6 +18,15 @@ NEAREST = 2e-3  # m: a shift below this is none
 FLAT = 1.0  # m: a half interval from which a direction counts as not known
 
 
+def beyond_chance(shift: FloatArray, covariance: FloatArray, dof: int, level: float) -> bool:
+    """Whether a shift (3,) m is more than chance makes of three coordinates together, with their covariance (3, 3) m^2
+    by a fit with ``dof``, in a share ``level`` of the fits."""
+    from scipy.special import fdtri
+
+    far = float(shift @ np.linalg.pinv(covariance) @ shift)
+    return far > 3.0 * float(fdtri(3, max(dof, 1), level))
+
+
 @dataclass(frozen=True, eq=False)
 class FoundPoint:
     """A point of the tool that was fitted.
@@ -65,12 +74,9 @@ class FoundPoint:
     def is_off(self) -> bool:
         """Whether it lies elsewhere than stated: by more than ``NEAREST``, and by more than chance makes of three
         coordinates together in 95 of 100 fits."""
-        from scipy.special import fdtri
-
         if self.off <= NEAREST or not np.isfinite(self.covariance).all():
             return False
-        far = float(self.shift @ np.linalg.pinv(self.covariance) @ self.shift)
-        return far > 3.0 * float(fdtri(3, max(self.dof, 1), LEVEL))
+        return beyond_chance(self.shift, self.covariance, self.dof, LEVEL)
 
     @property
     def flat(self) -> FloatArray | None:

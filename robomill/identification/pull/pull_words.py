@@ -4,7 +4,7 @@ import numpy as np
 
 from robomill.arrays import frozen
 from robomill.identification.load_test import LoadTests
-from robomill.identification.pull.found_points import FoundPoint
+from robomill.identification.pull.found_points import FoundPoint, beyond_chance
 from robomill.identification.pull.lines_of_pull import LinesOfPull, Says
 from robomill.identification.result import IdentificationResult
 from robomill.provenance import Finding, Level
@@ -80,14 +80,11 @@ def pull_findings(found: LinesOfPull, robot: Robot, tests: LoadTests) -> list[Fi
 
 def disagreement(by_lines: FoundPoint | None, fitted: tuple[FoundPoint, ...]) -> list[Finding]:
     """Said where the fitted load point is not that of the lines of pull, beyond both their intervals."""
-    from scipy.special import fdtri
-
     for point in fitted:
         if by_lines is None or point.point != "force" or np.isnan(point.covariance).any():
             continue
         apart = point.shift - by_lines.shift
-        far = float(apart @ np.linalg.solve(point.covariance + by_lines.covariance, apart))
-        if far > 3 * float(fdtri(3, max(point.dof, 1), 0.99)):
+        if beyond_chance(apart, point.covariance + by_lines.covariance, point.dof, 0.99):
             size = format_si(float(np.linalg.norm(apart)), "mm", 0)
             text = (
                 f"The load point of the fit and that of the lines of pull are {size} apart, more than chance allows: "

@@ -191,8 +191,11 @@ def _leads(at: Places, rims: Rims) -> FloatArray:
 def _wider(at: Places, q: IntArray, height: FloatArray) -> FloatArray:
     """(m,) by how much the radius of a tool that sinks or rises changes at a height on its way, of that way; where it
     is more than 0.9 the surface is the rim's and no more the side's."""
-    upright = _upright(at, q, height)
-    return np.minimum(np.where(at.steep, 0.0, at.slope)[q] * np.sqrt(1.0 - upright**2) / upright, 0.9)
+    incline, wider = at.incline[q], np.zeros(len(q))
+    some = np.flatnonzero(incline > 0.0)
+    upright = _upright(at, q[some], height[some])
+    wider[some] = np.minimum(incline[some] * np.sqrt(1.0 - upright**2) / upright, 0.9)
+    return wider
 
 
 def _place(at: Places, rims: Rims) -> FloatArray:
@@ -321,7 +324,7 @@ def _alone(at: Places, aside: FloatArray) -> BoolArray:
     left, right = (at.outline.floors(lines, side * aside[q], no_slack)[0] for side in (1.0, -1.0))
     # On its way down or up a cone's groove is flatter across than the cone, and made by moves taken at their middle.
     flatter = np.sqrt(1.0 - _wider(at, q, own + SAME) ** 2)
-    slack = SAME + np.where(at.steep, 0.0, at.slope)[q] * at.result.path.step_length[at.i[q]]
+    slack = SAME + at.incline[q] * at.result.path.step_length[at.i[q]]
     alone[q] = np.minimum(left, right) >= own * flatter - slack
     return alone
 

@@ -104,6 +104,11 @@ class Places:
         conditions = self.result.conditions
         return np.asarray((np.abs(conditions.along) / np.maximum(conditions.across, STEEP))[self.i])
 
+    @property
+    def incline(self) -> FloatArray:
+        """(q,) the same of what is no plunge, 0 of those."""
+        return np.where(self.steep, 0.0, self.slope)
+
 
 def stock_top(setup: SimulationSetup, xy: FloatArray) -> FloatArray:
     """(m,) m: how high the stock stood over points (m, 2) m of the plan; -inf beside it."""

@@ -48,7 +48,7 @@ class Hole:
 
 
 class Holes(MacroCalls):
-    """Drills."""
+    """Drills a hole where the tool stands."""
 
     def drill_here(self, hole: Hole, line: int) -> None:
         """Drill where the tool stands."""
