@@ -13,15 +13,14 @@ A kernel module is an ordinary module called ``kernels`` or ``*_kernels``, of pl
 
 The first call compiles what the cache on disk does not hold: correct, only slow. A program that talks to people says
 so: a command line by ``announce(print)``, a screen by ``missing()`` and ``build()``. ``python -m robomill.compiled``
-compiles all. What is damaged in the cache is made anew (``seals``); where nothing can be kept, code lives in memory.
+compiles all. What is damaged in the cache is made anew (``seals``); where nothing can be kept, code lives in memory;
+and where there is no compiler (Python in a browser), all runs as the Python it is written in.
 """
 
 from __future__ import annotations
 
-import hashlib
 import logging
 import os
-import platform
 import re
 import shutil
 import subprocess
@@ -32,7 +31,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache, partial
 from importlib import import_module
-from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints, overload
 
@@ -132,9 +131,13 @@ class Kernel:
 
     def __call__(self, *arguments: Any) -> Any:
         if self.few and COMPILER not in sys.modules and len(arguments[0]) <= self.few:
-            with np.errstate(all="ignore"):  # as compiled code does: NaN in, NaN out
-                return self.plain(*arguments)
+            return self.as_written(*arguments)
         return self.code(*arguments)
+
+    def as_written(self, *arguments: Any) -> Any:
+        """What the machine code does, done by the Python it is made from."""
+        with np.errstate(all="ignore"):  # as compiled code does: NaN in, NaN out
+            return self.plain(*arguments)
 
     @cached_property
     def code(self) -> Any:
@@ -146,6 +149,8 @@ class Kernel:
 
     def _made(self) -> Any:
         """Compiled or loaded. An entry of the cache that is not as it was written is removed and made again."""
+        if find_spec(COMPILER) is None:
+            return self.as_written
         from numba import config
 
         if _announced:
@@ -239,9 +244,11 @@ def kept_in() -> Path | None:
     """The folder of the machine code of these sources, this Python, this compiler and this processor.
 
     Where ROBOMILL_CACHE says, else beside the package where that can be written, else in the user's cache, else in a
-    private temporary folder; None where nothing can be written.
+    private temporary folder; None where nothing can be written or compiled.
     """
-    name = f"kernels-{_key()}"
+    if find_spec(COMPILER) is None:
+        return None
+    name = f"kernels-{seals.key(_made_from())}"
     places = [root / name for root in _roots()]
     folder = next((place for place in places if _own(place)), None)
     if folder is None:
@@ -257,29 +264,12 @@ def kept_in() -> Path | None:
     return folder
 
 
-def _key() -> str:
-    """A digest of every source that kernels are made from: the compiler by itself looks only at a function's own file,
-    and would keep running old code of the functions it calls."""
-    state = hashlib.sha256(f"{sys.implementation.cache_tag} {version('numba')} {_processor()}".encode())
-    for source in _made_from():
-        state.update(source.name.encode() + source.read_bytes())
-    return state.hexdigest()[:16]
-
-
 def _made_from() -> list[Path]:
     """The kernel modules, rules, and what both import from this package (constants, kinds of tuples, laws)."""
     own = {*_sources(), *PACKAGE.glob(RULES)}
     named = {name for source in own for name in IMPORTED.findall(source.read_text())}
     imported = {PACKAGE.joinpath(*name.split(".")).with_suffix(".py") for name in named}
     return sorted({*own, *(path for path in imported if path.is_file())})
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(errors="replace").splitlines()
-    except OSError:
-        return f"{platform.machine()} {platform.processor()}"
-    return " ".join(sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))}))
 
 
 def _roots() -> Iterator[Path]:

@@ -6,13 +6,33 @@ not fit its seal is removed, and compiled anew.
 
 import hashlib
 import os
+import platform
 import shutil
+import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 SEAL, COMPLETE = ".seal", "complete"
+
+
+def key(sources: Sequence[Path]) -> str:
+    """A digest of all ``sources`` of kernels, the compiler and the processor: the compiler by itself looks only at a
+    function's own file, and would keep running old code of the functions it calls."""
+    state = hashlib.sha256(f"{sys.implementation.cache_tag} {version('numba')} {_processor()}".encode())
+    for source in sources:
+        state.update(source.name.encode() + source.read_bytes())
+    return state.hexdigest()[:16]
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(errors="replace").splitlines()
+    except OSError:
+        return f"{platform.machine()} {platform.processor()}"
+    return " ".join(sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))}))
 
 
 def seal(folder: Path, function: Callable[..., Any]) -> None:

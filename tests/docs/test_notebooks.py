@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 import sys
 from pathlib import Path
 
@@ -42,3 +43,26 @@ def test_it_runs_cell_by_cell_with_the_core_alone(
         code = compile("".join(cell["source"]), f"{path.name}, code cell {k + 1}", "exec")
         exec(code, names)  # as a notebook does it
         assert capsys.readouterr().out, "every cell shows something"
+
+
+RUN = """
+import json, sys
+for module in sys.argv[2:]:
+    sys.modules[module] = None
+names = {"__name__": "__main__"}
+for cell in json.load(open(sys.argv[1], encoding="utf-8"))["cells"]:
+    if cell["cell_type"] == "code":
+        exec("".join(cell["source"]), names)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_it_prints_the_same_where_there_is_no_compiler(path: Path, tmp_path: Path) -> None:
+    """As in a Python that runs in a browser, for which nobody builds one."""
+
+    def printed(*without: str) -> str:
+        command = [sys.executable, "-c", RUN, str(path), *without]
+        return subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+
+    assert printed("numba", "llvmlite", *BROUGHT_BY) == printed()

@@ -283,7 +283,7 @@ def test_one_module_is_built_in_another_process_and_the_others_stay_missing(tmp_
 @pytest.fixture
 def fresh(monkeypatch):
     compiled.kept_in.cache_clear()
-    monkeypatch.setattr(compiled, "_key", lambda: "key")
+    monkeypatch.setattr(compiled.seals, "key", lambda sources: "key")
     yield
     monkeypatch.undo()
     compiled.kept_in.cache_clear()
@@ -352,22 +352,22 @@ def test_the_digest_covers_every_source(tmp_path, monkeypatch):
     (room / "other.py").write_text("c")
     monkeypatch.setattr(compiled, "PACKAGE", tmp_path)
     assert [Path(name).suffix for name in compiled.modules()] == [".kernels", ".more_kernels"]
-    before = compiled._key()
+    before = compiled.seals.key(compiled._made_from())
     (room / "other.py").write_text("d")
-    assert compiled._key() == before
+    assert compiled.seals.key(compiled._made_from()) == before
     second.write_text("e")
-    assert compiled._key() != before
+    assert compiled.seals.key(compiled._made_from()) != before
     # What a kernel module takes from the package counts too: a constant is compiled in.
     second.write_text("from robomill.room.other import LIMIT")
-    before = compiled._key()
+    before = compiled.seals.key(compiled._made_from())
     (room / "other.py").write_text("LIMIT = 2")
-    assert compiled._key() != before
+    assert compiled.seals.key(compiled._made_from()) != before
     # And what rules take, which are compiled too.
     (room / "some_rules.py").write_text("from robomill.room.law import turned")
     (room / "law.py").write_text("def turned(): ...")
-    before = compiled._key()
+    before = compiled.seals.key(compiled._made_from())
     (room / "law.py").write_text("def turned(): return 1")
-    assert compiled._key() != before
+    assert compiled.seals.key(compiled._made_from()) != before
 
 
 @pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500"])

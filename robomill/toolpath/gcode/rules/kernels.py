@@ -6,9 +6,7 @@ import inspect
 import math
 from typing import Annotated, Any
 
-from numba.extending import overload
-
-from robomill.compiled import Axes, called, kernel, part
+from robomill.compiled import Axes, called, kernel, part, taught
 from robomill.toolpath import plane
 from robomill.toolpath.gcode.parameters import Store
 from robomill.toolpath.gcode.rules import (
@@ -27,7 +25,14 @@ State = Annotated[Any, Axes(records.STATE, 1, written=True)]
 Moves = Annotated[Any, Axes(records.MOVE, 1, written=True)]
 
 
-overload(value_rules.nearest)(lambda text, first, end: lambda text, first, end: math.inf)
+def _teach() -> None:
+    """The text of a number that lies too near the middle between two of the computer's is left to Python."""
+    from numba.extending import overload
+
+    overload(value_rules.nearest)(lambda text, first, end: lambda text, first, end: math.inf)
+
+
+taught(_teach)
 
 # What a value is made of is copied into ``value``: to hand on the store at every call would cost more than the work.
 for _module in (operator_rules, value_rules, line_rules, plane, motion_rules, cycle_rules, mode_rules, flow_rules):
