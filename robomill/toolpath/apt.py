@@ -59,7 +59,7 @@ _SILENT = frozenset(
     }
 )
 MAX_POINTS = 5_000_000
-_OTHER_RATES = ("IPT", "MMPT", "INVERS")
+_RATES = ("IPR", "MMPR", "PERREV", "IPM", "MMPM", "PERMIN")
 _STANDS = "feed counts per turn, and the spindle stands; SPINDL comes first."
 
 
@@ -361,11 +361,11 @@ def _feed(state: _State, values: list[str], line: int) -> None:
         return
     if len(numbers) != 1 or float(numbers[0]) < 0:
         raise GCodeError.at(line, f"FEDRAT has {','.join(values)!r}; expected one rate of 0 or more.")
-    if other := next((w for w in words if w in _OTHER_RATES), ""):
-        raise GCodeError.at(
-            line, f"FEDRAT counts by {other}, which is not read; write the feed per minute (MMPM, IPM)."
-        )
-    unit = next((w for w in ("IPR", "MMPR", "PERREV", "IPM", "MMPM") if w in words), "PERMIN")
+    units = [w for w in words if w not in numbers]
+    if units and not any(w in _RATES for w in units):
+        text = f"FEDRAT counts by {units[0]:.20}, which is not read; write the feed per minute (MMPM, IPM)."
+        raise GCodeError.at(line, text)
+    unit = next((w for w in _RATES if w in units), "PERMIN")
     state.rate = float(numbers[0]), unit, state.unit
 
 

@@ -21,6 +21,9 @@ NO_PROGRAMS = (
 """Endings of other files: a program of such a name would be taken for one."""
 
 DOS_END, FILLING = b"\x1a", b"\x1a\0 \t\r\n"  # Ctrl-Z ends a program from DOS, whose last block is filled up
+TAPE = b"\0\x03\x04\x11\x12\x13\x14\x7f"
+"""What readers of tapes and serial lines pass over: no hole (NUL), ends of text, reader and punch on and off, rub-out."""
+_CONTROLS = bytes(c for c in range(32) if c not in (9, 10, 12, 13, 27))
 _GOTO = re.compile(rb"^[ \t]*(?:GOTO|FROM)[ \t]*/", re.IGNORECASE | re.MULTILINE)
 
 
@@ -96,18 +99,29 @@ def as_plain_bytes(data: bytes, name: str = "Program") -> bytes:
             data = data[len(mark) :] if not encoding else _recode(data, encoding, name)
             break
     text, _, rest = data.partition(DOS_END)
-    data = data if rest.strip(FILLING) else text
+    data = _without_tape(data if rest.strip(FILLING) else text)
     if not data.strip():
         raise GCodeError(f"{name}: found an empty file; expected a program.")
-    nul = data.find(b"\0")
-    if nul >= 0:
-        line = data.count(b"\n", 0, nul) + 1
-        raise GCodeError.at(line, "found a NUL byte; this is a binary file, expected program text.")
     head = data[:65536]
-    control = sum(head.count(bytes([c])) for c in range(32) if c not in (9, 10, 12, 13, 27))
-    if control * 100 > len(head):
+    if _controls(head) * 100 > len(head):
         raise GCodeError(f"{name}: found a binary file; expected program text.")
     return _plain_ends(data)
+
+
+def _without_tape(data: bytes) -> bytes:
+    """``data`` as a control reads it that was sent it by DNC or tape. Raises GCodeError where a NUL byte is of a binary
+    file: beside controls that no tape has."""
+    if not any(sign in data for sign in TAPE):
+        return data
+    plain, nul = data.translate(None, TAPE), data.find(b"\0")
+    if nul >= 0 and _controls(plain[:65536]):
+        line = data.count(b"\n", 0, nul) + 1
+        raise GCodeError.at(line, "found a NUL byte; this is a binary file, expected program text.")
+    return plain
+
+
+def _controls(head: bytes) -> int:
+    return len(head) - len(head.translate(None, _CONTROLS))
 
 
 def _plain_ends(data: bytes) -> bytes:

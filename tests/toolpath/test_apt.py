@@ -168,6 +168,8 @@ def test_spindle_on_and_off_and_its_sense() -> None:
         ("FEDRAT/1,2", "expected one rate of 0 or more"),
         ("SPINDL/SFM,300,CLW", "says the speed of the surface; expected turns per minute"),
         ("FEDRAT/0.1,MMPT", "FEDRAT counts by MMPT, which is not read"),
+        ("FEDRAT/0.1,INVERS", "FEDRAT counts by INVERS, which is not read"),
+        ("FEDRAT/100,MMPS", "FEDRAT counts by MMPS, which is not read"),
         ("SPINDL/FAST", "expected a speed or OFF"),
     ],
 )

@@ -49,7 +49,7 @@ def test_encodings_and_line_ends(data: bytes) -> None:
     [
         (b"", "empty"),
         (b"  \n \n", "empty"),
-        (b"G21\nG0 X1\0\n", "NUL"),
+        (b"G21\nG0 X1\0\x02\n", "NUL"),
         (bytes(range(1, 32)) * 50, "binary"),
         (b"\x7fELF\x02\x01\x01" + b"\0" * 20, "NUL"),
         (b"\xff\xfeG\x00\x00\xd8", "UTF-16"),
