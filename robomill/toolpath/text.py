@@ -22,7 +22,7 @@ NO_PROGRAMS = (
 
 DOS_END, FILLING = b"\x1a", b"\x1a\0 \t\r\n"  # Ctrl-Z ends a program from DOS, whose last block is filled up
 TAPE = b"\0\x03\x04\x11\x12\x13\x14\x7f"
-"""What readers of tapes and serial lines pass over: no hole (NUL), ends of text, reader and punch on and off, rub-out."""
+"""What readers of tapes and serial lines pass over: no hole (NUL), ends of text, reader or punch on or off, rub-out."""
 _CONTROLS = bytes(c for c in range(32) if c not in (9, 10, 12, 13, 27))
 _GOTO = re.compile(rb"^[ \t]*(?:GOTO|FROM)[ \t]*/", re.IGNORECASE | re.MULTILINE)
 

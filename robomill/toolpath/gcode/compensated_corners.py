@@ -1,23 +1,22 @@
 """Corners that are rounded or chamfered while cutter compensation is on (G41 with ``,R``, RND= or RND R).
 
-The contour is rounded first, as it is programmed, and then followed beside: a straight cut waits until the next one is
-known, and goes on to the reader of contours with its corner as an arc or a short cut.
+The contour is rounded first, as it is programmed, and then followed beside: a cut waits until the next one is known,
+and goes on to the reader of contours with its corner as an arc or a short cut.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from robomill.toolpath.gcode.corners import Corner, joined
+from robomill.toolpath.gcode.corners import BETWEEN, Corner, joined
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.program import Move
-from robomill.toolpath.gcode.rules.motion_rules import ARC, CLOCKWISE, COUNTERCLOCKWISE, FEED, LINE
+from robomill.toolpath.gcode.rules.motion_rules import ARC, CLOCKWISE, COUNTERCLOCKWISE, FEED, LINE, is_arc
 from robomill.toolpath.gcode.words import Block
-
-BETWEEN = "a corner is rounded or chamfered between two straight cuts (G1) alone."
+from robomill.toolpath.plane import swept
 
 
 @dataclass
 class Due:
-    """A straight cut whose corner waits for the next one: its end (6,) and size in program units, and its feed."""
+    """A cut whose corner waits for the next one: its end (6,) and size in program units, and its feed."""
 
     block: Block
     end: list[float]
@@ -25,41 +24,70 @@ class Due:
     feed: float
 
 
-def straight(machine: Machine, block: Block, end: list[float]) -> None:
-    """G0 or G1 to the programmed point ``end`` (6,) with compensation on, and the corner before or behind it."""
+def follow(machine: Machine, block: Block, end: list[float]) -> None:
+    """G0 to G3 to the programmed point ``end`` (6,) with compensation on, and the corner before or behind it."""
     compensation, corner = machine.compensation, machine.corner
     machine.corner = None
     due, compensation.due = compensation.due, None
-    if (corner is not None or due is not None) and block.motion != LINE:
+    if (corner is not None or due is not None) and not (block.motion == LINE or is_arc(block.motion)):
         raise block.refuse(BETWEEN)
     if due is not None:
-        _cut_before(machine, due, end)
+        block = _cut_before(machine, due, block, end)
     if corner is None:
-        compensation.straight(machine, block, end)
+        _run(machine, block, end)
     elif compensation.programmed is None:
         raise block.refuse("the move that begins cutter compensation cannot end in such a corner; write one before it.")
     else:
         compensation.due = Due(block, list(end), corner, machine.feed)
 
 
-def _cut_before(machine: Machine, due: Due, end: list[float]) -> None:
-    """The straight cut that is due, and its corner, up to where the cut to ``end`` goes on."""
+def _run(machine: Machine, block: Block, end: list[float]) -> None:
+    if is_arc(block.motion):
+        machine.compensation.arc(machine, block, end)
+    else:
+        machine.compensation.straight(machine, block, end)
+
+
+def _cut_before(machine: Machine, due: Due, block: Block, end: list[float]) -> Block:
+    """The cut that is due, and its corner, up to where ``block`` goes on to ``end``; that block as it is from there."""
     compensation, factor = machine.compensation, machine.factor
-    rows = (Move(due.block.line), Move(due.block.line))
-    for row, start, stop in zip(rows, (compensation.programmed_point(machine), due.end), (due.end, end)):
-        row.kind = FEED
-        row.start, row.end = ([v * factor for v in point[:3]] for point in (start, stop))
-        row.rotary = list(stop[3:])
+    rows = (
+        _row(machine, due.block, compensation.programmed_point(machine), due.end),
+        _row(machine, block, due.end, end),
+    )
     feed, machine.feed = machine.feed, due.feed
-    for count, row in enumerate(joined(*rows, due.corner.scaled(factor))[:-1]):
+    *before, then = joined(*rows, due.corner.scaled(factor))
+    for count, row in enumerate(before):
         if count:
             machine.feed = due.corner.feed or due.feed
         place = [*(v / factor for v in row.end), *due.end[3:]]
-        if row.kind != ARC:
-            compensation.straight(machine, Block(due.block.line, motion=LINE), place)
-            continue
-        start = [0.0] * 3 if machine.arc_absolute else row.start
-        centre = {"ijk"[a]: (row.centre[a] - start[a]) / factor for a in compensation.axes[:2]}
-        turn = CLOCKWISE if row.clockwise else COUNTERCLOCKWISE
-        compensation.arc(machine, Block(due.block.line, words=centre, motion=turn), place)
+        _run(machine, _block(machine, row, due.block), place)
     machine.feed = feed
+    return _block(machine, then, block)
+
+
+def _row(machine: Machine, block: Block, start: list[float], end: list[float]) -> Move:
+    """The cut of a block as it is programmed, from ``start`` to ``end`` (6,) in program units."""
+    factor, (u, v, w) = machine.factor, machine.compensation.axes
+    row = Move(block.line)
+    row.kind, row.plane = FEED, machine.compensation.plane
+    row.start, row.end = ([value * factor for value in point[:3]] for point in (start, end))
+    row.rotary0, row.rotary = list(start[3:]), list(end[3:])
+    if is_arc(block.motion):
+        turn = round(block.words.get("p", 1.0)) * (-1 if block.motion == CLOCKWISE else 1)
+        centre = machine.compensation.centre_of(machine, block, start, end)
+        row.kind, row.turns, row.clockwise = ARC, abs(turn), turn < 0
+        row.centre[u], row.centre[v], row.centre[w] = centre[0] * factor, centre[1] * factor, row.end[w]
+        row.sweep = swept((start[u], start[v]), (end[u], end[v]), centre, turn)
+    return row
+
+
+def _block(machine: Machine, row: Move, block: Block) -> Block:
+    """A cut in words: what its block says beside its form, and its centre."""
+    if row.kind != ARC:
+        return block if block.motion == LINE else Block(block.line, motion=LINE)
+    start = [0.0] * 3 if machine.arc_absolute else row.start
+    words = {letter: value for letter, value in block.words.items() if letter not in "ijkr"}
+    for axis in machine.compensation.axes[:2]:
+        words["ijk"[axis]] = (row.centre[axis] - start[axis]) / machine.factor
+    return replace(block, words=words, motion=CLOCKWISE if row.clockwise else COUNTERCLOCKWISE)

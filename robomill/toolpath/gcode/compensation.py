@@ -11,6 +11,7 @@ import math
 from typing import Any
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.corners import BETWEEN
 from robomill.toolpath.gcode.held_moves import BESIDE_ARC, SHARPEST, HeldMove
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.moves import centre_of_arc, plain_words
@@ -54,6 +55,11 @@ class Compensation:
         point = list(machine.p)
         point[self.axes[0]], point[self.axes[1]] = self.programmed[0], self.programmed[1]
         return point
+
+    def centre_of(self, machine: Machine, block: Block, start: list[float], end: list[float]) -> tuple[float, float]:
+        """Centre (u, v) of an arc between programmed points (6,)."""
+        u, v, _ = self.axes
+        return centre_of_arc(machine, block, (start[u], start[v]), (end[u], end[v]))
 
     def scale(self, ratio: float) -> None:
         """Change the unit of all lengths."""
@@ -139,7 +145,7 @@ class Compensation:
     def finish(self, machine: Machine, block: Block) -> None:
         """Record what is held, as at the end of the program or before a stop."""
         if self.due is not None:
-            raise self.due.block.refuse("a corner is rounded or chamfered between two straight cuts (G1) alone.")
+            raise self.due.block.refuse(BETWEEN)
         if self.programmed is not None:
             u, v, _ = self.current(machine)
             self._finish_at(machine, block, u, v)

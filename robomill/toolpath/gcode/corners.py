@@ -1,4 +1,7 @@
-"""Corners between two straight cuts that a program rounds or chamfers: Fanuc's ``,R`` and ``,C``, RND=, CHF=, CHR=."""
+"""Corners between two cuts that a program rounds or chamfers: Fanuc's ``,R`` and ``,C``, RND=, CHF=, CHR=.
+
+Between straight cuts in any of the planes; beside an arc of one turn, in the plane of that, a corner is rounded.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,17 @@ from typing import NamedTuple
 import numpy as np
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.fillets import Cut, tangents_turn, touching
 from robomill.toolpath.gcode.program import Move
 from robomill.toolpath.gcode.rules.motion_rules import ARC, FEED
-from robomill.toolpath.plane import axes
+from robomill.toolpath.plane import axes, swept
 from robomill.units import format_si
 
 ROUND, LEGS, BEVEL, EACH = "round", "legs", "bevel", "each"
 """What the size of a corner is: its radius, its length along each cut, the length of the bevel itself, or the radius of
 each corner of a contour (RNDM), where there is one: none beside a rapid, or a move that leaves the plane XY."""
+AT_END = "a corner is rounded at the end of a cut (G1, G2, G3), or chamfered at that of a G1 alone."
+BETWEEN = "a corner is rounded between two cuts (G1, G2, G3), and chamfered between two straight ones (G1) alone."
 _STRAIGHT = 1e-9
 _SMOOTH = math.radians(0.01)
 """Cuts whose directions differ by less than this meet in no corner."""
@@ -37,18 +43,21 @@ class Corner(NamedTuple):
 def joined(first: Move, then: Move, corner: Corner) -> list[Move]:
     """``first``, the corner (m, m/s) and ``then``, of which both ends are cut.
 
-    Raises GCodeError where the two are no straight cuts in one plane, or shorter than the corner.
+    Raises GCodeError where the two are no cuts in one plane, or shorter than the corner.
     """
     kind, size, feed = corner
     if kind == EACH:
         if not _is_corner(first, then):
             return [first, then]
         kind = ROUND
-    if first.kind != FEED or then.kind != FEED or first.rotary != then.rotary:
-        raise GCodeError.at(first.line, "a corner is rounded or chamfered between two straight cuts (G1) alone.")
+    cuts = {first.kind, then.kind}
+    if not cuts <= ({FEED, ARC} if kind == ROUND else {FEED}) or first.rotary != then.rotary:
+        raise GCodeError.at(first.line, BETWEEN)
+    if ARC in cuts:
+        return _beside_arc(first, then, size, feed)
     a, b, c = (np.array(point) for point in (first.start, first.end, then.end))
     back, on = a - b, c - b
-    lengths = float(np.linalg.norm(back)), float(np.linalg.norm(on))
+    lengths = math.hypot(*back), math.hypot(*on)
     if min(lengths) < _STRAIGHT:
         raise GCodeError.at(first.line, "a corner lies between two cuts that have a length.")
     back, on = back / lengths[0], on / lengths[1]
@@ -71,26 +80,60 @@ def joined(first: Move, then: Move, corner: Corner) -> list[Move]:
 
 
 def _is_corner(first: Move, then: Move) -> bool:
-    """Whether two moves meet in a corner of a contour in the plane XY. Raises GCodeError at one beside an arc."""
-    courses = []
-    for move, point in ((first, first.end), (then, then.start)):
-        along = [b - a for a, b in zip(move.start, move.end)]
-        if move.kind not in (FEED, ARC) or abs(along[2]) > _STRAIGHT or move.rotary != move.rotary0:
+    """Whether two moves meet in a corner of a contour in the plane XY."""
+    for move in (first, then):
+        climbs = abs(move.end[2] - move.start[2]) > _STRAIGHT
+        if move.kind not in (FEED, ARC) or climbs or move.rotary != move.rotary0:
             return False
-        if move.kind == ARC:
-            turn = 1.0 if move.sweep > 0.0 else -1.0
-            along = [-turn * (point[1] - move.centre[1]), turn * (point[0] - move.centre[0]), 0.0]
-            if move.plane != 17:
-                return False
-        courses.append((along[0], along[1]))
-    (a, b), (c, d) = courses
-    size = math.hypot(a, b) * math.hypot(c, d)
-    if size <= _STRAIGHT**2 or a * c + b * d >= size * math.cos(_SMOOTH):
-        return False
-    if ARC in (first.kind, then.kind):
-        text = "RNDM rounds the corner between a cut and an arc, which is not read; write that arc out, or RNDM=0."
+        if move.plane != 17 if move.kind == ARC else math.dist(move.start, move.end) <= _STRAIGHT:
+            return False
+    return abs(tangents_turn(_cut(first, -1, (0, 1)), _cut(then, 1, (0, 1)))) > _SMOOTH
+
+
+def _beside_arc(first: Move, then: Move, size: float, feed: float) -> list[Move]:
+    """A corner of which one cut is an arc, rounded with ``size`` (m); where they go on tangentially there is none."""
+    plane = first.plane if first.kind == ARC else then.plane
+    u, v, w = axes(plane)
+    for move in (first, then):
+        level = abs(move.end[w] - move.start[w]) <= _STRAIGHT
+        if not level or (move.kind == ARC and (move.plane != plane or move.turns != 1)):
+            raise GCodeError.at(first.line, "a corner beside an arc is rounded in the plane of that arc alone.")
+    cuts = _cut(first, -1, (u, v)), _cut(then, 1, (u, v))
+    if size == 0.0 or abs(tangents_turn(*cuts)) <= _SMOOTH:
+        return [first, then]
+    found = touching((first.end[u], first.end[v]), *cuts, size)
+    if found is None:
+        text = f"a corner of radius {format_si(size, 'mm')} does not fit between its two cuts; give a smaller one."
         raise GCodeError.at(first.line, text)
-    return True
+    middle = _copy(first)
+    middle.kind, middle.plane, middle.turns, middle.dwell = ARC, plane, 1, 0.0
+    middle.rotary0, middle.v_f = list(first.rotary), feed or first.v_f
+    middle.clockwise = tangents_turn(*cuts) < 0.0
+    leaves, joins, centre = found
+    for axis, k in ((u, 0), (v, 1)):
+        first.end[axis] = middle.start[axis] = leaves[k]
+        then.start[axis] = middle.end[axis] = joins[k]
+        middle.centre[axis] = centre[k]
+    middle.start[w] = middle.end[w] = middle.centre[w] = first.end[w]
+    for move in (first, middle, then):
+        if move.kind == ARC:
+            start, end, about = ((point[u], point[v]) for point in (move.start, move.end, move.centre))
+            move.sweep = swept(start, end, about, -1 if move.clockwise else 1)
+    return [first, middle, then]
+
+
+def _cut(move: Move, way: int, plane: tuple[int, int]) -> Cut:
+    """A move as ``fillets`` sees it from the corner at its end (``way`` -1) or start (1)."""
+    u, v = plane
+    point = move.end if way < 0 else move.start
+    if move.kind != ARC:
+        along = move.end[u] - move.start[u], move.end[v] - move.start[v]
+        length = math.hypot(*along)
+        return Cut(way, (along[0] / max(length, _STRAIGHT), along[1] / max(length, _STRAIGHT)), length)
+    centre, turn = (move.centre[u], move.centre[v]), -1 if move.clockwise else 1
+    radius = math.dist((point[u], point[v]), centre)
+    along = -turn * (point[v] - centre[1]) / radius, turn * (point[u] - centre[0]) / radius
+    return Cut(way, along, abs(move.sweep), centre, radius, turn)
 
 
 def _bend(row: Move, centre: np.ndarray, across: np.ndarray, half: float) -> None:

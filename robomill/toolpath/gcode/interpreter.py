@@ -5,6 +5,7 @@ from time import thread_time
 from robomill.errors import GCodeError
 from robomill.progress import checkpoint
 from robomill.toolpath.gcode import check, codes as modal
+from robomill.toolpath.gcode.corners import AT_END
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
@@ -133,7 +134,7 @@ class Interpreter(Klartext):
         if block.motion != said:  # mirrored
             keep_motion(machine, said)
         if machine.corner is not None:
-            raise block.refuse("a corner is rounded or chamfered at the end of a straight cut (G1) alone.")
+            raise block.refuse(AT_END)
         self.drill_modal(block)
         self.drill_if_due(block)
         self.calls.special[level] = level in self.foreign or bool(saved)

@@ -4,6 +4,7 @@ import math
 
 from robomill.toolpath.gcode import compensated_corners
 from robomill.toolpath.gcode.codes import G_GROUP, LETTERS, M_GROUP, NON_MODAL, WIDTH, Q, g_name
+from robomill.toolpath.gcode.corners import AT_END, ROUND
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.program import FEED, TAP, TRAVERSE, Move, Rows
 from robomill.toolpath.gcode.rules import cycle_rules as cycles, motion_rules as rules
@@ -150,21 +151,16 @@ def move(machine: Machine, block: Block) -> None:
             machine.need_compensation_off(block, "RNDM")
         machine.arc_not_allowed = False
         rules.keep_motion(machine, block.motion)
-        if is_arc and (machine.corner is not None or compensation.due is not None):
-            raise block.refuse(compensated_corners.BETWEEN)
-        if is_arc:
-            compensation.arc(machine, block, end)
-            return
         if block.motion == rules.LINE:
             rules.inverse_time(machine, words, rules.straight_length(machine.p, end))
         if block.g.get(NON_MODAL) == 530:
             machine.need_compensation_off(block, "G53")
-        compensated_corners.straight(machine, block, end)
+        compensated_corners.follow(machine, block, end)
         return
     row = Move(block.line)
     demand(machine, block, rules.make_move(machine, words, block.motion, end, row))
-    if machine.corner is not None and row.kind != FEED:
-        raise block.refuse("a corner is rounded or chamfered at the end of a straight cut (G1) alone.")
+    if machine.corner is not None and not (row.kind == FEED or (is_arc and machine.corner.kind == ROUND)):
+        raise block.refuse(AT_END)
     machine.recorder.add(row, machine.corner_of(row.kind))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import interpret
+from robomill.toolpath.gcode import Program, interpret
 
 HEAD = "%\nO0001\nG21 G90 G0 X0 Y0 Z0\n"
 
@@ -45,13 +45,88 @@ def test_a_chamfer_takes_its_length_off_both_cuts_and_corners_may_follow_one_ano
     assert ends("G1 X20 ,R5 F100\nX30\n") == [[20, 0], [30, 0]]
 
 
+CONTOURS = {
+    "line, arc": "G1 X20 ,R{r} F100\nG3 X30 Y-10 I10 J0\n",
+    "arc, line": "G2 X20 Y0 I10 J0 F100 ,R{r}\nG1 X60\n",
+    "arc, arc outside": "G2 X20 Y0 I10 J0 F100 ,R{r}\nG2 X40 Y0 I10 J0\n",
+    "arc, arc inside": "G3 X20 Y0 I10 J0 F100 ,R{r}\nG2 X20 Y-30 I30 J-15\n",
+    "arc, arc of unlike sense": "G2 X20 Y0 I10 J0 F100 ,R{r}\nG3 X50 Y0 I15 J-8\n",
+    "chain": "G1 X20 ,R{r} F100\nG3 X40 Y0 I10 J0 ,R{r}\nG1 X60 Y10 ,R{r}\nX0\n",
+}
+
+
+def _direction(program: Program, k: int, at_end: bool) -> np.ndarray:
+    """Unit direction of travel (x, y) of move ``k`` at one of its ends, by geometry alone."""
+    a, b, c = (v[k, :2] for v in (program.start, program.end, program.centre))
+    if program.kind[k] == 1:
+        along = b - a
+    else:
+        out = (b if at_end else a) - c
+        along = np.array([out[1], -out[0]]) if program.clockwise[k] else np.array([-out[1], out[0]])
+    return along / np.linalg.norm(along)
+
+
+@pytest.mark.parametrize("radius", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("name", CONTOURS)
+def test_a_corner_beside_an_arc_touches_both_cuts(name: str, radius: float) -> None:
+    """An arc of its radius, of less than half a turn, that both cuts go on into: each where it was, only shorter."""
+    text = CONTOURS[name]
+    sharp = interpret(f"{HEAD}{text.replace(',R{r}', '')}M30\n%\n", dialect="fanuc")
+    program = interpret(f"{HEAD}{text.replace('{r}', f'{radius}')}M30\n%\n", dialect="fanuc")
+    assert len(program) == len(sharp) + text.count(",R")
+    middles = [*range(2, 2 * text.count(",R") + 1, 2)]
+    for k in middles:
+        for point in (program.start[k], program.end[k]):
+            assert np.linalg.norm(point - program.centre[k]) * 1e3 == pytest.approx(radius)
+        assert 0.0 < abs(program.sweep[k]) < np.pi
+        for before in (k - 1, k):
+            np.testing.assert_allclose(program.end[before], program.start[before + 1], atol=1e-12)
+            along = _direction(program, before, True) @ _direction(program, before + 1, False)
+            assert along == pytest.approx(1.0, abs=1e-9)
+    kept = [k for k in range(1, len(program)) if k not in middles]
+    np.testing.assert_allclose(program.end[-1], sharp.end[-1], atol=1e-12)
+    np.testing.assert_array_equal(program.kind[kept], sharp.kind[1:])
+    np.testing.assert_array_equal(program.clockwise[kept], sharp.clockwise[1:])
+    arcs = sharp.kind[1:] == 2
+    np.testing.assert_allclose(program.centre[kept][arcs], sharp.centre[1:][arcs], atol=1e-12)
+    assert (program.length[kept] < sharp.length[1:]).all()
+
+
+def test_a_corner_beside_an_arc_in_closed_form() -> None:
+    """Radius 2 outside of a circle of 10 about (30, 0), below the line y = 0: the two centres are 12 apart."""
+    u = 30 - np.sqrt(12**2 - 2**2)
+    fanuc = f"{HEAD}G1 X20 ,R2 F100\nG3 X30 Y-10 I10 J0\nG1 X50\nM30\n%\n"
+    sinumerik = "G71 G90 G0 X0 Y0 Z0\nG1 X20 RND=2 F100\nG3 X30 Y-10 I10 J0\nG1 X50\nM30\n"
+    modal = "G71 G90 G0 X0 Y0 Z0\nRNDM=2\nG1 X20 F100\nG3 X30 Y-10 I10 J0\nRNDM=0 G1 X50\nM30\n"
+    klartext = "BEGIN PGM A MM\nL X0 Y0 Z0 FMAX\nL X20 F100\nRND R2\nCC X30 Y0\nC X30 Y-10 DR+\nL X50\nEND PGM A MM\n"
+    for text, dialect in ((fanuc, "fanuc"), (sinumerik, "sinumerik"), (modal, "sinumerik"), (klartext, "heidenhain")):
+        program = interpret(text, dialect=dialect)
+        joins = [30 + (u - 30) * 10 / 12, -2 * 10 / 12]
+        np.testing.assert_allclose(program.end[-4:, :2] * 1e3, [[u, 0], joins, [30, -10], [50, -10]], atol=1e-9)
+        np.testing.assert_allclose(program.centre[-3, :2] * 1e3, [u, -2], atol=1e-9)
+        assert program.clockwise[-4:].tolist() == [False, True, False, False]
+
+
+def test_no_corner_is_where_a_cut_and_an_arc_go_on_tangentially() -> None:
+    assert ends("G1 X20 ,R2 F100\nG3 X30 Y10 I0 J10 ,R2\nG1 Y20\n") == [[20, 0], [30, 10], [30, 20]]
+
+
 @pytest.mark.parametrize(
     ("body", "says"),
     [
-        ("G1 X20 ,R5 F100\nG0 Y20\n", "Line 4: a corner is rounded or chamfered between two straight cuts"),
-        ("G0 X20 ,R5\nY20\n", "Line 4: a corner is rounded or chamfered at the end of a straight cut"),
+        ("G1 X20 ,R5 F100\nG0 Y20\n", "Line 4: a corner is rounded between two cuts"),
+        ("G0 X20 ,R5\nY20\n", "Line 4: a corner is rounded at the end of a cut"),
         ("G1 X20 ,R5 F100\nY3\n", "Line 4: a corner takes 5.000 mm of both cuts, and one has 3.000 mm"),
-        ("M8 ,C5\n", "Line 4: a corner is rounded or chamfered at the end of a straight cut"),
+        (
+            "G1 X20 ,C5 F100\nG3 X30 Y10 R10\n",
+            "Line 4: a corner is rounded between two cuts (G1, G2, G3), and chamfered",
+        ),
+        ("G1 X20 ,R50 F100\nG3 X30 Y-10 I10\n", "Line 4: a corner of radius 50.000 mm does not fit"),
+        (
+            "G1 X20 ,R2 F100\nG3 X30 Y-10 Z-1 I10\n",
+            "Line 4: a corner beside an arc is rounded in the plane of that arc",
+        ),
+        ("M8 ,C5\n", "Line 4: a corner is rounded at the end of a cut"),
         ("G68 X0 Y0\n", "Line 4: G68 is read in G17 and G90, with R"),
         ("G68 X0 Y0 R30\nG55\n", "Line 5: G55 while coordinates are shifted or turned"),
         ("G16\nG91 X5 Y10\n", "Line 5: G16 counts X from where the tool is in G91, which is not read"),

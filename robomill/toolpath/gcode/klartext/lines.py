@@ -73,7 +73,7 @@ class Klartext(KlartextApproach):
         if first in ("APPR", "DEP"):
             return self.approach(code, line)
         if first in ("RND", "CHF") or re.match(r"RND|CHF", first):
-            raise GCodeError.at(line, f"{first[:3]} is read behind a straight cut (L) alone.")
+            raise GCodeError.at(line, f"{first[:3]} is read behind a cut alone (L; for RND also C, CR, CT or CP).")
         if code.startswith("TOOL CALL"):
             return self._tool_call(code, line)
         if code.startswith("LBL"):
@@ -317,8 +317,8 @@ class Klartext(KlartextApproach):
         found = _CORNER.fullmatch(code)
         if found is not None:
             line = self.pc + 1
-            if kind != "L":
-                raise GCodeError.at(line, f"{code[:3]} is read between two straight cuts (L) alone.")
+            if kind != "L" and code[0] == "C":
+                raise GCodeError.at(line, "CHF is read between two straight cuts (L) alone.")
             feed = self.number(found[3], line) / self.tenth if found[3] else 0.0
             self.machine.corner = Corner(ROUND if code[0] == "R" else LEGS, self.number(found[2], line), feed)
             self.pc = after

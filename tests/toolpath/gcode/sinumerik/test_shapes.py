@@ -176,7 +176,7 @@ def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
         ('CYCLE72("CONTOUR",50,0,1,-5)\n', r"CYCLE72 .Sinumerik. mills a contour"),
         ("CYCLE71(50,0,1,0,0,0,40,30)\n", r"CYCLE71 .Sinumerik. mills a face"),
         ("MCALL CYCLE840(50,0,1,-5)\n", r"CYCLE840 .Sinumerik. taps with a compensating chuck"),
-        ("RNDM=2\nG1 X10\nG3 X20 Y0 CR=5\nG1 Y5\n", "RNDM rounds the corner between a cut and an arc"),
+        ("RNDM=30\nG1 X10\nG3 X20 Y0 CR=5\nG1 Y5\n", "a corner of radius 30.000 mm does not fit"),
         ("RNDM=2\nG1 X10\nX10 Y1\nX0\n", "a corner takes 2.000 mm of both cuts"),
         ("CIP X10 Y0 I1=5 J1=0\n", "CIP has three points on one line"),
         ("CIP X10 Y0\n", "CIP needs I1 and J1"),
