@@ -75,8 +75,9 @@ class KlartextApproach(KlartextValues):
             raise GCodeError.at(line, f"{found[1]} in a mirror image is not read; end CYCL DEF 8 before.")
         if any(self.machine.away):
             raise GCodeError.at(line, f"{found[1]} begins where only the machine knows; give X, Y and Z before.")
-        rate = None if feed is None or feed[1] in ("AUTO", "MAX") else self.number(feed[1], line)
-        rate = None if rate is None else rate / (10.0 if self.machine.unit == "in" else 1.0)
+        if self.per_turn:
+            raise GCodeError.at(line, f"{found[1]} under M136 is not read; end it by M137 before.")
+        rate = None if feed is None or feed[1] == "MAX" else self.rate(feed[1], line)
         self.machine.plane = 17
         said = _Said(form, sizes, places, side[1] if side else "0", rate)
         if arrives:

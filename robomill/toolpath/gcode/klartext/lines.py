@@ -21,7 +21,7 @@ from robomill.toolpath.plane import axes, centre_by_radius, polar
 _NUMBERED = re.compile(r"^\s*(/?)\s*(?:N?\d+(?![\d.,])\s*)?(/?)\s*")
 _LABEL = re.compile(r"^[ \t]*N?\d*[ \t]*LBL[ \t]+(\"[^\"\n]+\"|\d+)", re.MULTILINE | re.IGNORECASE)
 _WORD = re.compile(rf"(?<![A-Z])(I?)(PR|PA|T[XYZ]|[XYZABC])[ \t]*({NUMBER})")
-_FEED = re.compile(rf"(?<![A-Z])F[ \t]*(MAX|AUTO|{NUMBER})")
+_FEED = re.compile(rf"(?<![A-Z])F(U?)[ \t]*(MAX|AUTO|{NUMBER})")
 _RADIUS = re.compile(rf"(?<![A-Z])R[ \t]*({NUMBER})")
 _NORMAL = re.compile(rf"N[XYZ] ?{NUMBER}")
 _WITH_M = re.compile(
@@ -35,7 +35,8 @@ _TOOL = re.compile(rf"TOOL CALL ?(\d+|\"[^\"]*\"|Q[LR]?\d+)?(?: ([XYZ])\b)?((?: 
 _REPEAT = re.compile(r"REP(\d)")
 _CORNER = re.compile(rf"(RND ?R?|CHF ?L?) ?({NUMBER})(?: ?F ?(?:({NUMBER})|.*))?")
 _SILENT = re.compile(
-    r"BLK FORM|TOOL DEF|FUNCTION (?:RESET )?TCPM|FUNCTION MODE MILL|PLANE RESET|M1(?:07|08|16|17|20|24|26|27|38)\b"
+    r"BLK FORM|TOOL DEF|FUNCTION (?:RESET )?TCPM|FUNCTION MODE MILL|PLANE RESET|M1(?:07|08|16|17|20|24|26|27|38)\b|"
+    r"DECLARE STRING|QS\d+ ?=|FN ?(?:16|20|29|37|38) ?:"
 )
 _UPRIGHT = re.compile(r"PLANE SPATIAL(?: SP[ABC][-+]?0*\.?0*(?![\d.]))+(?: (?:STAY|SEQ[-+]|TABLE ROT|COORD ROT))*$")
 MAX_CODE, MAX_LINES = 1000, 100
@@ -177,14 +178,17 @@ class Klartext(KlartextApproach):
         out = [self._compensated(side[1] if side else self.side)]
         if not arc and machine.plane != 17:
             out.append("G17")
-        if feed is not None and feed[1] not in ("MAX", "AUTO"):
-            out.append(f"F{self.number(feed[1], line) / self.tenth:.9f}")
+        if 136 in codes or 137 in codes:
+            self.per_turn = 136 in codes
+            out.append("G95" if self.per_turn else "G94")
+        if feed is not None and feed[2] != "MAX":
+            out.append(self._feed(feed[1], feed[2], line))
         machine.machine_word = "M140" if 140 in codes else "M91" if 91 in codes else "M92"
         if where:
             if 91 in codes or 92 in codes:
                 out.append("G53")
             places = " ".join(f"{letter}{value:.12f}" for letter, value in where.items())
-            out.append(f"{arc or ('G0' if feed is not None and feed[1] == 'MAX' else 'G1')} {places}")
+            out.append(f"{arc or ('G0' if feed is not None and feed[2] == 'MAX' else 'G1')} {places}")
             self._look_ahead(kind)
         out += [f"M{m}" if m in _KEPT_M else _PAIRS[m] for m in codes if m in _KEPT_M or m in _PAIRS]
         self._say_m([m for m in codes if m not in _KEPT_M and m not in _PAIRS], line)
@@ -205,11 +209,15 @@ class Klartext(KlartextApproach):
         if left.strip():
             raise GCodeError.at(line, f"found {left.strip()[:20]!r} in a line that begins with {kind}; {_LET}.")
 
+    def _feed(self, per_turn: str, said: str, line: int) -> str:
+        """F, or FU per turn; under M136 F counts per turn, too."""
+        if said != "AUTO" and (per_turn or self.per_turn):
+            return f"G95 F{self.number(said, line):.9f}"
+        return f"G94 F{self.rate(said, line):.9f}"
+
     def _say_m(self, codes: list[int], line: int) -> None:
         for m in codes:
-            if m == 136:
-                raise GCodeError.at(line, "M136 counts feeds per turn, which is not read; write them per minute.")
-            if m not in (89, 91, 92, 99, 140):
+            if m not in (89, 91, 92, 99, 136, 137, 140):
                 self.machine.findings.add("unknown-m", "ignored", line, f"M{m} is left out: it moves nothing")
 
     def _retract(self, code: str, line: int) -> str:
@@ -329,14 +337,18 @@ class Klartext(KlartextApproach):
         if found is None or found[2] in ("X", "Y"):
             raise GCodeError.at(line, f"{code[:30]} is not read; expected a tool, Z and S, as TOOL CALL 1 Z S2000.")
         out = []
+        self.tool_feed = self.tool_feed if found[1] is None else None
         for name, value in re.findall(rf"(S|F|DL|DR2?) ?({NUMBER})", found[3] or ""):
             size = self.number(value, line)
             if name[0] == "D" and size != 0.0:
                 raise GCodeError.at(
                     line, f"TOOL CALL has {name}{size:+g}, which is not read; put it in the tool table."
                 )
-            if name in "SF":
-                out.append(f"{name}{size / (10.0 if name == 'F' and self.machine.unit == 'in' else 1.0):.9f}")
+            if name == "F":
+                self.tool_feed = size / self.tenth
+                out.append(self._feed("", "AUTO", line))
+            elif name == "S":
+                out.append(f"S{size:.9f}")
         if found[1] is not None:
             quoted = found[1].startswith('"')
             tool = named_tool(found[1][1:-1], line, self.machine) if quoted else f"T{self.number(found[1], line):.0f}"

@@ -72,10 +72,12 @@ class KlartextValues(SinumerikProcs):
 
     drill: int = 0
     says_out = False
-    due = False
+    due = per_turn = False
     raised = 0.0
     pole: tuple[int, float, float] | None = None
     preset: float | None = None
+    tool_feed: float | None = None
+    """Program units a minute, as the last TOOL CALL says."""
 
     # --- values
     def number(self, text: str, line: int) -> float:
@@ -88,7 +90,7 @@ class KlartextValues(SinumerikProcs):
             return f"#{at}"
 
         plain = _Q.sub(known, text.replace("PI", f"{math.pi:.15f}"))
-        plain = plain.replace("(", "[").replace(")", "]").replace("^", "**")
+        plain = plain.replace("(", "[").replace(")", "]").replace("^", "**").replace("%", " MOD ")
         plain = _FUNCTION.sub(
             lambda found: ("FIX" if found[1] == "INT" else found[1]) + (f"[{found[2]}]" if found[2] else ""), plain
         )
@@ -260,6 +262,14 @@ class KlartextValues(SinumerikProcs):
         """A feed counts in tenths of an inch a minute where the program is in inches."""
         return 10.0 if self.machine.unit == "in" else 1.0
 
+    def rate(self, said: str, line: int) -> float:
+        """A feed in program units a minute; FAUTO is that of TOOL CALL."""
+        if said != "AUTO":
+            return self.number(said, line) / self.tenth
+        if self.tool_feed is None:
+            raise GCodeError.at(line, "FAUTO is the feed of TOOL CALL, which has none; write F there.")
+        return self.tool_feed
+
     def _pattern(self, number: int, line: int) -> None:
         """CYCL DEF 220 and 221 drill at once, on a circle or in lines."""
         if self.drill == 0:
@@ -344,6 +354,9 @@ class KlartextValues(SinumerikProcs):
             raise GCodeError.at(line, f"CYCL DEF {number} needs Q200 above 0 and Q201, its depth, below 0; mend them.")
         if self.q(379) != 0.0:
             raise GCodeError.at(line, f"CYCL DEF {number} starts below the surface (Q379), which is not read; give 0.")
+        if self.per_turn:
+            text = "M136 would count the feeds of a cycle per turn, which is not read; end it by M137 before the cycle."
+            raise GCodeError.at(line, text)
         down, pitch = self.q(206) / self.tenth, abs(self.q(239)) if number in (207, 209) else 0.0
         if number in (207, 209) and pitch == 0.0:
             raise GCodeError.at(line, f"CYCL DEF {number} needs Q239, its pitch.")

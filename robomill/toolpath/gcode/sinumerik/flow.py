@@ -15,7 +15,8 @@ from robomill.toolpath.gcode.words import Block
 FIRST_VARIABLE, MOST_VARIABLES = 2000, 1000
 _START = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?(?:[A-Z_]{2}\w*[ \t]*:(?!=)[ \t]*)?")
 _WORD = re.compile(
-    r"(IF|WHILE|FOR|UNTIL)\b(.*)|(ELSE|ENDIF|ENDWHILE|ENDFOR|LOOP|ENDLOOP)[ \t]*|(REPEAT)(?:[ \t]+(\w+))?"
+    r"(IF|WHILE|FOR|UNTIL)\b(.*)|(ELSE|ENDIF|ENDWHILE|ENDFOR|LOOP|ENDLOOP)[ \t]*|"
+    r"(REPEATB?)(?:[ \t]+(?!P[ \t]*=)(\w+))?(?:[ \t]+(?!P[ \t]*=)(?!P\d+[ \t]*$)(\w+))?"
     r"(?:[ \t]+P[ \t]*=?[ \t]*(\d{1,6}))?[ \t]*"
 )
 _LIKELY = re.compile(rb"\b(?:IF|ELSE|WHILE|FOR|UNTIL|ENDIF|ENDWHILE|ENDFOR|LOOP|ENDLOOP|REPEAT)\b", re.IGNORECASE)
@@ -64,8 +65,8 @@ class SinumerikFlow(SinumerikAngles):
 
     def _branch(self, found: re.Match[str], index: int) -> None:
         word, line = found[1] or found[3] or found[4], index + 1
-        if word == "REPEAT" and found[5] is not None:
-            self._repeat_from(found[5], int(found[6] or 1), index)
+        if found[4] and (found[5] is not None or word == "REPEATB"):
+            self._repeat(word, found[5] or "", found[6], int(found[7] or 1), index)
             return
         start, other, end = self._structure.get(index, (-1, -1, -1))
         if start < 0:
@@ -97,17 +98,42 @@ class SinumerikFlow(SinumerikAngles):
         self.keep(at, value)
         self.pc = start + 1 if value <= self.value(found[3], line) else end + 1
 
-    def _repeat_from(self, label: str, times: int, index: int) -> None:
-        """REPEAT LABEL P=n: from the label to here n times more."""
-        places = [place for place in self.labels.get(label, []) if place < index]
-        if not places:
+    def _repeat(self, word: str, label: str, last: str | None, times: int, index: int) -> None:
+        """P=n times: REPEATB the line of a label, REPEAT those from a label to another, to ENDLABEL, or to here."""
+        start = self._labelled(label, -1, index)
+        end = start if word == "REPEATB" else self._labelled(last, start, index) if last else None
+        if word == "REPEAT" and last is None:
+            ends = [place for place in self.labels.get("ENDLABEL", []) if place > start]
+            end = ends[0] if ends and (ends[0] < index or start > index) else None
+        if end is None and start > index:
             raise GCodeError.at(index + 1, f"REPEAT {label} leads nowhere: there is no such label before it.")
+        if end is not None and start <= index <= end:
+            raise GCodeError.at(index + 1, f"{word} {label} stands in what it repeats; move it behind that.")
         key = (self.machine.store.level, index)
         left = self.rounds.get(key, times)
         if left > 0:
-            self.rounds[key], self.pc = left - 1, places[-1]
+            self.rounds[key], self.pc = left - 1, start
+            if end is not None:
+                self.repeated.append((start, end, index, self.machine.store.level))
         else:
             self.rounds.pop(key, None)
+
+    def _labelled(self, label: str, start: int, index: int) -> int:
+        """The line of a label from ``start`` on: the last one before line ``index``, else the first behind it."""
+        places = [place for place in self.labels.get(label, []) if place >= start]
+        behind = [place for place in places if place < index]
+        if not places:
+            raise GCodeError.at(index + 1, f"REPEAT {label} leads nowhere: there is no such label.")
+        return behind[0 if start >= 0 else -1] if behind else places[0]
+
+    def leave_if_due(self) -> None:
+        """Go back to REPEAT behind the last line of what it repeats."""
+        super().leave_if_due()
+        if self.repeated:
+            _, end, index, level = self.repeated[-1]
+            if self.pc == end + 1 and self.machine.store.level == level:
+                self.repeated.pop()
+                self.pc = index
 
     @cached_property
     def _structure(self) -> dict[int, tuple[int, int, int]]:

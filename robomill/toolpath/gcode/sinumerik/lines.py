@@ -31,6 +31,9 @@ _TURN = re.compile(r"\bTURN\s*=\s*(\d+)", re.IGNORECASE)
 MOST_TURNS = 999
 """Full turns that a Sinumerik adds to an arc at most."""
 _TOOL = re.compile(r"\bT[ \t]*=?[ \t]*\"([^\"]*)\"", re.IGNORECASE)
+_SPINDLE = re.compile(r"\bM1[ \t]*=[ \t]*(\d+)", re.IGNORECASE)
+_TAP = re.compile(r"\bG33[12]\b", re.IGNORECASE)
+_PITCH = re.compile(rf"\bK[ \t]*=?[ \t]*({_NUMBER})", re.IGNORECASE)
 _MODES = re.compile(r"\bG9[01]\b(?!\.)", re.IGNORECASE)
 _CODE = re.compile(r"(?:[^;\"]|\"[^\"]*\"|\"(?=[^\"]*$))*+")
 _FOLLOWS = {"G70": False, "G71": False, "G700": True, "G710": True}
@@ -68,6 +71,7 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = _EXPONENT.sub(lambda found: f"{float(found[1] + 'e' + found[2]):.15f}", code)
     code = _tool_axis(code, number, machine)
     code = _places(code, machine)
+    code = _TAP.sub(lambda _: _tapped(code, number, machine), _SPINDLE.sub(r"M\1", code))
     code = _TURNS.sub(lambda found: _waited(found, number, machine), code)
     code = re.sub(r"\b(G0?4)\s+F\s*=?", r"\1 P", code, flags=re.IGNORECASE)
     code = re.sub(r"\bCR\s*=", "R", code, flags=re.IGNORECASE)
@@ -103,6 +107,17 @@ def _feeds(code: str, number: int, machine: Machine) -> str:
         return code
     ratio = to_si(1.0, counts) / to_si(1.0, machine.unit)
     return _FEED.sub(lambda found: f"F{float(found[1]) * ratio:.12f}", code)
+
+
+def _tapped(code: str, number: int, machine: Machine) -> str:
+    """G331 taps down and G332 up again, in step with a spindle that they turn themselves, by the sign of the pitch K."""
+    pitch = _PITCH.search(code)
+    if pitch is None or float(pitch[1]) == 0.0:
+        raise GCodeError.at(number, "G331 and G332 need K, the pitch along Z; I and J are not read.")
+    if machine.spindle:
+        return "G33"
+    machine.note("tap-turns", "info", "G331 turns the spindle by itself (rigid tapping)")
+    return "G33 M3" if float(pitch[1]) > 0.0 else "G33 M4"
 
 
 def _whole_turns(said: str, number: int) -> str:

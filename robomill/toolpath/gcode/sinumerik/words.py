@@ -36,6 +36,11 @@ _CORNER = re.compile(r"\b(RNDM?|CHF|CHR|FRCM?)[ \t]*=[ \t]*(\d+(?:\.\d*)?|\.\d+)
 _KINDS = {"RND": ROUND, "CHF": BEVEL, "CHR": LEGS}
 _IDENTIFIER = re.compile(r"\b[A-Z_]{1,2}\w+\b")
 _TWO = re.compile(r"\b(?:POT[ \t]*\(((?:[^()]|\([^()]*\))*)\)|ATAN2[ \t]*\(((?:[^()]|\([^()]*\))*)\))")
+_GOES_ON = re.compile(r"[-+*/]|(?:DIV|MOD)\b")
+_WENT_ON = re.compile(r"\b(?:DIV|MOD)$")
+_DIV = re.compile(r"(#?\w+(?:\.\d*)?|[^\s(+\-*/]*\))[ \t]*\bDIV\b[ \t]*(#?\w+(?:\.\d*)?|[(+\-])")
+_NOT = re.compile(r"\bNOT\b[ \t]*(\((?:[^()]|\([^()]*\))*\)|[#\w.]+)")
+_R_COMPUTED = re.compile(r"\bR\[([^\[\]]+)\]")
 _TRUTH = re.compile(r"\b(?:TRUE|FALSE|TRUNC)\b")
 _IN_PLACE = re.compile(r"\b([XYZABCIJK])[ \t]*=[ \t]*(AC|IC|DC|ACP|ACN)[ \t]*\(((?:[^()]|\([^()]*\))*)\)")
 _COMPARES = (("==", " EQ "), ("<>", " NE "), (">=", " GE "), ("<=", " LE "), (">", " GT "), ("<", " LT "))
@@ -108,6 +113,7 @@ class SinumerikWords(Holes):
         self.used = 0
         self.kinds: dict[int, str] = {}
         self.rounds: dict[tuple[int, int], int] = {}
+        self.repeated: list[tuple[int, int, int, int]] = []
 
     def slot(self, name: str, line: int) -> int:
         """The number of the parameter that keeps an R parameter or a variable, which is then set."""
@@ -141,12 +147,30 @@ class SinumerikWords(Holes):
                 raise GCodeError.at(line, f"R{number} is read before the program sets it; set it at the start.")
             return f"#{FIRST_R + number}"
 
+        text = _R_COMPUTED.sub(lambda found: self._numbered(found[1], line), text)
         text = _TWO.sub(lambda found: _of_two(found, line), _R.sub(known, text))
-        text = _IDENTIFIER.sub(self._known_name, text)
+        text = _DIV.sub(lambda found: self._of_whole(found, line), text)
+        text = _NOT.sub(lambda found: f"({found[1]}==0)", _IDENTIFIER.sub(self._known_name, text))
         text = _TRUTH.sub(lambda found: {"TRUE": "1", "FALSE": "0", "TRUNC": "FIX"}[found[0]], text)
         for sign, word in _COMPARES:
             text = text.replace(sign, word)
         return text.replace("(", "[").replace(")", "]")
+
+    def _numbered(self, text: str, line: int) -> str:
+        """R[ ] by its computed number."""
+        number = self.value(text, line)
+        if not 0.0 <= number < MOST_R or number != round(number):
+            raise GCodeError.at(line, f"R[{number:g}] does not exist; R parameters run from 0 to {MOST_R - 1}.")
+        return f"R{number:.0f}"
+
+    def _of_whole(self, found: re.Match[str], line: int) -> str:
+        """DIV of whole numbers: how often the one goes into the other."""
+        if re.search(r"(?:[*/]|\bMOD|\bDIV)[ \t]*$", found.string[: found.start()]):
+            raise GCodeError.at(line, "DIV behind another product is read in brackets of its own alone; write them.")
+        for each in found.groups():
+            if not each.isdigit() and self.kinds.get(self.variables.get(each, -1)) != "INT":
+                raise GCodeError.at(line, f"DIV is read between whole numbers and INT variables, found {each[:20]}.")
+        return f"TRUNC(({found[1]})/({found[2]}))"
 
     def _known_name(self, found: re.Match[str]) -> str:
         return f"#{self.variables[found[0]]}" if found[0] in self.variables else found[0]
@@ -154,12 +178,15 @@ class SinumerikWords(Holes):
     def _computed(self, value: str) -> bool:
         """Whether a value is more than a number."""
         names = _IDENTIFIER.findall(value)
-        return "R" in value or any(n in self.variables for n in names) or any(s in value.strip()[1:] for s in "+-*/(")
+        if "R" in value or any(n in self.variables or n in ("DIV", "MOD") for n in names):
+            return True
+        return any(s in value.strip()[1:] for s in "+-*/(")
 
     def _values(self, code: str, line: int) -> str:
         """Set the R parameters of a line, and write out what its other words are set to."""
         if "=" not in code or '"' in code:
             return code
+        code = _R_COMPUTED.sub(lambda found: self._numbered(found[1], line), code)
         if _SET_R.match(_N.sub("", code).lstrip()):
             rest = _N.sub("", code).strip()
             while found := _SET_R.match(rest):
@@ -209,8 +236,16 @@ class SinumerikWords(Holes):
         ahead, behind = [p for p in places if p >= self.pc], [p for p in places if p < self.pc]
         chosen = {"GOTOF": ahead[:1], "GOTOB": behind[-1:]}.get(way, ahead[:1] or behind[-1:])
         if not chosen:
+            if way == "GOTOC":
+                return
             raise GCodeError.at(line, f"{way} {label} leads nowhere: there is no such label on that side.")
-        self.pc = chosen[0]
+        self.pc, here = chosen[0], self.machine.store.level
+        while self.repeated and self.repeated[-1][3] == here:
+            start, end, index, level = self.repeated[-1]
+            if start <= self.pc <= end:
+                break
+            self.repeated.pop()  # who jumps out of what REPEAT repeats has done with it
+            self.rounds.pop((level, index), None)
 
     @cached_property
     def labels(self) -> dict[str, list[int]]:
@@ -278,7 +313,8 @@ def value_end(code: str, at: int) -> int:
         if sign in " \t":
             while code[ahead : ahead + 1] in (" ", "\t"):
                 ahead += 1
-            if depth == 0 and last not in "+-*/=" and code[ahead : ahead + 1] not in ("+", "-", "*", "/"):
+            goes_on = last in "+-*/=" or _GOES_ON.match(code, ahead) or _WENT_ON.search(code[:at])
+            if depth == 0 and not goes_on:
                 return at
         else:
             depth += (sign == "(") - (sign == ")")

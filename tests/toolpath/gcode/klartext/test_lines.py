@@ -58,6 +58,27 @@ def test_fmax_holds_for_its_line_alone() -> None:
     assert read("L X+1 F100\nL X+2 FMAX\nL X+3\n").kind.tolist() == [0, 1, 0, 1]
 
 
+def test_fauto_is_the_feed_of_the_last_tool_call() -> None:
+    """F300 holds until FAUTO goes back to what TOOL CALL says, here in tenths of an inch a minute, and then 700."""
+    body = "TOOL CALL 1 Z S1000 F500\nL X+1\nL X+2 F300\nL X+3\nL X+4 FAUTO\nTOOL CALL F700\nL X+5 F1\nL X+6 F AUTO\n"
+    said = np.array([500, 300, 300, 500, 1, 700])
+    assert read(body).v_f[-6:] * 6e4 == pytest.approx(said)
+    inch = interpret(f"BEGIN PGM A INCH\nL X0 Y0 Z0 FMAX\n{body}END PGM A INCH\n")
+    assert inch.v_f[-6:] * 6e4 == pytest.approx(said * 2.54)
+
+
+def test_feeds_per_turn() -> None:
+    """At 1000 turns a minute 0.2 mm a turn are 200 mm/min: by FU for its line and on, by M136 for every F until M137."""
+    body = "L X+1 F500\nL X+2 FU0.2\nL X+3\nL X+4 F300\nM136\nL X+5 F0.1\nL X+6\nM137\nL X+7 F80\n"
+    assert read(body).v_f[-7:] * 6e4 == pytest.approx([500, 200, 200, 300, 100, 100, 80])
+
+
+def test_texts_and_messages_move_nothing() -> None:
+    program = read('DECLARE STRING QS1 = "TEXT"\nQS2 = "X" || QS1\nFN 16: F-PRINT A.A / B.TXT\nL X+1 F9\n')
+    assert program.end[-1, 0] == pytest.approx(1e-3)
+    assert sum(f.count for f in program.findings if f.code == "harmless-word") == 4  # with BLK FORM
+
+
 def test_inches_and_their_feed_in_tenths() -> None:
     program = interpret("0 BEGIN PGM A INCH\nL X+0 FMAX\nL X+1 F100\nEND PGM A INCH\n")
     assert program.units == "in"
@@ -215,7 +236,7 @@ def test_tool_axes_and_m_words() -> None:
         ("FL AN+45\n", r"FL AN\+45 is of"),
         ("PLANE SPATIAL SPA+0 SPB+45 SPC+0 TURN\n", "PLANE SPATIAL"),
         ("CALL PGM TNC:\\SUB.H\n", "CALL PGM TNC"),
-        ("L X+1 FU0.1\n", "found 'FU0.1' in a line that begins with L"),
+        ("L X+1 FZ0.1\n", "found 'FZ0.1' in a line that begins with L"),
         ("C X+1 Y+1 DR+ F9\n", "need their centre"),
         ("CC X+1 Y+1\nC X+2 Y+2 F9\n", r"C needs DR\+ or DR-"),
         ("CR X+1 Y+1 DR+ F9\n", "CR needs R"),
@@ -232,7 +253,11 @@ def test_tool_axes_and_m_words() -> None:
         ("CC X+1 Z+2\nCC Y+5\n", "CC needs two of X, Y and Z"),
         ("L X+1 F9\nCR X+9 R+9 DR+\nCHF 1\n", "CHF is read between two straight cuts"),
         ("CC X+0 Y+5\nCP IPA-0.5 DR+ F9\n", "IPA against its DR"),
-        ("M136\n", "M136 counts feeds per turn"),
+        ("L X+1 FAUTO\n", "FAUTO is the feed of TOOL CALL, which has none"),
+        ("L X+1 F9\nTOOL CALL 2 Z S100\nL X+2 FAUTO\n", "FAUTO is the feed of TOOL CALL, which has none"),
+        ("FN 18: SYSREAD Q1 = ID210 NR4\n", "FN 18: SYSREAD is of Heidenhain's and is not read"),
+        ("M136\nCYCL DEF 200 Q200=2 Q201=-5 Q206=9\nL X+1 F1 M99\n", "M136 would count the feeds of a cycle"),
+        ("M136\nAPPR LT X+9 Y+9 LEN5 RL F1\n", "APPR under M136 is not read"),
         ("L X+5 FMAX M140 MB MAX\n", "M140 beside a move"),
         ("LN X+1 TX+0 TY+0 TZ+0 F9\n", "TX TY TZ is 0"),
     ],

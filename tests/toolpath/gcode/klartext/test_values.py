@@ -125,6 +125,7 @@ def test_a_called_position_shifts_the_cycle_by_its_z_and_is_gone_to_in_the_plane
     [
         ("SQ 3 + SQ ( 1 + 1 )", 13),
         ("NEG 2 + ATAN 1", 43),
+        ("400 % 360", 40),
         ("FRAC -2.5", -0.5),
         ("INT -2.5", -2),
         ("SGN -7 * 3", -3),

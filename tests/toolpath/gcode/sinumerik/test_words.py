@@ -354,3 +354,23 @@ def test_a_corner_may_have_a_feed_of_its_own(said: str, feeds: list[float]) -> N
     np.testing.assert_allclose(program.v_f * 6e4, feeds)
     turned = interpret(f"{HEAD}G95 F0.2\nG1 X20 RND=2 FRC=0.1\nY20\nM30\n", dialect="sinumerik")
     np.testing.assert_allclose(turned.v_f * 6e4, [100, 50, 100])
+
+
+def test_g331_taps_in_step_with_the_spindle_that_it_turns() -> None:
+    """10 turns a second of 1.25 mm are 12.5 mm/s, down to where Z says and up again; a negative pitch is left-handed."""
+    for sign, counter in (("", False), ("-", True)):
+        body = f"G0 X5 Y0 Z2\nSPOS=0\nG331 Z-10 K{sign}1.25 S600\nG332 Z2 K={sign}1.25\nG0 Z50\n"
+        program = interpret(f"G90 G71 G94 F99\n{body}M30\n", dialect="sinumerik")
+        np.testing.assert_allclose(program.end[-3:, 2] * 1e3, [-10, 2, 50])
+        assert program.v_f[-3:-1] * 1e3 == pytest.approx([12.5, 12.5])
+        assert program.n_s[-3:-1] == pytest.approx([10, 10])
+        assert program.ccw[-3:-1].tolist() == [counter, counter]
+        assert program.thread[-3:-1].all()
+    with pytest.raises(GCodeError, match="Line 3: G331 and G332 need K"):
+        interpret("G90 G71 S600\nG0 Z2\nG331 Z-10 S600\n", dialect="sinumerik")
+
+
+def test_words_of_the_first_spindle() -> None:
+    program = interpret("G90 G71 G0 X0 Y0 Z0\nM1=4 S1=600\nG1 X10 F100\nM30\n", dialect="sinumerik")
+    assert program.n_s[-1] == pytest.approx(10)
+    assert program.ccw[-1]
