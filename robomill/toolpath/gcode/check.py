@@ -161,14 +161,15 @@ def _uses(block: Block) -> list[tuple[str, bool, str]]:
     data = non_modal == 100
     arc, spline, thread = is_arc(motion), motion in (50, 51), motion == 760
     cycle = is_cycle(motion)
+    sized = motion == 870 or block.falls
     io, user, orient = m.get(modal.IO, -1), modal.USER in m, m.get(modal.SPINDLE) == 19
     return [
         ("d", compensation in _COMPENSATION_ON or g.get(modal.SPINDLE_MODE) == 960, "G41, G42 or G96"),
         ("e", thread or io in (66, 67, 68), "G76, M66, M67 or M68"),
         ("h", g.get(modal.LENGTH) in (430, 432) or thread, "G43"),
-        ("i", arc or spline or thread or motion == 870 or data, "G2, G3 or G87"),
-        ("j", arc or spline or thread or motion == 870 or data, "G2, G3 or G87"),
-        ("k", arc or motion in (330, 331, 760, 870), "G2, G3, G33 or G87"),
+        ("i", arc or spline or thread or sized or data, "G2, G3 or G87"),
+        ("j", arc or spline or thread or sized or data, "G2, G3 or G87"),
+        ("k", arc or motion in (330, 331, 760) or sized, "G2, G3, G33 or G87"),
         ("l", cycle or thread or data or motion == 52 or compensation in _COMPENSATION_ON or io == 66, "G10, a cycle"),
         (
             "p",

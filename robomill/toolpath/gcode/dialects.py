@@ -14,7 +14,7 @@ from robomill.toolpath.gcode.fanuc.cycles import bolt_holes
 from robomill.toolpath.gcode.fanuc.scaling import scales
 from robomill.toolpath.gcode.machine import UNITS, Machine
 from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
-from robomill.toolpath.gcode.rules.motion_rules import LINE
+from robomill.toolpath.gcode.rules.motion_rules import LINE, is_arc
 from robomill.toolpath.gcode.sinumerik.lines import translated
 from robomill.toolpath.gcode.words import Block
 from robomill.units import to_si
@@ -80,7 +80,7 @@ _SINUMERIK = (
     ("supa", r"\bsupa\b"),
     ("%_n_", r"\n%_n_\w+_[ms]pf\b"),
     ("def", r"\bdef[ \t]+(?:real|int)"),
-    ("g7", r"\n[^\n]*\bg7[01]\b(?![^\n]*(?:[qpuwrdl][ \t]*[-.\d#\[]|g9[01]\.1))"),
+    ("g7", r"\A(?![^\0]*\bg43\b)[^\0]*\n[^\n]*\bg7[01]\b(?![^\n]*(?:[qpuwrdl][ \t]*[-.\d#\[]|g9[01]\.1))"),
 )
 _FANUC = (
     *_words("g65", "g54.1", "g05", "g43.4"),
@@ -142,6 +142,8 @@ class Dialect:
         """The line in LinuxCNC's words; what is left out on the way is noted."""
         findings = machine.findings
         raw = plain_numbers(raw, number, findings)
+        if raw[:1] == ":" and not self.strict and _MAIN_BLOCK.match(raw):
+            raw = "N" + raw[1:]
         if self.name == "sinumerik" and len(raw) <= 10 * LONGEST:
             return translated(raw, number, machine)
         if self._is_fanuc_like:
@@ -159,10 +161,11 @@ class Dialect:
                 raw = _VERBATIM_OR_CODE.sub(
                     lambda part: part[0] if part[0][0] in '(;<"' else _POINT.sub(r"\g<1>0.", part[0]), raw
                 )
-            code = "O" + raw[1:] if raw[:1] == ":" else raw
-            if _dwells(code, machine.motion):
-                code = _IN_MS.sub(_in_seconds, code)
-            return _TIP.sub("G43", _DWELL.sub(r"\1P", code))
+            if raw[:1] == ":":
+                raw = "O" + raw[1:]
+            if _dwells(raw, machine.motion):
+                raw = _IN_MS.sub(_in_seconds, raw)
+            return _TIP.sub("G43", _DWELL.sub(r"\1P", raw))
         if self._is_fanuc_like:
             return _DWELL.sub(r"\1P", _take_corner(raw, machine)) if not self.strict else raw
         if self.name == "grbl" and raw.lstrip()[:1] in ("$", "!", "~", "?"):
@@ -174,11 +177,10 @@ class Dialect:
         return self.name == "fanuc" or (self.name == "linuxcnc" and self.guessed)
 
     def _without_smoothing(self, raw: str, number: int, findings: Findings) -> str:
-        if "G" not in raw and "g" not in raw:
+        if not any(letter in raw for letter in "GgPp"):
             return raw
-        for found in _SMOOTHING.findall(raw):
-            name = re.split(r"[\sPpQq]", found.strip())[0].upper()
-            findings.add("harmless-g", "ignored", number, f"{name} is left out: it moves nothing")
+        for found in _SMOOTHING.finditer(raw):
+            findings.add("harmless-g", "ignored", number, f"{_named(found)} is left out: it moves nothing")
         return _SMOOTHING.sub("", raw)
 
     def meant_otherwise(self, machine: Machine, block: Block) -> None:
@@ -194,6 +196,11 @@ class Dialect:
                     f"{g_name(unit)} stands beside other words, which count in {UNITS[unit]} here; Fanuc controls want"
                 )
                 machine.note("units-beside", "warning", f"{text} it on a line of its own, before any place")
+        motion = block.g.get(modal.MOTION, machine.motion)
+        if self.name == "fanuc" and is_arc(motion) and "r" in block.words and block.words.keys() & {"i", "j", "k"}:
+            for letter in "ijk":
+                block.words.pop(letter, None)
+            machine.note("radius-counts", "info", "an arc with R and I, J or K is that of R, as on Fanuc controls")
         if self.name == "fanuc" and modal.DIAMETER in block.g:
             raise block.refuse(f"{g_name(block.g[modal.DIAMETER])} of a Fanuc control is not read; remove the word.")
         if self.name == "sinumerik" and block.g.get(modal.COORDINATES) in (580, 590):
@@ -315,11 +322,13 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
     return Dialect("linuxcnc", marked=False)
 
 
+_MAIN_BLOCK = re.compile(r":[ \t]*\d+[ \t]*[A-Z]", re.IGNORECASE)
+"""The number of a line from which a program may be begun, as Sinumerik and NX's posts write it."""
 _POINT = re.compile(r"(?<![A-Za-z_])([A-Za-z]\s*[-+]?)\.(?![\d.])")
 _TIP = re.compile(r"\bG43\.[45]\b", re.IGNORECASE)
 _SMOOTHING = re.compile(
     r"\bG0?5\.1\s*Q[0123]\b(?:\s*[RXYZ]\d+\.?)*|\bG0?5\s*P(?:10000|[0123])\b|\bG0?8\s*P[01]\b|"
-    r"\bG187\b(?:\s*[PE]\s*[\d.]+)*|\bG103\b(?:\s*P\s*\d+)?",
+    r"\bG187\b(?:\s*[PE]\s*[\d.]+)*|\bG103\b(?:\s*P\s*\d+)?|\b(?:POPEN|PCLOS)\b|\b[BD]PRNT\s*\[.*\]",
     re.IGNORECASE,
 )
 _IN_MS = re.compile(r"P\s*(\d+)(?![\d.])", re.IGNORECASE)
@@ -372,6 +381,13 @@ def _dwells(code: str, motion: int) -> bool:
 def _in_seconds(found: re.Match[str]) -> str:
     """A dwell as these controls count it: milliseconds where its number has no point."""
     return f"P{int(found[1][:12]) / 1000:.3f}"
+
+
+def _named(found: re.Match[str]) -> str:
+    """The code that words begin with."""
+    code = re.match(r"[A-Z]+[\d.]*", found[0].upper())
+    assert code is not None
+    return code[0]
 
 
 def _from_grbl(raw: str, number: int, findings: Findings) -> str:

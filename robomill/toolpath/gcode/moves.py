@@ -35,7 +35,7 @@ SENTENCES = {
     cycles.REPEATS: f"{{name}} has L{{words[l]:g}}; expected 1 to {cycles.MAX_REPEATS} repeats.",
     cycles.NO_DWELL: "{name} needs P, its dwell in seconds.",
     cycles.NO_PECK: "{name} needs Q, its depth per peck.",
-    cycles.PECK_OF_NOTHING: "{name} has Q{words[q]:g}; the depth per peck must be above 0.",
+    cycles.PECK_OF_NOTHING: "{name} has {pecked}; the depth per peck must be above 0.",
     cycles.BACK_BORE_INCOMPLETE: "{name} needs {missing}.",
     cycles.SPINDLE_STANDS: "{name} needs a turning spindle; start it with M3 or M4.",
     cycles.WRONG_SPINDLE: "{name} needs the spindle turning with {sense}.",
@@ -61,6 +61,7 @@ def demand(machine: Machine, block: Block, code: int, name: str = "") -> None:
             ends=f"{'XYZ'[min(first, second)]} or {'XYZ'[max(first, second)]}",
             words=block.words,
             peck=machine.cycle[Q],
+            pecked=" ".join(f"{letter.upper()}{block.words[letter]:g}" for letter in "qijk" if letter in block.words),
             sense="M3" if block.motion == 840 else "M4",
             figures=[format_si(value * machine.factor, "mm", 4) for value in machine.figures],
         )

@@ -21,7 +21,7 @@ class Block:
 
     ``g`` and ``m`` map modal groups to codes (G codes ten times their number); ``motion_rules`` is the G code of the
     motion that the line makes, -1 for none. ``twice`` is the refusal that LinuxCNC has for words that other controls
-    take together (G0 G0, M7 M8).
+    take together (G0 G0, M7 M8). ``falls`` says that I, J and K are the first, the fall and the least of Haas's pecks.
     """
 
     line: int
@@ -34,6 +34,7 @@ class Block:
     unknown_g: list[int] = field(default_factory=list)
     motion: int = -1
     twice: str = ""
+    falls: bool = False
 
     def refuse(self, message: str) -> GCodeError:
         """The error to raise: ``message`` with the line in front."""

@@ -24,6 +24,7 @@ TOLD = [
     ("G642\n", "sinumerik"),
     ("G71\nG0 X1\n", "sinumerik"),
     ("G71 P10 Q20 D1\n", "linuxcnc"),
+    ("G71\nG0 G43 Z1 H1\n", "linuxcnc"),
     ("M17\n", "sinumerik"),
     ("M17\n(turn servos on)\nG0 X1\nM2\n", "linuxcnc"),
     ("$H\n", "grbl"),
@@ -318,3 +319,31 @@ def test_axis_words_beside_g80_move_as_the_motion_before_the_cycle_does(head: st
     assert (program.kind[-1], program.end[-1, 2] * 1e3) == (0, 25.0)
     with pytest.raises(GCodeError, match="G80 ends a cycle and takes no axis words"):
         interpret(body, dialect="linuxcnc")
+
+
+def test_programs_of_nx_number_their_tool_changes_by_a_colon_and_count_feeds_in_inches() -> None:
+    """Its three-axis post of the box writes G70 in the head, G43 and :0030; 10 in/min are 254 mm/min."""
+    body = (
+        "N0010 G40 G17 G90 G70\n:0030 T01 M06\nN0040 G0 X1. Y0. S100 M3\nN0050 G43 Z.5 H01\n:0060 G1 Z-.1 F10.\nX2.\n"
+    )
+    program = interpret(f"%\n{body}N0090 M02\n%\n")
+    np.testing.assert_allclose(program.end[-1] * 1e3, [50.8, 0, -2.54])
+    assert program.v_f[-1] * 6e4 == pytest.approx(254)
+    blocks = interpret("G71 G90\n:10 G0 X0 Y0 Z0\n:20 G1 X=2*3 F100\nM30\n", dialect="sinumerik")
+    np.testing.assert_allclose(blocks.end[-1] * 1e3, [6, 0, 0])
+
+
+def test_an_arc_with_radius_and_centre_is_that_of_its_radius_on_a_fanuc() -> None:
+    """Fanuc's manual: if I, J, K and R are specified simultaneously, the arc specified by R takes precedence."""
+    body = "G21 G90 G0 X0 Y0 Z0\nG2 X10 Y10 {} F100\nM30\n"
+    both = interpret(body.format("I3 J9 R10"), dialect="fanuc")
+    np.testing.assert_allclose(both.centre[-1, :2] * 1e3, [10, 0], atol=1e-9)
+    assert [f.line for f in both.findings if f.code == "radius-counts"] == [2]
+    with pytest.raises(GCodeError, match="Line 2: G2 has both a centre"):
+        interpret(body.format("I3 J9 R10"), dialect="linuxcnc")
+
+
+def test_what_macros_print_moves_nothing() -> None:
+    program = interpret("%\nO1234\nG21 G90 G0 X0 Y0 Z0\n#1=2.\nPOPEN\nDPRNT[X#1[53]*Y]\nPCLOS\nG1 X#1 F9\nM30\n%\n")
+    assert program.end[-1, 0] == pytest.approx(2e-3)
+    assert sum(f.count for f in program.findings if f.code == "harmless-g") == 3

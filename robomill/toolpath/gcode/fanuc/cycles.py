@@ -49,11 +49,12 @@ def bolt_holes(machine: Machine, block: Block, code: int) -> bool:
 
 
 def repeats(machine: Machine, block: Block) -> None:
-    """K is how often a cycle is made, as L, and a dwell that is not given is none."""
+    """K is how often a cycle is made, as L, but for Haas's falling pecks; a dwell that is not given is none."""
     words, motion = block.words, block.motion
     if not is_cycle(motion) or motion == _BACK_BORING:
         return
-    if "k" in words and "l" not in words:
+    block.falls = pecks(motion) and {"i", "j", "k"} <= words.keys() and "q" not in words
+    if "k" in words and "l" not in words and not block.falls:
         words["l"] = words.pop("k")
     if pecks(motion) and words.get("q", 0.0) >= _THOUSANDTHS and words["q"] == round(words["q"]):
         words["q"] /= 1000.0 if machine.unit == "mm" else 10_000.0

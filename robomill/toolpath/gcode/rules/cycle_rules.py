@@ -5,7 +5,8 @@ of ``codes``: R, P, Q, I, J, K, and in the column of Z the bottom along whatever
 says that a control (Fanuc, Haas) keeps R and the bottom as the heights that they are: G91 behind a hole in G90 counts
 places from hole to hole, and not how deep they are. It also makes no hole for L0, and keeps its words.
 ``m.is_fanuc`` says that it taps and bores (G89) out to R alone, and is at rapid from there, and that it goes to the
-next place at the height where it is, and that what one cycle says holds for others too, until G80.
+next place at the height where it is, and that what one cycle says holds for others too, until G80. Pecks are Q deep, or
+fall: the first is I, each next one J less, none below K (Haas).
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
@@ -78,7 +79,7 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
     current = m.p[third]
     if math.isnan(m.initial_level):
         m.initial_level = current
-    _keep(m, w, third)
+    _keep(m, w, third, pecks(motion))
     level, clearance, bottom = m.initial_level, m.cycle[R], m.cycle[Z]
     if not m.absolute and not m.keeps_heights:
         clearance += level
@@ -88,7 +89,8 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
         return 0
     if clearance < bottom:
         return CLEARANCE_BELOW_BOTTOM
-    steps = (clearance - bottom) / m.cycle[Q] if pecks(motion) else 0.0
+    least = m.cycle[Q] if math.isnan(m.cycle[I]) else min(m.cycle[I], m.cycle[K])
+    steps = (clearance - bottom) / least if pecks(motion) else 0.0
     if steps > MAX_PECKS:
         return TOO_MANY_PECKS
     repeats = 1 if math.isnan(w[L]) else int(w[L])
@@ -115,11 +117,13 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
     return 0
 
 
-def _keep(m, w, third: int) -> None:
+def _keep(m, w, third: int, pecking: bool) -> None:
     """Keep what a hole says for the next ones: as words, which G91 adds anew at each, or R and bottom as heights."""
     for column in (R, P, Q, I, J, K):
         if not math.isnan(w[column]):
             m.cycle[column] = w[column]
+    if pecking and not math.isnan(w[Q]):
+        m.cycle[I] = math.nan
     if not math.isnan(w[X + third]):
         m.cycle[Z] = w[X + third]
     if not (math.isnan(w[R]) and math.isnan(w[X + third])):
@@ -146,9 +150,9 @@ def _check(m, w, motion: int) -> int:
         return REPEATS
     if takes_dwell(motion) and _missing(w[P], m.cycle[P], same):
         return NO_DWELL
-    if pecks(motion) and _missing(w[Q], m.cycle[Q], same):
+    if pecks(motion) and _missing(w[Q], m.cycle[Q], same) and _missing(w[I], m.cycle[I], same):
         return NO_PECK
-    if pecks(motion) and w[Q] <= 0.0:
+    if pecks(motion) and (w[Q] <= 0.0 or w[I] <= 0.0 or w[J] < 0.0 or w[K] <= 0.0):
         return PECK_OF_NOTHING
     if motion == 870 and not same and math.isnan(w[I] + w[J] + w[K]):
         return BACK_BORE_INCOMPLETE
@@ -184,14 +188,18 @@ def _hole(m, motion: int, line: int, end, heights, rows) -> None:
             _go(m, TRAVERSE, line, end, clear, rows)
         return
     if pecks(motion):
-        depth = clearance - m.cycle[Q]
+        falls = not math.isnan(m.cycle[I])
+        peck = m.cycle[I] if falls else m.cycle[Q]
+        depth = clearance - peck
         while depth > bottom:
             _go(m, FEED, line, end, depth, rows)
             if motion == 830:
                 _go(m, TRAVERSE, line, end, clearance, rows)
             gap = PECK_CLEARANCE_INCH if m.unit_code == INCH else PECK_CLEARANCE_MM
             _go(m, TRAVERSE, line, end, depth + gap, rows)
-            depth -= m.cycle[Q]
+            if falls:
+                peck = max(peck - m.cycle[J], m.cycle[K])
+            depth -= peck
     _go(m, FEED, line, end, bottom, rows)
     if takes_dwell(motion):
         dwell(m, m.cycle[P])

@@ -110,7 +110,7 @@ def _feeds(code: str, number: int, machine: Machine) -> str:
 
 
 def _tapped(code: str, number: int, machine: Machine) -> str:
-    """G331 taps down and G332 up again, in step with a spindle that they turn themselves, by the sign of the pitch K."""
+    """G331 taps down and G332 up again, in step with a spindle that they turn themselves, by the sign of K."""
     pitch = _PITCH.search(code)
     if pitch is None or float(pitch[1]) == 0.0:
         raise GCodeError.at(number, "G331 and G332 need K, the pitch along Z; I and J are not read.")

@@ -152,3 +152,41 @@ def test_what_a_cycle_says_holds_for_the_next_ones_until_g80() -> None:
     assert read("G99 G82 X1 Z-5 R2 P500\nG81 X2\nG82 X3\n").dwell_time == pytest.approx(1.0)
     with pytest.raises(GCodeError, match="Line 5: G81 needs R"):
         read("G99 G82 X1 Z-5 R2 P500\nG80\nG81 X2\n")
+
+
+def pecked(first: float, fall: float, least: float, depth: float) -> list[float]:
+    """Heights of the pecks of a hole of a depth below R, by the rule of the manual, one peck at a time."""
+    done, peck, out = 0.0, first, []
+    while done < depth:
+        done = min(done + peck, depth)
+        out.append(-done)
+        peck = max(peck - fall, least)
+    return out
+
+
+@pytest.mark.parametrize("dialect", ["fanuc", "auto"])
+@pytest.mark.parametrize(("cycle", "back"), [("G83", 1), ("G73", 0)])
+def test_pecks_of_haas_fall(dialect: str, cycle: str, back: int) -> None:
+    """I is the first peck, each is J less than the one before, none less than K; the next hole is pecked likewise."""
+    body = f"G99 {cycle} X10 Z-20 R1 I8 J2.5 K3\nX20 Z-30\n{cycle} X30 Q10\n"
+    program = interpret(f"G21 G90 S100 M3 F100\nG0 X0 Y0 Z10\n{body}G80\nM30\n", dialect=dialect)
+    downs = program.end[program.kind == 1] * 1e3
+    for x, depth, rule in ((10, 21, (8, 2.5, 3)), (20, 31, (8, 2.5, 3)), (30, 31, (10, 0, 10))):
+        np.testing.assert_allclose(downs[downs[:, 0] == x, 2], 1 + np.array(pecked(*rule, depth)), atol=1e-9)
+    first = program.end[(program.start[:, 0] * 1e3 == 10) & (program.kind == 0) & (program.end[:, 0] * 1e3 == 10), 2]
+    assert (np.isclose(first * 1e3, 1.0).sum() > 2) == bool(back)
+    assert program.kind[-1] == 0
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("G83 Z-9 R1 I3 J1\n", "Line 3: I has no use here"),
+        ("G83 Z-9 R1 I3 J1 K0\n", "Line 3: G83 has I3 J1 K0; the depth per peck must be above 0"),
+        ("G81 Z-9 R1 I3 J1 K1\n", "Line 3: I has no use here"),
+        ("G83 Z-9 R1 I3 J1 K1 Q2\n", "Line 3: I has no use here"),
+    ],
+)
+def test_pecks_that_do_not_fall_so_are_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=says):
+        read(body)

@@ -60,7 +60,8 @@ def test_fmax_holds_for_its_line_alone() -> None:
 
 def test_fauto_is_the_feed_of_the_last_tool_call() -> None:
     """F300 holds until FAUTO goes back to what TOOL CALL says, here in tenths of an inch a minute, and then 700."""
-    body = "TOOL CALL 1 Z S1000 F500\nL X+1\nL X+2 F300\nL X+3\nL X+4 FAUTO\nTOOL CALL F700\nL X+5 F1\nL X+6 F AUTO\n"
+    body = "TOOL CALL 1 Z S1000 F500\nL X+1\nL X+2 F300\nL X+3\nL X+4 FAUTO\n"
+    body += "TOOL CALL F700\nL X+5 F1\nL X+6 F AUTO\n"
     said = np.array([500, 300, 300, 500, 1, 700])
     assert read(body).v_f[-6:] * 6e4 == pytest.approx(said)
     inch = interpret(f"BEGIN PGM A INCH\nL X0 Y0 Z0 FMAX\n{body}END PGM A INCH\n")

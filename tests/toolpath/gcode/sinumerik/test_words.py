@@ -357,7 +357,7 @@ def test_a_corner_may_have_a_feed_of_its_own(said: str, feeds: list[float]) -> N
 
 
 def test_g331_taps_in_step_with_the_spindle_that_it_turns() -> None:
-    """10 turns a second of 1.25 mm are 12.5 mm/s, down to where Z says and up again; a negative pitch is left-handed."""
+    """10 turns a second of 1.25 mm are 12.5 mm/s, down to Z and up again; a negative pitch is left-handed."""
     for sign, counter in (("", False), ("-", True)):
         body = f"G0 X5 Y0 Z2\nSPOS=0\nG331 Z-10 K{sign}1.25 S600\nG332 Z2 K={sign}1.25\nG0 Z50\n"
         program = interpret(f"G90 G71 G94 F99\n{body}M30\n", dialect="sinumerik")
