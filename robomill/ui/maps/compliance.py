@@ -8,7 +8,7 @@ import streamlit as st
 
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
-from robomill.improve.sensitivity import deflection_sensitivity, stiffened
+from robomill.improve.sensitivity import gain, stiffened
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.ui import pieces, session, shell
@@ -51,8 +51,7 @@ def saved_by(moved: Moved, line: int) -> Saved | None:
     if not np.isfinite(moved.delta).all():
         return None
     beside = moved.delta - moved.delta_joint.sum(axis=0)  # what springs give, which no joint takes away
-    found = deflection_sensitivity(np.vstack([moved.delta_joint, beside]))
-    return Saved(moved.size, found.gain[:-1], line)
+    return Saved(moved.size, gain(np.vstack([moved.delta_joint, beside]))[:-1], line)
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,13 +216,13 @@ def best_joint(joints: tuple[int, ...], saved: Saved | None) -> None:
         pieces.note("Neither the cut nor the selected point is reached, so no joint can be ranked.")
         return
     unit = session.project().view.length
-    gain = from_si(saved.gain, unit)
+    shown = from_si(saved.gain, unit)
     of = f"the {format_si(saved.before, unit)} {saved.where}"
     said = ", ".join(f"joint {joints[i]} {_in_words(saved, i)}" for i in np.argsort(-saved.gain, kind="stable"))
     pieces.strong(f"Each joint 10 % stiffer saves, of {of}")
     pieces.figure(
         gain_bars(
-            gain,
+            shown,
             unit_label(unit),
             UNITS[unit].digits,
             joints,
@@ -231,7 +230,7 @@ def best_joint(joints: tuple[int, ...], saved: Saved | None) -> None:
             height=54 + 19 * len(joints),
         ),
         "gains",
-        table=lambda: {"joint": list(map(str, joints)), f"saved_{unit}": gain},
+        table=lambda: {"joint": list(map(str, joints)), f"saved_{unit}": shown},
         alt=f"What each joint 10 % stiffer saves of {of}: {said}.",
         caption="Exact where the force stays: the displacement is linear in each joint's compliance, eq. (13).",
     )
