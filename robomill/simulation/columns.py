@@ -1,7 +1,6 @@
 """A run as columns in display units: the table twin of each figure, and what CSV files and DataFrames hold."""
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 
@@ -12,24 +11,7 @@ from robomill.simulation.judging.seen import Run
 from robomill.units import from_si
 
 
-class Judged(Run, Protocol):
-    """A run with its shares, and what a gauge reads on it."""
-
-    @property
-    def delta_joint(self) -> FloatArray: ...
-    @property
-    def delta_spring(self) -> FloatArray: ...
-    @property
-    def sag(self) -> FloatArray | None: ...
-    @property
-    def ahead(self) -> FloatArray | None: ...
-    @property
-    def deviation(self) -> FloatArray: ...
-    @property
-    def gauge(self) -> Gauge: ...
-
-
-def path_columns(result: Judged) -> Columns:
+def path_columns(result: Run, gauge: Gauge) -> Columns:
     """Along the path: where, how far off in {M} and in the axes of the cut, by which joint, under which force; and
     whether a wall beside it is gone that should stand, or gives way.
 
@@ -58,7 +40,7 @@ def path_columns(result: Judged) -> Columns:
         columns |= _vectors("ahead_{axis}_mm", result.ahead, "mm")
     if result.sag is not None:
         columns |= _vectors("sag_{axis}_mm", result.sag.sum(axis=-2), "mm")
-    for name, found in (("gone", result.gauge.gone), ("thin_wall", result.gauge.thin)):
+    for name, found in (("gone", gauge.gone), ("thin_wall", gauge.thin)):
         columns[name] = np.isin(np.arange(len(path)), found)
     return columns
 

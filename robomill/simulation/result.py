@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arguments import asked, made_by
-from robomill.arrays import BoolArray, FloatArray, digest
+from robomill.arrays import FloatArray, digest
 from robomill.compliance.deflection import displacement
-from robomill.cutting.conditions import CutConditions
-from robomill.cutting.tooling import Tooling
-from robomill.cutting.unjudged import Unjudged
 from robomill.errors import RobomillError, SurfaceError
 from robomill.frames import Columns
-from robomill.kinematics.inverse import IKResult
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.simulation.columns import path_columns
-from robomill.simulation.coupling import Coupling
-from robomill.simulation.cut import cut_notes, moved_points, suspicions
+from robomill.simulation.cut import cut_notes, suspicions
 from robomill.simulation.edges import edge_notes
-from robomill.simulation.judging.enough import counted
 from robomill.simulation.judging.finished import Finished, finished
 from robomill.simulation.judging.gauge import Gauge, gauge
+from robomill.simulation.judging.seen import Run
 from robomill.simulation.judging.strays import Stray, stray
 from robomill.simulation.judging.verdict import decided, judge, thin_wall_notes
 from robomill.simulation.judging.verdict_words import Deciding, Verdict
@@ -33,23 +27,19 @@ from robomill.simulation.mapped import map_notes
 from robomill.simulation.meant import corrected_notes, jump_notes
 from robomill.simulation.origin.assumptions import Assumed, assumed_of_setup
 from robomill.simulation.origin.doubts import frame_notes, known_notes, rigid_tool_notes, unit_doubts
-from robomill.simulation.posture import posture_notes, turned_notes
-from robomill.simulation.rapids import Crashes, crashes
-from robomill.simulation.setup import SimulationSetup
+from robomill.simulation.posture import posture_notes
 from robomill.simulation.steadiness import steadiness
-from robomill.simulation.tools import feed_notes, tool_notes, tooling
+from robomill.simulation.tools import feed_notes, tool_notes
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.sections.groove import GrooveSection, GrooveSections, groove_sections
 from robomill.surface.swept import CutPath
 from robomill.surface.zmap import ZMap, cut
-from robomill.toolpath.path import Toolpath
 from robomill.units import format_si
-from robomill.values import Tabled
 
 
 @made_by("rm.simulate(setup)")
 @dataclass(frozen=True, eq=False, repr=False)
-class SimulationResult(Tabled):
+class SimulationResult(Run):
     """Arrays over the m samples of the path, SI, in {M} unless said otherwise; NaN where not reached.
 
     path           the sampled Toolpath, in {W}
@@ -76,109 +66,10 @@ class SimulationResult(Tabled):
     0.251
     """
 
-    setup: SimulationSetup
-    path: Toolpath
-    ik: IKResult
-    C_joint: FloatArray
-    C_spring: FloatArray
-    C: FloatArray
-    conditions: CutConditions
-    R_MF: FloatArray
-    F: FloatArray
-    delta_joint: FloatArray
-    delta_spring: FloatArray
-    delta: FloatArray
-    sag: FloatArray | None = None
-    coupling: Coupling | None = None
-    unjudged: tuple[Unjudged, ...] = ()
-    ahead: FloatArray | None = None
-
-    @cached_property
-    def force_components(self) -> FloatArray:
-        """(m, 3) N: feed, feed-normal, axial components of the force on the tool."""
-        return np.einsum("mij,mi->mj", self.R_MF, self.F)
-
-    @cached_property
-    def force_size(self) -> FloatArray:
-        """(m,) N: size of the force on the tool; NaN where it is not known."""
-        return np.asarray(np.linalg.norm(self.F, axis=1))
-
-    @cached_property
-    def delta_in_cut(self) -> FloatArray:
-        """(m, 3) m: the deviation along the feed, to its left and along the tool axis."""
-        return np.einsum("mij,mi->mj", self.R_MF, self.delta)
-
-    @cached_property
-    def tooling(self) -> Tooling:
-        """Which cutter makes which step."""
-        return tooling(self.setup, self.path)
-
     @cached_property
     def delta_component(self) -> FloatArray:
         """(m, 3, 3) m: the deflection that the feed, feed-normal and axial force components each cause, in {M}."""
         return displacement(self.C[:, None], np.swapaxes(self.R_MF * self.force_components[:, None], 1, 2))
-
-    @cached_property
-    def answered(self) -> BoolArray:
-        """(m,) points with an answer: reached and, where a measured map is used, inside it."""
-        return np.asarray(self.reached & np.isfinite(self.delta).all(axis=1))
-
-    @cached_property
-    def not_judged(self) -> BoolArray:
-        """(m,) points of the cut that are reached and have no number: no model holds there."""
-        lost = np.zeros(len(self.path), dtype=bool)
-        for each in self.unjudged:
-            lost |= each.where
-        lost |= ~np.isfinite(self.F).all(axis=1)
-        return np.asarray(lost & self.path.cutting & self.reached)
-
-    @cached_property
-    def missed(self) -> BoolArray:
-        """(m,) points that are not reached, or at feed outside the measured map."""
-        return np.asarray((self.path.cutting & ~self.answered & ~self.not_judged) | ~self.reached)
-
-    @property
-    def theta(self) -> FloatArray:
-        """(m, n) rad (m where a joint slides): the configurations, NaN where the pose is not reached."""
-        return self.ik.theta
-
-    @property
-    def reached(self) -> BoolArray:
-        """(m,) points that the arm reaches."""
-        return self.ik.reached
-
-    @cached_property
-    def judged(self) -> BoolArray:
-        """(m,) samples that count for the verdict: at feed, with an answer, the cutter within the stock's block; of a
-        corrected program, which goes beside its path in the air, too, those that cut. Where some of the cut has no
-        number, those that ``counted`` lets stand."""
-        cuts = self.path.cutting & self.answered & self.over_stock
-        return counted(self, np.asarray(cuts if self.ahead is None else cuts & self.conditions.engaged))
-
-    @cached_property
-    def over_stock(self) -> BoolArray:
-        """(m,) samples where the cutter is within the block of the stock: what is further off cuts air."""
-        block, p = self.setup.stock_block, self.path.p
-        outside = np.maximum(np.maximum(block.lower - p, p - block.upper), 0.0)[:, :2]
-        beside = np.linalg.norm(outside, axis=1) >= self.tooling.each("radius") - 1e-9
-        return np.asarray(~beside & (p[:, 2] < block.upper[2] - 1e-9))
-
-    @cached_property
-    def deviation(self) -> FloatArray:
-        """(m,) m: size of the path deviation, deflected minus commanded; NaN where not reached."""
-        return np.asarray(np.linalg.norm(self.delta, axis=1))
-
-    @cached_property
-    def worst(self) -> int:
-        """Index of the largest deviation at feed; -1 where nothing was reached."""
-        if not self.judged.any():
-            return -1
-        return int(np.argmax(np.where(self.judged, self.deviation, -np.inf)))
-
-    @property
-    def max_deviation(self) -> float:
-        """m: the largest deviation at feed, NaN where nothing was reached."""
-        return float(self.deviation[self.worst]) if self.worst >= 0 else float("nan")
 
     @cached_property
     def rms_deviation(self) -> float:
@@ -190,16 +81,6 @@ class SimulationResult(Tabled):
             return self.max_deviation
         squares = np.where(self.judged, np.nan_to_num(self.deviation) ** 2, 0.0)
         return float(np.sqrt((weight * squares).sum() / weight.sum()))
-
-    @property
-    def worst_block(self) -> int:
-        """Line (or what ``path.block_name`` says) of the largest deviation, 0 where nothing was reached."""
-        return int(self.path.block[self.worst]) if self.worst >= 0 else 0
-
-    @cached_property
-    def p_machined(self) -> FloatArray:
-        """(m, 3) m in {W}: where the tip really goes. A rapid arrives where the cut that follows it begins."""
-        return moved_points(self.setup.T_MW, self.path, self.answered, self.delta)
 
     @cached_property
     def notes(self) -> tuple[Finding, ...]:
@@ -230,26 +111,9 @@ class SimulationResult(Tabled):
         return self._placed([*found, *self.turned])
 
     @cached_property
-    def turned(self) -> tuple[Finding, ...]:
-        """Whether the cut, of which nothing is reached, would be with the tool's axis turned round."""
-        at_feed = np.flatnonzero(self.path.cutting)
-        if self.reached[at_feed].any():
-            return ()
-        return turned_notes(self.setup.robot, self.ik.T_MT[at_feed[len(at_feed) // 2]])
-
-    def _placed(self, findings: Iterable[Finding]) -> tuple[Finding, ...]:
-        """With what their lines count on this path."""
-        return tuple(replace(each, place=self.path.block_name) for each in findings)
-
-    @cached_property
     def steadiness(self) -> tuple[Finding, ...]:
         """Where a joint must run or the arm passes a singular configuration, by the program's lines."""
         return steadiness(self.path, self.ik)
-
-    @cached_property
-    def removes(self) -> BoolArray:
-        """(m,) steps that cut: at feed, with an answer at both ends."""
-        return np.asarray(self.path.cutting & self.answered & np.append(False, self.answered[:-1]))
 
     @cached_property
     def ideal(self) -> ZMap:
@@ -266,10 +130,6 @@ class SimulationResult(Tabled):
         """Signed error of the machined surface against the ideal one: + material left, - cut too deep."""
         return deviation(self.ideal, self.machined)
 
-    @cached_property
-    def _crashes(self) -> Crashes:
-        return crashes(self.setup, self.setup.toolpath)
-
     @property
     def area_out(self) -> tuple[float, float]:
         """(out of tolerance, all) m^2 of the walls and floors that the verdict judges, each against its own tolerance:
@@ -277,16 +137,6 @@ class SimulationResult(Tabled):
         walls = self.finished.walls.out(self.verdict.wall.tolerance)
         floors = self.finished.floors.out(self.verdict.floor.tolerance)
         return walls[0] + floors[0], walls[1] + floors[1]
-
-    @property
-    def rapids(self) -> tuple[int, ...]:
-        """Source lines of rapids through material that no cut removes: what they leave is not judged."""
-        return self._crashes.never
-
-    @property
-    def early_rapids(self) -> tuple[int, ...]:
-        """Source lines of rapids through material that is cut only later."""
-        return self._crashes.early
 
     @cached_property
     def surface_notes(self) -> tuple[Finding, ...]:
@@ -363,7 +213,7 @@ class SimulationResult(Tabled):
 
     def columns(self) -> Columns:
         """One row a sample of the path: see ``path_columns``."""
-        return path_columns(self)
+        return path_columns(self, self.gauge)
 
     def _said(self) -> str:
         try:

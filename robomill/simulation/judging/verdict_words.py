@@ -10,7 +10,6 @@ import numpy as np
 from robomill.arguments import made_by
 from robomill.arrays import with_article
 from robomill.provenance import named
-from robomill.simulation.judging.enough import mostly_judged
 from robomill.simulation.judging.seen import Run
 from robomill.units import format_beside, format_count, format_percent, format_share
 from robomill.values import Value
@@ -197,7 +196,7 @@ def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
     if level == "unjudged" and result.not_judged.any() and not verdict.decides:
         return "", beside
     judged = _measured(result, verdict, unit)
-    if verdict.grade == "out" or mostly_judged(result):
+    if verdict.grade == "out" or result.mostly_judged:
         judged += f": {WORDS[verdict.grade]} ({_used(verdict)})"
     if verdict.premise:  # a grade by the force of another cut would be none
         judged, beside = f"{_measured(result, verdict, unit)}, {verdict.premise}", f"{verdict.asked} {beside}".rstrip()
