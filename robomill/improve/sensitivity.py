@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 from robomill.arrays import FloatArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.provenance import GIVEN, MADE_UP, Provenance
+from robomill.robot.arm import COMPLIANCE
 from robomill.robot.model import Robot
-from robomill.robot.sources import COMPLIANCE, block_in_force
+from robomill.robot.sources import block_in_force
 
 STIFFER = 1.1  # the usual question: 10 % stiffer
 MADE_STIFFER = "; joints made stiffer"

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 from typing import Any, ClassVar, Literal
 
@@ -14,33 +13,27 @@ from numpy.typing import ArrayLike
 from robomill.arguments import asked, asking, refuse_unknown
 from robomill.arrays import (
     Arrays,
-    BoolArray,
     FloatArray,
     Numbers,
     Rows,
     as_floats,
     frozen,
-    made_array,
     no_number,
     of_kind,
 )
 from robomill.errors import RobotError
 from robomill.frames import Columns
 from robomill.kinds import kinds_told
-from robomill.lazy import cached_property
-from robomill.provenance import UNSTATED, Provenance, stated_blocks
-from robomill.quantities import Quantity, quantities, quantity
+from robomill.provenance import UNSTATED, stated_blocks
+from robomill.quantities import Quantity, quantities
 from robomill.robot import checks
-from robomill.robot.dh import Chain, Row, build_chain
+from robomill.robot.arm import COMPLIANCE, USER_SET, Arm
 from robomill.robot.plausible import checked
-from robomill.robot.sources import COMPLIANCE, USER_SET, changed_sources, of_set, stated_of_robot
+from robomill.robot.sources import changed_sources, of_set, stated_of_robot
 from robomill.robot.table import COLUMN_UNITS, OTHERS, changed_fields, refuse_printed, robot_fields
 from robomill.spelled import in_si
 from robomill.units import format_count, from_si
-from robomill.values import Tabled
 
-UNIT_SLIP = 1e-2  # rad/(N m), m/N: no joint gives more: was it meant in 1e-7 of it?
-LONGEST = 100.0  # m: no link is longer: was it meant in mm?
 Limits = Arrays | Sequence[float | Sequence[float] | Arrays | None]
 # Of the last axis's frame, where the tip stands in it: what of T_tool is typed as numbers.
 TOOL_TIP = Quantity("Tip", "mm", "array", shape=(3,), axes=tuple("xyz"), digits=2)
@@ -48,7 +41,7 @@ TOOL_TIP = Quantity("Tip", "mm", "array", shape=(3,), axes=tuple("xyz"), digits=
 
 @asking
 @dataclass(frozen=True, eq=False, repr=False)
-class Robot(Tabled):
+class Robot(Arm):
     """A serial arm of 1 to 7 joints. Immutable; ``replace`` gives a changed, checked copy.
 
     The table has one row a joint (``rows``): alpha, theta_offset in rad, a, d in m, sign +-1, prismatic. A joint turns
@@ -69,26 +62,6 @@ class Robot(Tabled):
     >>> robot.replace(C_theta=2 * robot.C_theta).compliance_set
     'user'
     """
-
-    name: str
-    convention: Literal["standard", "modified"]
-    alpha: FloatArray = quantity("α", "deg", shape=(None,), slip=math.tau)
-    a: FloatArray = quantity("a", "mm", shape=(None,), slip=LONGEST)
-    d: FloatArray = quantity("d", "mm", shape=(None,), slip=LONGEST)
-    theta_offset: FloatArray = quantity("θ₀", "deg", shape=(None,), slip=2.0 * math.tau)
-    limits_all: FloatArray = quantity("limit", "deg", shape=(None, 2), axes=("lower", "upper"), sliding="mm")
-    C_theta_all: FloatArray = quantity(
-        "compliance", "1e-7 rad/(N m)", shape=(None,), least=0.0, digits=2, sliding="1e-9 m/N", slip=UNIT_SLIP
-    )
-    title: str = ""
-    sign: FloatArray = quantity("sign", shape=(None,), default=None)
-    prismatic: BoolArray = made_array()
-    T_base: FloatArray = made_array()
-    T_tool: FloatArray = made_array()
-    blocked: FloatArray = quantity("held at", "deg", shape=(None,), sliding="mm", default=None)
-    compliance_sets: Mapping[str, FloatArray] = field(default_factory=dict)
-    compliance_set: str = USER_SET
-    provenance: Mapping[str, Provenance] = field(default_factory=dict)
 
     door: ClassVar[tuple[type[RobotError], str]] = (RobotError, "Robot")
 
@@ -236,55 +209,6 @@ class Robot(Tabled):
         given = {key: value for key, value in locals().items() if key != "cls"}
         return checked(cls(**robot_fields(given, quantities(cls))), given)
 
-    # ---- views --------------------------------------------------------------------------------------------------
-    @property
-    def rows(self) -> int:
-        """Rows of the D-H table, blocked axes included."""
-        return len(self.alpha)
-
-    @cached_property
-    def free(self) -> BoolArray:
-        """(rows,) True where the axis may move."""
-        return frozen(np.isnan(self.blocked), bool)
-
-    @cached_property
-    def n(self) -> int:
-        """Number of free joints: the length of every theta."""
-        return int(self.free.sum())
-
-    @cached_property
-    def limits(self) -> FloatArray:
-        """(n, 2) limits of the free joints, rad (m where prismatic)."""
-        return frozen(self.limits_all[self.free])
-
-    @cached_property
-    def C_theta(self) -> FloatArray:
-        """(n,) compliances of the free joints, rad/(N m) (m/N where prismatic)."""
-        return frozen(self.C_theta_all[self.free])
-
-    @cached_property
-    def joint_units(self) -> tuple[str, ...]:
-        """The unit in which people give the coordinate of each free joint: deg, mm where it slides."""
-        limit = quantities(Robot)["limits_all"]
-        return tuple(limit.of_joint(bool(slides)).unit for slides in self.prismatic[self.free])
-
-    @cached_property
-    def joint_numbers(self) -> tuple[int, ...]:
-        """The 1-based table row of each free joint, for labels."""
-        return tuple(int(i) + 1 for i in np.flatnonzero(self.free))
-
-    @cached_property
-    def home(self) -> FloatArray:
-        """(n,) reference configuration: zero, or the middle of the range where zero is outside the limits."""
-        low, high = self.limits[:, 0], self.limits[:, 1]
-        return frozen(np.where((low <= 0) & (high >= 0), 0.0, 0.5 * (low + high)))
-
-    @cached_property
-    def chain(self) -> Chain:
-        """The arm as constants between its free joints."""
-        columns = (self.alpha, self.a, self.d, self.theta_offset, self.sign, self.prismatic, self.blocked)
-        return build_chain(self.convention, [Row(*row) for row in zip(*columns)], self.T_base, self.T_tool)
-
     # ---- for people ---------------------------------------------------------------------------------------------
     def columns(self) -> Columns:
         """The table, a row a joint; what depends on whether it turns or slides has its unit in a column beside it."""
@@ -317,12 +241,6 @@ class Robot(Tabled):
         return f"{self.name}: {format_count(self.rows, 'joint')}{slide}{held}, {self.convention} D-H, " + (
             "compliances assumed" if self.assumes_compliances else f"compliance set {self.compliance_set!r}"
         )
-
-    @property
-    def assumes_compliances(self) -> bool:
-        """Whether nobody has given the compliances in force: those of a URDF, or of a table without any."""
-        said = self.provenance.get(COMPLIANCE)
-        return self.compliance_set == USER_SET and said is not None and said.kind == "assumed"
 
     # ---- change is replacement ------------------------------------------------------------------------------------
     @asked

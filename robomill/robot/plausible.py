@@ -1,13 +1,12 @@
 """Joints that are far stiffer or softer than those of any arm: their numbers were meant in another unit."""
 
 from collections.abc import Mapping
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
-from robomill.arrays import FloatArray
 from robomill.errors import RobotError
-from robomill.robot.dh import Chain
+from robomill.robot.arm import Arm
 from robomill.units import format_short
 
 # Of published arms that mill, no joint is stiffer than 7.6e6 N m/rad (KUKA KR 500), and the tip gives 1.1e-5 m/N and
@@ -19,19 +18,6 @@ STIFFEST_TIP = 5e-7 / 6  # m/N for each joint that turns: no arm gives less
 SOFTEST_TIP = 1e-3  # m/N: no arm that mills gives more
 NAMES = {"k_theta_kNm_per_rad": ("kN m/rad", "N m/rad", "k_theta_Nm_per_rad")}
 NAMES |= {"k_theta_Nm_per_rad": ("N m/rad", "kN m/rad", "k_theta_kNm_per_rad")}
-
-
-class Arm(Protocol):
-    """What of a robot is asked here."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def title(self) -> str: ...
-    @property
-    def chain(self) -> Chain: ...
-    @property
-    def C_theta(self) -> FloatArray: ...
 
 
 A = TypeVar("A", bound=Arm)

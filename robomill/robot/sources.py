@@ -1,17 +1,13 @@
 """Where the numbers of a changed robot come from: a block that was changed is of who changed it."""
 
-from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray
 from robomill.errors import RobotError
 from robomill.provenance import GIVEN, Provenance, stated_blocks
+from robomill.robot.arm import COMPLIANCE, USER_SET, Arm
 
-USER_SET = "user"
-"""The compliance set of numbers that are of no named one."""
-COMPLIANCE = "compliance"
 BLOCKS = {
     "geometry": ("convention", "alpha", "a", "d", "theta_offset", "sign", "prismatic"),
     "lengths": ("a", "d"),
@@ -22,22 +18,7 @@ BLOCKS = {
 """The fields whose numbers a block of a robot's provenance speaks for."""
 
 
-class Sourced(Protocol):
-    """What of a robot its sources rest on."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def C_theta_all(self) -> FloatArray: ...
-    @property
-    def compliance_set(self) -> str: ...
-    @property
-    def compliance_sets(self) -> Mapping[str, FloatArray]: ...
-    @property
-    def provenance(self) -> Mapping[str, Provenance]: ...
-
-
-def block_in_force(robot: Sourced) -> str:
+def block_in_force(robot: Arm) -> str:
     """The block that speaks for the compliances in force."""
     return COMPLIANCE if robot.compliance_set == USER_SET else of_set(robot.compliance_set)
 
@@ -58,7 +39,7 @@ def stated_of_robot(said: Any) -> dict[str, Provenance]:
     return stated_blocks(found, RobotError, (*BLOCKS, COMPLIANCE, *filter(is_of_robot, found)))
 
 
-def changed_blocks(before: Sourced, after: Sourced) -> list[str]:
+def changed_blocks(before: Arm, after: Arm) -> list[str]:
     """The blocks whose numbers differ between two robots; of the compliances those of sets of ``after``."""
     found = [
         block for block, names in BLOCKS.items() if not all(_same(getattr(before, n), getattr(after, n)) for n in names)
@@ -72,7 +53,7 @@ def changed_blocks(before: Sourced, after: Sourced) -> list[str]:
     return found
 
 
-def changed_sources(before: Sourced, after: Sourced, mark: Provenance = GIVEN) -> dict[str, Provenance]:
+def changed_sources(before: Arm, after: Arm, mark: Provenance = GIVEN) -> dict[str, Provenance]:
     """What to say of the blocks of ``after`` that were changed by hand from those of ``before``.
 
     A table whose lengths have no word of their own is one block.

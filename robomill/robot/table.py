@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from robomill.provenance import GIVEN, Provenance
 from robomill.quantities import Quantity
 from robomill.rigid import transform
 from robomill.robot import checks
+from robomill.robot.arm import Arm
 from robomill.spelled import one_of, refuse_slip
 from robomill.units import format_plain, from_si, to_si
 
@@ -91,28 +92,7 @@ def robot_fields(given: Mapping[str, Any], declared: Mapping[str, Quantity]) -> 
     }
 
 
-class Table(Protocol):
-    """What of a robot a change of its limits, compliances and frames rests on."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def title(self) -> str: ...
-    @property
-    def n(self) -> int: ...
-    @property
-    def rows(self) -> int: ...
-    @property
-    def free(self) -> BoolArray: ...
-    @property
-    def prismatic(self) -> BoolArray: ...
-    @property
-    def limits_all(self) -> FloatArray: ...
-    @property
-    def C_theta_all(self) -> FloatArray: ...
-
-
-def changed_fields(robot: Table, changes: Mapping[str, Any]) -> dict[str, Any]:
+def changed_fields(robot: Arm, changes: Mapping[str, Any]) -> dict[str, Any]:
     """``changes`` of a robot by the names of its fields, where they go by another one that ``robot_fields`` takes.
 
     Limits and compliances have an entry for each free joint, or for every row.
@@ -148,7 +128,7 @@ def refuse_printed(declared: Quantity, C_theta: Any, name: str) -> None:
         refuse_slip(replace(declared, name="C_theta", key="C_theta_1e_7_rad_per_Nm"), each, RobotError, who)
 
 
-def _rows_of(robot: Table, value: Any) -> Any:
+def _rows_of(robot: Arm, value: Any) -> Any:
     """The rows of the table that the entries of ``value`` are of: the free ones where there are as many."""
     return np.flatnonzero(robot.free) if hasattr(value, "__len__") and len(value) == robot.n else np.arange(robot.rows)
 

@@ -15,7 +15,7 @@ from robomill.errors import RobotError
 from robomill.kinematics.jacobian import twists
 from robomill.provenance import Provenance
 from robomill.quantities import quantity, switch, whole
-from robomill.robot.model import UNIT_SLIP
+from robomill.robot.arm import UNIT_SLIP
 from robomill.spelled import in_units
 
 STIFFEST = 1e-12  # rad/(N m): nothing gives as little without being called rigid

@@ -7,8 +7,6 @@ is said of all of it: with a part unknown it may be said of the rest ("where it 
 of it. That it does not keep its tolerance is said wherever there is a number: one place is enough.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
