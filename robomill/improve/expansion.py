@@ -22,11 +22,10 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.improve.screening import Screen, configurations, screen
 from robomill.improve.unsure import Unsure, changed
-from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin
-from robomill.kinematics.spin import spin_matters
+from robomill.kinematics.inverse import IKResult, Spin
 from robomill.progress import slices, step
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import compliances, sags
+from robomill.simulation.run import compliances, sags, spin_of
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import held
 
@@ -159,7 +158,7 @@ def expand(unsure: Unsure, result: SimulationResult) -> Expansion:
     geometry, forces = unsure.named(*GEOMETRY), unsure.named("force")
     springs = unsure.named("compliance", "springs")
     every = _forces(unsure, looking, forces)
-    at = At(unsure, looking, chosen_spin(result), every)
+    at = At(unsure, looking, spin_of(result.ik), every)
     nominal, given = _taylor(at, unsure.std, geometry)
     return Expansion(
         at,
@@ -171,14 +170,6 @@ def expand(unsure: Unsure, result: SimulationResult) -> Expansion:
         _missed(unsure, result, looking),
         _ahead(result, looking),
     )
-
-
-def chosen_spin(result: SimulationResult) -> Spin:
-    """The turn about the tool axis that the run has, where the arm may choose: it stays."""
-    setup, chosen = result.setup, result.ik.spin
-    if isinstance(setup.spin, float):
-        return setup.spin
-    return float(chosen[0]) if chosen is not None and spin_matters(setup.robot) else LEAST_MOTION
 
 
 def _forces(unsure: Unsure, looking: Screen, inputs: list[int]) -> FloatArray:

@@ -10,7 +10,7 @@ from robomill.arguments import asked, made_by
 from robomill.arrays import FloatArray, digest, frozen
 from robomill.frames import Columns
 from robomill.identification.fit.models import Model
-from robomill.improve.expansion import At, chosen_spin
+from robomill.improve.expansion import At
 from robomill.improve.judged import check_improvable, check_joints_known
 from robomill.improve.screening import screen
 from robomill.improve.unsure import Input, Unsure
@@ -18,7 +18,7 @@ from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.provenance import GIVEN
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import simulate
+from robomill.simulation.run import simulate, spin_of
 from robomill.simulation.setup import SimulationSetup
 from robomill.units import format_significant, from_si, to_si
 from robomill.values import Tabled
@@ -121,7 +121,7 @@ def sensitivity(setup: SimulationSetup) -> PathSensitivity:
     inputs = _inputs(setup)
     n, unsure = setup.robot.n, Unsure(setup, inputs, np.eye(len(inputs)), Model(), tuple(range(setup.robot.n)))
     looking = screen(run, most=len(run.path))
-    at = At(unsure, looking, chosen_spin(run), looking.F[None])
+    at = At(unsure, looking, spin_of(run.ik), looking.F[None])
     delta = np.empty((len(inputs), len(run.path), 3))
     delta[:n] = at.of(np.zeros(len(inputs)))[1][:, 0]
     for i in range(n, len(inputs)):

@@ -3,13 +3,12 @@ course of the spin."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from robomill.arguments import asked, made_by
 from robomill.arrays import BoolArray, FloatArray
-from robomill.compliance.deflection import deflection, displacement
 from robomill.errors import SetupError
 from robomill.frames import Columns
 from robomill.improve.area import today
@@ -23,14 +22,12 @@ from robomill.kinematics.dexterity import NEAR, determinant, largest_determinant
 from robomill.kinematics.inverse import inverse_kinematics
 from robomill.kinematics.spin import spin_matters
 from robomill.kinematics.steadiness import hasty_turns
-from robomill.kinematics.transforms import rotation_z, transform
 from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.provenance import Finding
 from robomill.quantities import Quantity
-from robomill.simulation.mapped import total_compliance
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import compliances, known, sags, simulate, tool_poses
+from robomill.simulation.run import along, simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.spelled import one_of
 from robomill.units import format_si, from_si, to_si
@@ -175,7 +172,7 @@ class _Turned:
                 Finding("info", "No course of the spin leads along the whole path at this rate.", code=ONE_SPIN)
             )
         else:
-            after = self._along(result, turned)
+            after = along(self.setup, result.path, spin=turned)
             found = place_of(after, today(self.setup), self.measure)
             haste = hasty_turns(after.ik)
             if haste:
@@ -279,24 +276,3 @@ class _Turned:
             return None
         whole = np.unwrap(angle[chosen])
         return np.interp(way, (numbers + 0.5) * apart, whole)
-
-    def _along(self, result: SimulationResult, spin: FloatArray) -> SimulationResult:
-        """The run with the arm along a course (m,) rad; its force and its cut are the same."""
-        setup, path = self.setup, result.path
-        turns = transform(rotation_z(spin), np.zeros(3))
-        ik = inverse_kinematics(setup.robot, tool_poses(setup, path) @ turns, near="path", spin="fixed")
-        C_joint, C_spring = compliances(setup, path, ik.theta)
-        C = total_compliance(setup, path, C_joint, C_spring)
-        sag = None if setup.links is None else sags(setup, path, ik.theta, setup.links)
-        offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else 0.0
-        return replace(
-            result,
-            ik=ik,
-            C_joint=C_joint,
-            C_spring=C_spring,
-            C=C,
-            delta_joint=deflection(C_joint, result.F),
-            delta_spring=deflection(C_spring, result.F),
-            delta=known(displacement(C, result.F) + offset, result.unjudged),
-            sag=sag,
-        )

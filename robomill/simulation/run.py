@@ -21,7 +21,7 @@ from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.inverse import LEAST_MOTION, IKResult, Spin, inverse_kinematics
 from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins, spin_matters
-from robomill.kinematics.transforms import pose_from_world, tilt_from_axis
+from robomill.kinematics.transforms import pose_from_world, rotation_z, tilt_from_axis, transform
 from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import Led, cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
@@ -121,15 +121,15 @@ def along(
     path: Toolpath,
     *,
     led: Led | None = None,
-    spin: float | None = None,
+    spin: Spin | FloatArray | None = None,
     softer: float = 1.0,
     stronger: float = 1.0,
 ) -> SimulationResult:
     """The run of ``setup`` along a path in {W} as it is sampled.
 
-    ``led`` says where the tool goes if not as the path tells it to, ``spin`` (rad) how the arm holds it if not as the
-    set-up says; ``softer`` is what all that gives is multiplied by, ``stronger`` what the force is: how a result
-    changes where they are wrong.
+    ``led`` says where the tool goes if not as the path tells it to, ``spin`` (rad; or (m,), a course of it) how the arm
+    holds it if not as the set-up says; ``softer`` is what all that gives is multiplied by, ``stronger`` what the force
+    is: how a result changes where they are wrong.
     """
     checkpoint(0.0, "Trying arm positions")
     ik = configurations(setup, path, spin)
@@ -164,9 +164,12 @@ def along(
     )
 
 
-def configurations(setup: SimulationSetup, path: Toolpath, held: float | None = None) -> IKResult:
+def configurations(setup: SimulationSetup, path: Toolpath, held: Spin | FloatArray | None = None) -> IKResult:
     """How the arm stands along the sampled path: branches joined, the spin about the tool as the set-up has it, or as
-    it is ``held`` (rad)."""
+    it is ``held``, one for all or (m,) rad."""
+    if isinstance(held, np.ndarray):
+        turned = tool_poses(setup, path) @ transform(rotation_z(held), np.zeros(3))
+        return inverse_kinematics(setup.robot, turned, near="path", spin="fixed")
     spin: Spin = setup.spin if isinstance(setup.spin, float) else LEAST_MOTION
     if held is not None:
         spin = held
@@ -176,7 +179,7 @@ def configurations(setup: SimulationSetup, path: Toolpath, held: float | None = 
     return inverse_kinematics(setup.robot, tool_poses(setup, path), near="path", spin=spin)
 
 
-def spin_along(setup: SimulationSetup, path: Toolpath) -> float | None:
+def spin_along(setup: SimulationSetup, path: Toolpath) -> Spin | None:
     """The spin (rad) that the arm chooses along a path, which a program that was corrected for it keeps, wherever it
     comes from; None where there is none to choose."""
     if isinstance(setup.spin, float) or not spin_matters(setup.robot):
@@ -184,9 +187,10 @@ def spin_along(setup: SimulationSetup, path: Toolpath) -> float | None:
     return spin_of(configurations(setup, path))
 
 
-def spin_of(ik: IKResult) -> float | None:
-    """The one spin (rad) of configurations along a path; None where there is none, or more than one."""
-    return float(ik.spin[0]) if ik.spin is not None and len(ik.spin) and np.ptp(ik.spin) == 0.0 else None
+def spin_of(ik: IKResult) -> Spin:
+    """The one spin (rad) of configurations along a path; that of least motion where there is none, or more than one."""
+    one = ik.spin is not None and len(ik.spin) > 0 and np.ptp(ik.spin) == 0.0
+    return float(ik.spin[0]) if ik.spin is not None and one else LEAST_MOTION
 
 
 def deviation_over_spin(setup: SimulationSetup, path: Toolpath) -> OverSpin:
