@@ -15,6 +15,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, spin_of, stepped
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_count, format_si
+from robomill.vectors import nearest_on
 
 WORDS = {
     "link": ("corner", "goes from one correction to the next by a short link, on which the tip is off by up to"),
@@ -78,13 +79,4 @@ def _beside(tips: FloatArray, path: Toolpath, at: IntArray) -> FloatArray:
     place = np.cumsum(path.step_length >= SAME)
     first, last = np.searchsorted(place, place[at], "left"), np.searchsorted(place, place[at], "right") - 1
     ends = path.p[np.maximum(first - 1, 0)], path.p[np.minimum(last + 1, len(path) - 1)]
-    corner, least = path.p[at], np.full(len(at), np.inf)
-    for end in ends:
-        way = end - corner
-        square = np.einsum("ki,ki->k", way, way)
-        share = np.divide(
-            np.einsum("ki,ki->k", tips[at] - corner, way), square, out=np.zeros(len(at)), where=square > 0.0
-        )
-        off = np.linalg.norm(tips[at] - corner - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1)
-        least = np.minimum(least, off)
-    return np.asarray(least)
+    return np.minimum(*(nearest_on(tips[at], path.p[at], end)[1] for end in ends))

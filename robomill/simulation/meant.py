@@ -24,7 +24,7 @@ from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sampling import CORNER
 from robomill.toolpath.source import GCodeSource
 from robomill.units import format_count, format_si
-from robomill.vectors import angle_between
+from robomill.vectors import angle_between, nearest_on
 
 WANTED = "wanted-path"  # the findings that say from which path a corrected program's deviation is told
 LINK = 20e-6  # m: corrections at one place that differ by more are joined by a link
@@ -233,12 +233,9 @@ def _nearest(q: FloatArray, t: FloatArray, p: FloatArray, at: IntArray) -> Float
     found, least = s[at], np.linalg.norm(q - p[at], axis=1)
     for a in (np.maximum(at - 1, 0), at):
         b = np.minimum(a + 1, len(p) - 1)
+        share, off = nearest_on(q, p[a], p[b])
         way = p[b] - p[a]
-        square = np.einsum("ni,ni->n", way, way)
-        along = np.einsum("ni,ni->n", q - p[a], way)
-        share = np.clip(np.divide(along, square, out=np.zeros(len(q)), where=square > 0.0), 0.0, 1.0)
-        off = np.linalg.norm(q - p[a] - share[:, None] * way, axis=1)
-        goes = np.einsum("ni,ni->n", t, way) > ITS_WAY * np.sqrt(square)
+        goes = np.einsum("ni,ni->n", t, way) > ITS_WAY * np.linalg.norm(way, axis=1)
         better = goes & (off < least)
         found = np.where(better, s[a] + share * (s[b] - s[a]), found)
         least = np.where(better, off, least)

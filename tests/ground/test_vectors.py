@@ -1,9 +1,9 @@
-"""Angles between directions against directions turned by known angles."""
+"""Angles between directions against directions turned by known angles; nearest places against a fine walk."""
 
 import numpy as np
 import pytest
 
-from robomill.vectors import angle_between
+from robomill.vectors import angle_between, nearest_on
 
 
 def test_the_angle_is_the_one_it_was_turned_by():
@@ -24,3 +24,15 @@ def test_angles_of_batches_are_those_one_by_one(shape) -> None:
     assert found.shape == shape[:-1]
     for i in np.ndindex(*shape[:-1]):
         assert found[i] == pytest.approx(np.arccos(a[i] @ b[i] / np.linalg.norm(a[i]) / np.linalg.norm(b[i])))
+
+
+@pytest.mark.parametrize("k", [2, 3])
+def test_the_nearest_place_on_a_way_is_that_of_a_fine_walk_along_it(k: int) -> None:
+    q, a, b = np.random.default_rng(2).normal(size=(3, 40, k))
+    b[0] = a[0]  # a way of no length
+    walk = np.linspace(0.0, 1.0, 20_001)
+    share, off = nearest_on(q, a, b)
+    for n in range(len(q)):
+        far = np.linalg.norm(a[n] + walk[:, None] * (b[n] - a[n]) - q[n], axis=1)
+        assert off[n] == pytest.approx(far.min(), abs=1e-7)
+        assert share[n] == pytest.approx(walk[far.argmin()], abs=1e-4)

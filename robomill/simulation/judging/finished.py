@@ -20,7 +20,7 @@ from robomill.simulation.judging.places import stock_top
 from robomill.simulation.judging.seen import Run
 from robomill.surface.outline import SAME
 from robomill.values import ReadOnly
-from robomill.vectors import angle_between
+from robomill.vectors import angle_between, nearest_on
 
 MOST_CELLS = 250_000
 FINE = 16  # cells of a floor to a radius of the smallest cutter, where not too many
@@ -119,18 +119,10 @@ def _swept(result: Run, sample: IntArray, radius: FloatArray, xy: FloatArray) ->
         at = own[cKDTree(p[own]).query(xy)[1]]
         for end in (at, np.minimum(at + 1, len(p) - 1)):
             start = np.maximum(end - 1, 0)
-            moved = np.where(removes[end], _to_segment(xy, p[start], p[end]), np.inf)
+            moved = np.where(removes[end], nearest_on(xy, p[start], p[end])[1], np.inf)
             inside |= moved <= R
         inside |= np.linalg.norm(xy - p[at], axis=1) <= R
     return inside
-
-
-def _to_segment(xy: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
-    """(n,) m: distances from points to segments, all (n, 2)."""
-    d = b - a
-    square = np.maximum(np.einsum("ni,ni->n", d, d), 1e-30)
-    t = np.clip(np.einsum("ni,ni->n", xy - a, d) / square, 0.0, 1.0)
-    return np.asarray(np.linalg.norm(xy - a - t[:, None] * d, axis=1))
 
 
 class _Sides(NamedTuple):
