@@ -35,7 +35,6 @@ from robomill.wording import listed
 
 STDIN, CALLED = "-", "standard input"
 BEGINNING = b"\xef\xbb\xbf \t\r\n"  # what may stand before the first word of a text
-DRAWN = (".dxf", ".svg")
 
 
 def check_once(arguments: Any) -> None:
@@ -158,10 +157,11 @@ def program(name: str) -> Path | bytes:
 
 def source(name: str, unit: str = "", feed_mm_min: float | None = None) -> Any:
     """A program, or points, as the path of a set-up."""
+    from robomill.io.drawing.drawings import SUFFIXES
     from robomill.io.programs import program_from_bytes, read_program
 
     data = come_in(name)
-    if Path(name).suffix.lower() in DRAWN:
+    if Path(name).suffix.lower() in SUFFIXES:
         raise ProjectError(f"{name}: this is a drawing; make a program of it with 'robomill drawing', and name that.")
     found = points(name, unit, feed_mm_min, data)
     if found:

@@ -4,24 +4,20 @@ from typing import Any
 
 from robomill.improve.advice import Advice, Way
 from robomill.report.design_record import deviations
-from robomill.simulation.origin.assumptions import assumed_of_setup
+from robomill.report.records import of_setup
 from robomill.units import format_value, from_si
-from robomill.version import __version__
 
 
 def advice_record(found: Advice) -> dict[str, Any]:
     """Every way with its time and what it leaves, the one there is first."""
     setup = found.setup
-    return {
-        "robomill": __version__,
-        "name": setup.name,
-        "robot": setup.robot.name,
-        "tolerance_mm": float(from_si(setup.tolerance, "mm")),
-        "best": found.best.name,
-        "ways": [_way(way) for way in found.ways],
-        "assumed": [each.record() for each in assumed_of_setup(setup)],
-        "digest": found.digest(),
-    }
+    return of_setup(
+        setup,
+        found.digest(),
+        tolerance_mm=float(from_si(setup.tolerance, "mm")),
+        best=found.best.name,
+        ways=[_way(way) for way in found.ways],
+    )
 
 
 def _way(way: Way) -> dict[str, Any]:

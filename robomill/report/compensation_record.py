@@ -4,41 +4,36 @@ from typing import Any
 
 from robomill.improve.compensation import Compensation, reversals
 from robomill.improve.errors import Errors, level_of
-from robomill.report.records import shown
-from robomill.simulation.origin.assumptions import assumed_of_setup
+from robomill.report.records import of_setup, shown
 from robomill.units import format_count, format_significant, format_value
-from robomill.version import __version__
 
 
 def compensation_record(found: Compensation) -> dict[str, Any]:
     """What was corrected, what is left, and how the program changed."""
-    return {
-        "robomill": __version__,
-        "name": found.setup.name,
-        "program": getattr(found.setup.source, "name", None),
-        "robot": found.setup.robot.name,
-        "components": list(found.components),
-        "bound_um": shown(found.bound, "um"),
-        "before_mm": errors_record(found.before),
-        "after_mm": errors_record(found.after),
-        "after_if_compliance_20_percent_wrong_mm": shown(found.softer.max, "mm"),
-        "after_if_force_20_percent_wrong_mm": shown(found.stronger.max, "mm"),
-        "half_band_mm": shown(found.half, "mm"),
-        "iterations": found.iterations,
-        "change_um": shown(found.change, "um"),
-        "lines_in": found.lines_in,
-        "lines_out": found.lines_out,
-        "unrolled": list(found.unrolled),
-        "reversals": {"before": reversals(found.wanted), "after": reversals(found.led)},
-        "verdict": {"before": level_of(found.wanted), "after": level_of(found.led)},
-        "springs": [
+    return of_setup(
+        found.setup,
+        found.digest(),
+        program=getattr(found.setup.source, "name", None),
+        components=list(found.components),
+        bound_um=shown(found.bound, "um"),
+        before_mm=errors_record(found.before),
+        after_mm=errors_record(found.after),
+        after_if_compliance_20_percent_wrong_mm=shown(found.softer.max, "mm"),
+        after_if_force_20_percent_wrong_mm=shown(found.stronger.max, "mm"),
+        half_band_mm=shown(found.half, "mm"),
+        iterations=found.iterations,
+        change_um=shown(found.change, "um"),
+        lines_in=found.lines_in,
+        lines_out=found.lines_out,
+        unrolled=list(found.unrolled),
+        reversals={"before": reversals(found.wanted), "after": reversals(found.led)},
+        verdict={"before": level_of(found.wanted), "after": level_of(found.led)},
+        springs=[
             {"kind": each.kind, "count": each.count, "lines": list(each.lines), "max_mm": shown(each.size, "mm")}
             for each in found.sprung
         ],
-        "findings": [finding.record() for finding in found.findings],
-        "assumed": [each.record() for each in assumed_of_setup(found.setup)],
-        "digest": found.digest(),
-    }
+        findings=[finding.record() for finding in found.findings],
+    )
 
 
 def errors_record(errors: Errors) -> dict[str, Any]:

@@ -4,39 +4,34 @@ from typing import Any
 
 from robomill.improve.box_design import BoxDesign
 from robomill.improve.design import Design
-from robomill.report.records import shown
-from robomill.simulation.origin.assumptions import assumed_of_setup
+from robomill.report.records import of_setup, shown
 from robomill.simulation.result import SimulationResult
 from robomill.units import format_number, format_significant, format_value
-from robomill.version import __version__
 
 
 def design_record(found: Design) -> dict[str, Any]:
     """Joints and what the cut is like before and with them."""
     robot = found.setup.robot
-    return {
-        "robomill": __version__,
-        "name": found.setup.name,
-        "robot": robot.name,
-        "compliance_set": found.before.setup.robot.compliance_set,
-        "joints": list(robot.joint_numbers),
-        "measure": found.measure,
-        "tolerance_mm": shown(found.setup.tolerance, "mm"),
-        "feasible": found.feasible,
-        "reason": found.reason or None,
-        "sentence": found.sentence,
-        "stiffness_ratio": shown(found.stiffness_ratio, "1"),
-        "C_theta": shown(found.C_theta, "1"),
-        "cost": shown(found.cost, "1"),
-        "share": shown(found.share, "1"),
-        "residual": shown(found.residual, "1"),
-        "before": deviations(found.before),
+    return of_setup(
+        found.before.setup,
+        found.digest(),
+        compliance_set=found.before.setup.robot.compliance_set,
+        joints=list(robot.joint_numbers),
+        measure=found.measure,
+        tolerance_mm=shown(found.setup.tolerance, "mm"),
+        feasible=found.feasible,
+        reason=found.reason or None,
+        sentence=found.sentence,
+        stiffness_ratio=shown(found.stiffness_ratio, "1"),
+        C_theta=shown(found.C_theta, "1"),
+        cost=shown(found.cost, "1"),
+        share=shown(found.share, "1"),
+        residual=shown(found.residual, "1"),
+        before=deviations(found.before),
         **deviations(found.after),
-        "verdict": found.after.verdict.level,
-        "verdict_sentence": found.after.verdict.sentence,
-        "assumed": [each.record() for each in assumed_of_setup(found.before.setup)],
-        "digest": found.digest(),
-    }
+        verdict=found.after.verdict.level,
+        verdict_sentence=found.after.verdict.sentence,
+    )
 
 
 def deviations(result: SimulationResult) -> dict[str, Any]:
@@ -70,7 +65,6 @@ def box_record(found: BoxDesign) -> dict[str, Any]:
     """Joints, and how far a stated force pushes the tip at the points of a box before and with them."""
     robot, worst = found.setup.robot, found.worst
     return {
-        "robomill": __version__,
         "name": found.setup.name,
         "robot": robot.name,
         "joints": list(robot.joint_numbers),

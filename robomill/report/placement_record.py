@@ -4,10 +4,8 @@ from typing import Any
 
 from robomill.improve.placed import WHY, Place, Placement
 from robomill.report.design_record import deviation_words
-from robomill.report.records import shown
-from robomill.simulation.origin.assumptions import assumed_of_setup
+from robomill.report.records import of_setup, shown
 from robomill.units import format_number
-from robomill.version import __version__
 
 NAMES = ("best", "now", "median", "worst")
 
@@ -15,30 +13,27 @@ NAMES = ("best", "now", "median", "worst")
 def placement_record(found: Placement) -> dict[str, Any]:
     """The best place, what it is compared with, and the map over the plane."""
     counts = {WHY[code]: int((found.why == code).sum()) for code in WHY if code}
-    return {
-        "robomill": __version__,
-        "name": found.setup.name,
-        "robot": found.setup.robot.name,
-        "compliance_set": found.setup.robot.compliance_set,
-        "measure": found.measure,
+    return of_setup(
+        found.setup,
+        found.digest(),
+        compliance_set=found.setup.robot.compliance_set,
+        measure=found.measure,
         **{name: place_record(getattr(found, name)) for name in NAMES},
-        "candidates": {
+        candidates={
             "tried": found.tried,
             "reached": found.reached,
             "allowed": found.allowed,
             "refused": {why: count for why, count in counts.items() if count},
         },
-        "map": {
+        map={
             **{f"{axis}_mm": shown(found.axes[i], "mm") for i, axis in enumerate("xyz")},
             "yaw_deg": shown(found.axes[3], "deg"),
             "share": found.plane,
             "samples": found.screened[0],
             "of": found.screened[1],
         },
-        "findings": [each.record() for each in found.findings],
-        "assumed": [each.record() for each in assumed_of_setup(found.setup)],
-        "digest": found.digest(),
-    }
+        findings=[each.record() for each in found.findings],
+    )
 
 
 def place_record(place: Place) -> dict[str, Any]:

@@ -14,7 +14,8 @@ from robomill.kinematics.result import beyond_limits
 from robomill.report.settled import settled
 from robomill.robot.model import Robot
 from robomill.robot.sources import block_in_force
-from robomill.simulation.origin.assumptions import assumed_of_program, assumed_of_robot
+from robomill.simulation.origin.assumptions import assumed_of_program, assumed_of_robot, assumed_of_setup
+from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.units import from_si, rounded
 from robomill.workspace.fields import Field
@@ -44,6 +45,12 @@ def shown_theta(robot: Robot, theta: FloatArray) -> FloatArray:
     """(..., n) joint coordinates in degrees, millimetres for prismatic joints."""
     shown = [from_si(theta[..., i], unit) for i, unit in enumerate(robot.joint_units)]
     return np.stack(shown, axis=-1)
+
+
+def of_setup(setup: SimulationSetup, digest: str, **told: Any) -> dict[str, Any]:
+    """A record of what was asked of a set-up: whose it is, what is ``told``, what it rests on, and its ``digest``."""
+    assumed = [each.record() for each in assumed_of_setup(setup)]
+    return {"name": setup.name, "robot": setup.robot.name, **told, "assumed": assumed, "digest": digest}
 
 
 def robots_record(robots: Sequence[Robot]) -> dict[str, Any]:

@@ -4,10 +4,8 @@ from typing import Any
 
 from robomill.improve.turning import Turning
 from robomill.report.placement_record import numbers, place_record
-from robomill.report.records import shown
-from robomill.simulation.origin.assumptions import assumed_of_setup
+from robomill.report.records import of_setup, shown
 from robomill.units import format_number, format_significant
-from robomill.version import __version__
 
 OF_PLACE = ("zero_mm", "yaw_deg")
 
@@ -16,26 +14,23 @@ def turning_record(found: Turning) -> dict[str, Any]:
     """The cut as it is, at the best spin for all of it and along the best course; the course and the map."""
     told = {"now": found.now, "constant": found.constant, "course": found.course}
     records = {name: place_record(place) for name, place in told.items()}
-    return {
-        "robomill": __version__,
-        "name": found.setup.name,
-        "robot": found.setup.robot.name,
-        "compliance_set": found.setup.robot.compliance_set,
-        "measure": found.measure,
-        "spin_deg": shown(found.spin, "deg"),
-        "rate_deg_mm": shown(found.rate, "deg/mm"),
+    return of_setup(
+        found.setup,
+        found.digest(),
+        compliance_set=found.setup.robot.compliance_set,
+        measure=found.measure,
+        spin_deg=shown(found.spin, "deg"),
+        rate_deg_mm=shown(found.rate, "deg/mm"),
         **{name: {k: v for k, v in each.items() if k not in OF_PLACE} for name, each in records.items()},
-        "spins": {name: shown(values, name.rpartition("_")[2]) for name, values in _course(found).items()},
-        "map": {
+        spins={name: shown(values, name.rpartition("_")[2]) for name, values in _course(found).items()},
+        map={
             "way_mm": shown(found.station, "mm"),
             "spin_deg": shown(found.angle, "deg"),
             "share": found.share,
             "deviation_mm": shown(found.deviation, "mm"),
         },
-        "findings": [each.record() for each in found.findings],
-        "assumed": [each.record() for each in assumed_of_setup(found.setup)],
-        "digest": found.digest(),
-    }
+        findings=[each.record() for each in found.findings],
+    )
 
 
 def _course(found: Turning) -> dict[str, Any]:

@@ -15,6 +15,13 @@ SHORTEST = 1e-8
 """m: what is shorter is a point."""
 
 
+def turning(ring: FloatArray, clockwise: bool) -> FloatArray:
+    """A ring of points (r, 2) m that begins where it did and runs the way it is told."""
+    x, y = ring.T
+    turns_left = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) > 0.0
+    return ring if turns_left != clockwise else np.vstack([ring[:1], ring[:0:-1]])
+
+
 def joined(pieces: Sequence[Contour]) -> tuple[list[Contour], int, int]:
     """The contours of each layer in the order of their first pieces; how many pieces were there twice, or a point."""
     kept, twice, dots = _once(pieces)
@@ -124,7 +131,4 @@ def _closed(contour: Contour) -> Contour:
     if contour.shape == "circle":
         return contour
     ring = contour.outline()[:-1] if contour.shape in CLOSED else contour.points
-    x, y = ring.T
-    if float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) < 0.0:
-        ring = np.vstack([ring[:1], ring[:0:-1]])
-    return replace(contour, shape="polygon", points=ring)
+    return replace(contour, shape="polygon", points=turning(ring, clockwise=False))

@@ -10,7 +10,7 @@ from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.extras import needed
 from robomill.toolpath.arcs import CHORD_ERROR
-from robomill.toolpath.chaining import tidy_chain
+from robomill.toolpath.chaining import tidy_chain, turning
 from robomill.toolpath.contour import Contour
 from robomill.toolpath.plane import doubled_area
 from robomill.toolpath.sketch import centre_of
@@ -67,7 +67,7 @@ def _beside_closed(contour: Contour, side: str, radius: float) -> list[Contour]:
     for ring, hole in rings:
         turned = _from(tidy_chain(ring)[:-1], contour.points[0])
         clockwise = (side == "outside") != hole
-        found.append(replace(contour, shape="polygon", points=_turning(turned, clockwise)))
+        found.append(replace(contour, shape="polygon", points=turning(turned, clockwise)))
     return found
 
 
@@ -115,12 +115,6 @@ def _rings(polygon: Any) -> list[tuple[bool, Any]]:
 def _from(ring: FloatArray, start: FloatArray) -> FloatArray:
     """A ring that begins where it is nearest to ``start``."""
     return np.roll(ring, -int(np.argmin(np.linalg.norm(ring - start, axis=1))), axis=0)
-
-
-def _turning(ring: FloatArray, clockwise: bool) -> FloatArray:
-    x, y = ring.T
-    turns_left = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) > 0.0
-    return ring if turns_left != clockwise else np.vstack([ring[:1], ring[:0:-1]])
 
 
 def _no_room(contour: Contour, diameter: float) -> ToolpathError:

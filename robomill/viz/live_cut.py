@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
-from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.cutting.tool import Cutter
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.jacobian import geometric_jacobian
@@ -26,6 +25,7 @@ from robomill.units import from_si
 from robomill.viz import solids
 from robomill.viz.arm import displacement_scale
 from robomill.viz.rendered.scene import best_angle
+from robomill.viz.tool_shape import tool_shape
 
 CELLS = 40_000  # as many as a screen shows of a part 700 pixels wide
 LOWERINGS = 400_000  # of all exaggerations together
@@ -196,22 +196,9 @@ def _lines(result: SimulationResult, frames: IntArray, packing: _Packing) -> dic
 
 def tool_outlines(cutter: Cutter) -> list[dict[str, Any]]:
     """Cutter, shank and spindle nose as solids of revolution over the tip: radii and heights, mm."""
-    R = cutter.radius
-    flutes = cutter.flute_length or 2.5 * cutter.diameter
-    out = max(ToolBending.first(cutter).stick_out, flutes)
-    r = np.linspace(0.0, R, 13)
-    below = cutter.profile(r)
-    parts: dict[str, tuple[FloatArray, FloatArray]] = {
-        "cutter": (np.append(r, R), np.append(below, max(flutes, float(below[-1])))),
-        "shank": (np.array([0.92 * R, 0.92 * R]), np.array([flutes, out])),
-        "spindle": (
-            np.array([1.25 * R, 1.9 * R, 2.4 * R, 2.4 * R]),
-            np.array([out, out + 2.4 * R, out + 2.8 * R, out + 4.0 * R]),
-        ),
-    }
     return [
         {"role": role, "radius": from_si(radius, "mm").tolist(), "height": from_si(height, "mm").tolist()}
-        for role, (radius, height) in parts.items()
+        for role, (radius, height) in tool_shape(cutter, rim=13).items()
     ]
 
 

@@ -14,6 +14,7 @@ from robomill.io.drawing.dxf import PER_INCH, STUMBLES, Read, Reading, metres
 from robomill.io.drawing.svg_viewports import (
     ABSOLUTE,
     NOT_DRAWN,
+    NUMBER,
     SIZE,
     SVG,
     XLINK,
@@ -40,7 +41,6 @@ STYLED = frozenset((*PLACES.split(), "display"))
 KEPT = STYLED | {"style", "class", "id", "href", XLINK, LAYER}
 LONG = {"d", "points", "style"}  # attributes that may be
 COMMANDS = "MLTHVCSQAZmlthvcsqaz"
-_NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
 
 
 class Svg:
@@ -224,7 +224,7 @@ def _weight(element: ElementTree.Element) -> int:
     weight = (len(d) + len(points) + len(element.get("style", ""))) // OF_ONE
     if weight > MOST_ELEMENTS:
         return weight
-    stretches = max(sum(map(d.count, COMMANDS)), len(_NUMBER.findall(d + points)) // 2)
+    stretches = max(sum(map(d.count, COMMANDS)), len(NUMBER.findall(d + points)) // 2)
     return max(weight, stretches // STRETCHES)
 
 

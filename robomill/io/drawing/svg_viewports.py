@@ -16,8 +16,8 @@ SVG, XLINK = "{http://www.w3.org/2000/svg}", "{http://www.w3.org/1999/xlink}href
 ABSOLUTE = {"mm": "mm", "cm": "cm", "in": "in", "pt": "pt", "pc": "pt", "q": "mm"}  # and what of it people know
 TIMES = {"pc": 12.0, "q": 0.25}
 NOT_DRAWN = ("symbol", "marker", "mask", "clipPath", "pattern")  # unless something uses them
-SIZE = re.compile(r"\s*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)\s*([A-Za-z%]*)\s*")
-_NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
+NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
+SIZE = re.compile(rf"\s*({NUMBER.pattern})\s*([A-Za-z%]*)\s*")
 _SHAPES = {
     "rect": ("x", "y", "width", "height"),
     "circle": ("cx", "cy", "r"),
@@ -47,7 +47,7 @@ def target_of(use: ElementTree.Element, known: Mapping[str, ElementTree.Element]
 
 def box_of(element: ElementTree.Element) -> tuple[float, ...]:
     """x, y, width and height of the view box; () where there is none to go by."""
-    box = tuple(float(each) for each in _NUMBER.findall(element.get("viewBox", "")))
+    box = tuple(float(each) for each in NUMBER.findall(element.get("viewBox", "")))
     return box if len(box) == 4 and min(box[2:]) > 0.0 and all(map(math.isfinite, box)) else ()
 
 

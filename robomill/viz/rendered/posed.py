@@ -1,9 +1,6 @@
 """Tool, spindle and arm as solids in {W}, where they stand at a station of the cut; in mm, for the rendered picture."""
 
-import numpy as np
-
 from robomill.arrays import FloatArray
-from robomill.compliance.springs.tool_bending import ToolBending
 from robomill.cutting.tool import Cutter
 from robomill.kinematics.forward import joint_frames
 from robomill.kinematics.transforms import invert
@@ -11,6 +8,7 @@ from robomill.simulation.result import SimulationResult
 from robomill.units import from_si, to_si
 from robomill.viz import solids
 from robomill.viz.rendered.picture import Role, Solid
+from robomill.viz.tool_shape import tool_shape
 
 SIDES = 48
 
@@ -20,18 +18,8 @@ def tool_solids(cutter: Cutter, tip: FloatArray, k: FloatArray, reach: float) ->
 
     ``reach`` m: how tall the whole stack may be drawn.
     """
-    R = cutter.radius
-    flutes = cutter.flute_length or 2.5 * cutter.diameter
-    out = max(ToolBending.first(cutter).stick_out, flutes)
-    r = np.linspace(0.0, R, 25)
-    below = cutter.profile(r)
-    cutting = _turned(np.append(r, R), np.append(below, max(flutes, float(below[-1]))), tip, k)
-    shank = _turned(np.array([0.92 * R, 0.92 * R]), np.array([flutes, out]), tip, k)
-    top = max(out + 3.0 * cutter.diameter, min(reach, out + 12.0 * cutter.diameter))
-    nose = _turned(
-        np.array([1.25 * R, 1.9 * R, 2.4 * R, 2.4 * R]), np.array([out, out + 2.4 * R, out + 2.8 * R, top]), tip, k
-    )
-    return [_solid(cutting, "cutter"), _solid(shank, "shank"), _solid(nose, "spindle")]
+    shape = tool_shape(cutter, rim=25, reach=reach)
+    return [_solid(solids.revolution(*outline, tip, k, SIDES), role) for role, outline in shape.items()]
 
 
 def arm_solids(result: SimulationResult, index: int) -> list[Solid]:
@@ -57,7 +45,3 @@ def posed(result: SimulationResult, index: int, tip: FloatArray, *, arm: bool) -
 
 def _solid(mesh: solids.Triangles, role: Role) -> Solid:
     return Solid(from_si(mesh[0], "mm"), mesh[1], role)
-
-
-def _turned(radius: FloatArray, height: FloatArray, tip: FloatArray, k: FloatArray) -> solids.Triangles:
-    return solids.revolution(radius, height, tip, k, SIDES)
