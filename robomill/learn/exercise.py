@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 from robomill.units import unit_label
 
@@ -61,3 +61,11 @@ class Exercise:
         """Whether a value (SI) is the answer, or the ``other`` value, within the tolerance."""
         wanted = self.answer if other is None else other
         return abs(value - wanted) <= max(self.tolerance, 1e-9) * abs(wanted)
+
+    def telling(self, slips: Iterable[Slip]) -> Exercise:
+        """Itself with those of its ``slips`` that can be told from the answer and from a slip before them."""
+        kept: list[Slip] = []
+        for slip in slips:
+            if not self.holds(slip.value) and not any(self.holds(slip.value, other.value) for other in kept):
+                kept.append(slip)
+        return replace(self, slips=tuple(kept))

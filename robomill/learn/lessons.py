@@ -118,12 +118,7 @@ def _which(pose: PoseReport) -> Lesson:
 
 def _numbered(id: str, question: str, unit: str, answer: float, slips: Sequence[Slip], tolerance: float) -> Exercise:  # noqa: A002
     """A prediction that is typed; slips that cannot be told from the answer or from each other are left out."""
-    bare = Exercise(id, "", question, "", unit, tolerance, (), "", "", answer, ())
-    kept: list[Slip] = []
-    for slip in slips:
-        if not bare.holds(slip.value) and not any(bare.holds(slip.value, each.value) for each in kept):
-            kept.append(slip)
-    return Exercise(id, "", question, "", unit, tolerance, (), "", "", answer, tuple(kept))
+    return Exercise(id, "", question, "", unit, tolerance, (), "", "", answer, ()).telling(slips)
 
 
 def _lever(pose: PoseReport) -> Lesson:

@@ -13,7 +13,7 @@ from robomill.identification.load_test import LoadTests
 from robomill.io.robot.robots import load_robot, robot_names
 from robomill.learn import poses, readings, remedies
 from robomill.learn.draws import Draws, student_number
-from robomill.learn.exercise import Exercise, Slip
+from robomill.learn.exercise import Exercise
 from robomill.learn.made import Made
 from robomill.robot.model import Robot
 
@@ -316,15 +316,6 @@ def _made(name: str, student: str, robot: Robot) -> Exercise:
         (),
         made.data,
     )
-    return Exercise(**{**vars(bare), "slips": _telling(bare, made.slips)})
-
-
-def _telling(bare: Exercise, slips: tuple[Slip, ...]) -> tuple[Slip, ...]:
-    """Slips that lead elsewhere than to zero, the answer, its opposite, and a slip before them."""
-    kept: list[Slip] = []
-    for slip in slips:
-        told = math.isfinite(slip.value) and abs(slip.value) > NOTHING * abs(bare.answer)
-        told = told and not bare.holds(slip.value) and not bare.holds(-slip.value)
-        if told and not any(bare.holds(slip.value, other.value) for other in kept):
-            kept.append(slip)
-    return tuple(kept)
+    least = NOTHING * abs(made.answer)
+    told = (slip for slip in made.slips if math.isfinite(slip.value) and abs(slip.value) > least)
+    return bare.telling(slip for slip in told if not bare.holds(-slip.value))

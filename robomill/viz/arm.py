@@ -9,7 +9,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray
 from robomill.units import format_many, format_significant, from_si, to_si, unit_label
 from robomill.viz import solids
-from robomill.viz.chart import Chart, Trace, drawn
+from robomill.viz.chart import Chart, Trace, drawn, xyz
 from robomill.viz.rendered import framing
 from robomill.viz.theme import axis3d, axis_colours, figure, palette
 
@@ -180,15 +180,12 @@ def _arm(scene: ArmScene, dark: bool) -> list[solids.Painted]:
 
 
 def _joint_hover(scene: ArmScene, colour: str) -> Trace:
-    x, y, z = scene.frames[:, :3, 3].T
     joints = scene.joints or range(1, len(scene.frames))
     names = [*(f"joint {number}" for number in joints), "tool tip {T}"]
     places = [format_many(point, scene.unit, 3) for point in scene.frames[:, :3, 3]]
     return drawn(
         "scatter3d",
-        x=x,
-        y=y,
-        z=z,
+        **xyz(scene.frames[:, :3, 3]),
         mode="markers",
         showlegend=False,
         marker={"size": 9, "opacity": 0.0, "color": colour},
@@ -226,9 +223,7 @@ def _part_traces(scene: ArmScene, reach: float, dark: bool) -> list[Any]:
                 traces.append(
                     drawn(
                         "scatter3d",
-                        x=points[:, 0],
-                        y=points[:, 1],
-                        z=points[:, 2],
+                        **xyz(points),
                         mode="lines",
                         name=name,
                         showlegend=False,

@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from robomill.arrays import FloatArray
 from robomill.extras import needed
 
 if TYPE_CHECKING:
@@ -25,6 +26,11 @@ QUIET: dict[str, Any] = {
 def drawn(kind: str, **what: Any) -> Trace:
     """A trace of a ``kind`` that plotly knows: scatter, bar, mesh3d ..."""
     return {"type": kind, **what}
+
+
+def xyz(points: FloatArray) -> dict[str, FloatArray]:
+    """Points (q, 3) as a trace in space takes them."""
+    return dict(zip("xyz", points.T, strict=True))
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,20 +30,10 @@ def places_map(
     allowed. ``marks`` are places by name."""
     fig = _used_map(x, y, used, "places", f"X %{{x:.0f}}, Y %{{y:.0f}} {unit}", dark=dark)
     for name, at_x, at_y in marks:
-        fig.add(
-            "scatter",
-            x=[at_x],
-            y=[at_y],
-            mode="markers",
-            marker={
-                "symbol": "star" if name == "best" else "circle-open",
-                "size": 15,
-                "color": "#FFFFFF",
-                "line": {"width": 2, "color": "#0B1C28" if name == "best" else "#FFFFFF"},
-            },
-            cliponaxis=False,
-            hovertemplate=f"{name}<br>X %{{x:.0f}}, Y %{{y:.0f}} {unit}<extra></extra>",
-        )
+        symbol, rim = ("star", "#0B1C28") if name == "best" else ("circle-open", "#FFFFFF")
+        marker = {"symbol": symbol, "size": 15, "color": "#FFFFFF", "line": {"width": 2, "color": rim}}
+        seen = f"{name}<br>X %{{x:.0f}}, Y %{{y:.0f}} {unit}<extra></extra>"
+        fig.dots([at_x], [at_y], marker, cliponaxis=False, hovertemplate=seen)
         _named(fig, name, at_x, at_y, yshift=18)
     fig.layout["xaxis"] = axis(f"part zero X, {unit}", dark=dark, constrain="domain", automargin=True)
     fig.layout["yaxis"] = axis(f"Y, {unit}", dark=dark, scaleanchor="x", constrain="domain", automargin=True)
@@ -89,14 +79,8 @@ def cost_front(used: FloatArray, cost: FloatArray, chosen: tuple[float, float], 
         marker={"size": 6, "color": p.accent},
         hovertemplate="%{x:.0f} % of the tolerance costs %{y:.2f}<extra></extra>",
     )
-    fig.add(
-        "scatter",
-        x=[chosen[0]],
-        y=[chosen[1]],
-        mode="markers",
-        marker={"size": 13, "color": p.text},
-        hovertemplate="this design: %{x:.0f} %, cost %{y:.2f}<extra></extra>",
-    )
+    seen = "this design: %{x:.0f} %, cost %{y:.2f}<extra></extra>"
+    fig.dots([chosen[0]], [chosen[1]], {"size": 13, "color": p.text}, hovertemplate=seen)
     say(fig, "<b>this design</b>", chosen[0], chosen[1], p.text, size=13, xanchor="left", xshift=10, yshift=10)
     fig.layout["xaxis"] = axis("% of the tolerance used", dark=dark, rangemode="tozero", automargin=False)
     fig.layout["yaxis"] = axis("cost (1: one joint twice as stiff)", dark=dark, rangemode="tozero", automargin=False)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
-from robomill.viz.chart import QUIET, Trace, drawn
+from robomill.viz.chart import QUIET, Trace, drawn, xyz
 from robomill.viz.theme import axis_colours
 
 Triangles = tuple[FloatArray, FloatArray]  # vertices (v, 3), faces (f, 3)
@@ -101,7 +101,7 @@ def trace(meshes: Sequence[Triangles], colour: str | None, name: str, **more: An
     points = np.vstack([m[0] for m in meshes])
     shift = np.cumsum([0, *[len(m[0]) for m in meshes[:-1]]])
     faces = np.vstack([m[1] + s for m, s in zip(meshes, shift, strict=True)]).astype(np.int32)
-    x, y, z = np.round(points, 5).astype(np.float32).T
+    corners = dict(zip("ijk", faces.T, strict=True))
     options: dict[str, Any] = {
         "name": name,
         "hoverinfo": "skip",
@@ -111,15 +111,15 @@ def trace(meshes: Sequence[Triangles], colour: str | None, name: str, **more: An
         "lightposition": {"x": 3000, "y": -6000, "z": 9000},
         **more,
     }
-    return drawn("mesh3d", x=x, y=y, z=z, i=faces[:, 0], j=faces[:, 1], k=faces[:, 2], color=colour, **options)
+    return drawn("mesh3d", **xyz(np.round(points, 5).astype(np.float32)), **corners, color=colour, **options)
 
 
 def words(said: Sequence[Said], **more: Any) -> Trace:
     """Words in a scene."""
-    x, y, z = np.array([at for at, _, _ in said], dtype=float).T
+    at = xyz(np.array([place for place, _, _ in said], dtype=float))
     font = {"color": [colour for _, _, colour in said], "size": 13}
     texts = [word for _, word, _ in said]
-    return drawn("scatter3d", x=x, y=y, z=z, mode="text", text=texts, textfont=font, name="words", **QUIET, **more)
+    return drawn("scatter3d", **at, mode="text", text=texts, textfont=font, name="words", **QUIET, **more)
 
 
 def arrow(start: ArrayLike, vector: ArrayLike, colour: str, width: float) -> list[Painted]:

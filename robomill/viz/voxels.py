@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
-from robomill.viz.chart import Chart, Trace, drawn
+from robomill.viz.chart import Chart, Trace, drawn, xyz
 from robomill.viz.maps import Scale
 from robomill.viz.solids import CORNERS, FACES, LIGHTING, words
 from robomill.viz.theme import colour_bar, palette
@@ -41,7 +41,6 @@ def voxel_trace(
     points = np.stack([_place(axes[i], corners[..., i]) for i in range(3)], axis=-1).reshape(-1, 3)
     first = 4 * np.arange(len(cells))
     faces = np.concatenate([first[:, None] + [0, 1, 2], first[:, None] + [0, 2, 3]])
-    x, y, z = points.astype(np.float32).T
     more: dict[str, Any] = {"color": palette(dark).accent}
     if shown is not None:
         i, j, k = cells.astype(int).T
@@ -51,9 +50,7 @@ def voxel_trace(
         more = {"intensity": np.concatenate([values, values]), "intensitymode": "cell", **colours, **bar}
     return drawn(
         "mesh3d",
-        x=x,
-        y=y,
-        z=z,
+        **xyz(points.astype(np.float32)),
         i=faces[:, 0].astype(np.int32),
         j=faces[:, 1].astype(np.int32),
         k=faces[:, 2].astype(np.int32),
@@ -76,9 +73,7 @@ def wire_box(lower: FloatArray, upper: FloatArray, colour: str, label: str, dash
     return [
         drawn(
             "scatter3d",
-            x=line[:, 0],
-            y=line[:, 1],
-            z=line[:, 2],
+            **xyz(line),
             mode="lines",
             line={"color": colour, "width": 5, "dash": dash},
             name=label,
