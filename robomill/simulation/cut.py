@@ -49,11 +49,22 @@ def steps_in_stock(setup: SimulationSetup, path: Toolpath) -> FloatArray:
     return np.where(near, width / SEEN, np.inf)
 
 
+def over_stock(setup: SimulationSetup, path: Toolpath) -> BoolArray:
+    """(m,) samples where the cutter reaches into the block of the stock: what is further off cuts air."""
+    block, p = setup.stock_block, path.p
+    depth = block.upper[2] - p[:, 2]
+    lean = np.linalg.norm(path.k[:, :2], axis=1) / np.maximum(path.k[:, 2], DISH)
+    beside = np.linalg.norm(np.maximum(np.maximum(block.lower - p, p - block.upper), 0.0)[:, :2], axis=1)
+    reach = tooling(setup, path).each("radius") + np.maximum(depth, 0.0) * lean
+    return np.asarray((beside < reach - 1e-9) & (depth > 1e-9))
+
+
 def told_conditions(
     setup: SimulationSetup, path: Toolpath, reached: BoolArray, led: Led | None = None
 ) -> CutConditions:
-    """What the program alone says of every sample: feeds, speeds, tools, and a full slot as deep as the tip stands."""
-    a_p = np.maximum(setup.stock_block.upper[2] - path.p[:, 2], 0.0)
+    """What the program alone says of every sample: feeds, speeds, tools, and a full slot as deep as the tip stands
+    within the stock's block."""
+    a_p = np.where(over_stock(setup, path), setup.stock_block.upper[2] - path.p[:, 2], 0.0)
     way = ways(path) if led is None else led.way
     told = CutConditions.steady(
         path.v_f,

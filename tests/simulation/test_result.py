@@ -327,3 +327,13 @@ def test_what_is_out_of_tolerance_counts_walls_by_length_and_height():
     assert (within.area_out[0], within.verdict.level) == (0.0, "tight")
     closer = rm.simulate(setup.replace(floor_tolerance=0.05e-3)).area_out[0]
     assert closer == pytest.approx(floors + walls, rel=0.05)
+
+
+@pytest.mark.parametrize(("x", "lost"), [(-60.0, 0), (-50.1, 0), (-49.0, 2), (0.0, 2)])
+def test_a_plunge_beside_the_stock_cuts_air_and_one_into_it_has_no_number(x: float, lost: int) -> None:
+    """The stock begins at X -46 and the mill has a radius of 4 mm; its top lies at Z 0, 2 mm over the plunge's end."""
+    flute = rm.load_setup("paper_flute")
+    text = f"G21 G90\nS12000 M3\nG0 X{x:g} Y0 Z5\nG1 Z-2 F300\nG1 X60 F1800\nG0 Z20\nM2\n"
+    found = rm.simulate(flute.replace(source=rm.GCodeSource(text)))
+    assert found.not_judged.sum() == lost
+    assert found.verdict.wall.value == pytest.approx(0.2295e-3, rel=1e-3)  # the paper's own

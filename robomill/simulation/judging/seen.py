@@ -20,7 +20,7 @@ from robomill.kinematics.inverse import IKResult
 from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.simulation.coupling import Coupling
-from robomill.simulation.cut import moved_points
+from robomill.simulation.cut import moved_points, over_stock
 from robomill.simulation.posture import turned_notes
 from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
@@ -131,11 +131,8 @@ class Run(Tabled):
 
     @cached_property
     def over_stock(self) -> BoolArray:
-        """(m,) samples where the cutter is within the block of the stock: what is further off cuts air."""
-        block, p = self.setup.stock_block, self.path.p
-        outside = np.maximum(np.maximum(block.lower - p, p - block.upper), 0.0)[:, :2]
-        beside = np.linalg.norm(outside, axis=1) >= self.tooling.each("radius") - 1e-9
-        return np.asarray(~beside & (p[:, 2] < block.upper[2] - 1e-9))
+        """(m,) samples where the cutter reaches into the block of the stock: what is further off cuts air."""
+        return over_stock(self.setup, self.path)
 
     @cached_property
     def deviation(self) -> FloatArray:
