@@ -72,6 +72,11 @@ class _OfProgram(Writing):
                 "The program is not corrected: Heidenhain's dialogue is read, but not written yet; let the CAM system "
                 "write G-code (DIN/ISO)."
             )
+        if self.program.planes:
+            raise CompensationError(
+                "The program is not corrected: it tilts its working plane, and its words would have to turn with that; "
+                "let the CAM system write it upright, with the tool's direction."
+            )
         self.moves = Moves.of_program(setup, self.program)
 
     def write(self, c: FloatArray, bound: float) -> Written:

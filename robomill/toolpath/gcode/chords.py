@@ -9,6 +9,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import GCodeError
 from robomill.rigid import axis_from_tilt
 from robomill.toolpath import arcs
+from robomill.toolpath.gcode import tilted
 from robomill.toolpath.gcode.program import TRAVERSE, Program
 from robomill.toolpath.path import Toolpath, far_off
 from robomill.units import to_si
@@ -55,9 +56,14 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR, table: 
             points
         )
     block = _spread(program.line, counts, program.line[0])
+    k = _axes(program, counts)
+    if program.planes:
+        p, k = tilted.stand(program.planes, p, first)
     if far := far_off(p, block):
         raise GCodeError.at(*far)
-    k, v_f = _axes(program, counts), _spread(np.where(program.at_feed, program.v_f, 0.0), counts, 0.0)
+    v_f = _spread(np.where(program.at_feed, program.v_f, 0.0), counts, 0.0)
+    if table and program.planes:
+        raise GCodeError("Program: it tilts its plane, and a rotary table is stated; take that back.")
     if table and (program.rotary.any() or program.rotary0.any()):
         p, k, v_f = on_table(program, counts, p, v_f, table)
     return Toolpath(
@@ -102,6 +108,10 @@ def point_counts(program: Program, chord_error: float = arcs.CHORD_ERROR, table:
     rows = np.flatnonzero(program.is_kind("arc") & ~program.unplaced)
     counts = _pieces(program, rows, chord_error, TABLE_STEP if table else MAX_TILT_STEP)
     counts[program.is_kind("tap")] = 2
+    for number, (row, _) in enumerate(program.planes):
+        if row < len(program):
+            turn = tilted.turn_between(program.planes, number)
+            counts[row] = max(counts[row], math.ceil(turn / MAX_TILT_STEP - 1e-4))
     if len(program) > 1 and _stays(program):
         counts[0] = 0
     return counts

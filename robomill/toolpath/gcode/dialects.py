@@ -16,6 +16,7 @@ from robomill.toolpath.gcode.machine import UNITS, Machine
 from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
 from robomill.toolpath.gcode.rules.motion_rules import LINE, is_arc
 from robomill.toolpath.gcode.sinumerik.lines import translated
+from robomill.toolpath.gcode.tilted import of_fanuc
 from robomill.toolpath.gcode.words import Block
 from robomill.units import to_si
 
@@ -43,7 +44,7 @@ NAMED = {
     470: "G47 engraves text (Haas), which is not read; let the CAM system write its moves out.",
     510: "G51 scales coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
     511: "G51.1 mirrors coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
-    682: "G68.2 tilts the working plane, which is not read; post the program with the tool's direction.",
+    682: "G68.2 tilts the working plane, which is read for Fanuc-like controls alone; choose that dialect.",
     **{
         code: f"G{code // 10} sets a pole, which is read for Sinumerik controls alone; choose that dialect."
         for code in (1100, 1110, 1120)
@@ -161,8 +162,7 @@ class Dialect:
                 raw = _VERBATIM_OR_CODE.sub(
                     lambda part: part[0] if part[0][0] in '(;<"' else _POINT.sub(r"\g<1>0.", part[0]), raw
                 )
-            if raw[:1] == ":":
-                raw = "O" + raw[1:]
+            raw = "O" + raw[1:] if raw[:1] == ":" else raw
             if _dwells(raw, machine.motion):
                 raw = _IN_MS.sub(_in_seconds, raw)
             return _TIP.sub("G43", _DWELL.sub(r"\1P", raw))
@@ -240,7 +240,9 @@ class Dialect:
             machine.note("unknown-m", "ignored", f"M{code} is not known and is left out")
 
     def _turns(self, machine: Machine, block: Block, code: int) -> bool:
-        """G68 and G69 turn coordinates, G16 and G15 make X and Y a radius and an angle; False for other words."""
+        """G68, G68.2 and G69 turn coordinates, G16 and G15 make X and Y a radius and an angle; False for others."""
+        if of_fanuc(machine, block, code):
+            return True
         if code == 680:
             turn_about(machine, block)
         elif code == 690 and machine.before_turn is not None:

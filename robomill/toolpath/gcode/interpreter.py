@@ -4,7 +4,7 @@ from time import thread_time
 
 from robomill.errors import GCodeError
 from robomill.progress import checkpoint
-from robomill.toolpath.gcode import check, codes as modal
+from robomill.toolpath.gcode import check, codes as modal, tilted
 from robomill.toolpath.gcode.corners import AT_END
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
@@ -111,6 +111,8 @@ class Interpreter(Klartext):
     def execute(self, block: Block) -> None:
         """Check and execute a block."""
         machine = self.machine
+        if machine.stuck or machine.tilted is not None:
+            tilted.check(machine, block)
         if block.unknown_m or block.unknown_g or block.m.get(modal.USER) in CALLS:
             if self.fanuc_call(block):
                 return

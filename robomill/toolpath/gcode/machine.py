@@ -65,6 +65,9 @@ class Machine:
     ``aways`` are those, each with the first move for which it holds, and ``homes`` those that the program has stored
     itself (28, 30).
 
+    ``tilted`` is the tilted plane in force, ``planes`` are all of them, each with the first move for which it is;
+    ``tilt_due`` is one that waits for G53.1, and ``stuck`` why no move may come before.
+
     ``feeds_follow`` says that feeds count in the unit of lengths (a Sinumerik's G70 and G71 change lengths alone),
     ``feed_in_block`` that F beside a word of units counts in the new ones; ``sharp`` that compensation goes around
     outside corners without an arc (G451).
@@ -115,6 +118,10 @@ class Machine:
         self.away: tuple[bool, ...] = (False, False, False)
         self.aways: list[tuple[int, tuple[bool, ...]]] = []
         self.homes: set[int] = set()
+        self.tilted: Any = None
+        self.planes: list[tuple[int, Any]] = []
+        self.tilt_due: Any = None
+        self.stuck = ""
         self.strict = False
         self.is_fanuc, self.other_control, self.machine_word = False, False, "G53"
         self.variable: Callable[[Machine, int], float] | None = None
@@ -161,7 +168,7 @@ class Machine:
         held = self.compensation is not None or self.recorder.held is not None
         other = self.diameter_mode or self.polar_words or self.modal is not None or self.scale is not None
         counted = self.feeds_follow or self.unit_code == 210
-        return counted and not (held or other or self.rounding or any(self.away))
+        return counted and not (held or other or self.rounding or any(self.away) or self.stuck)
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""
@@ -197,6 +204,8 @@ class Machine:
     # --- moves
     def go(self, kind: int, line: int, end: list[float], v_f: float | None = None) -> None:
         """Record a straight move to ``end`` (6,) and, except for taps, stand there."""
+        if self.stuck:
+            raise GCodeError.at(line, self.stuck)
         row, at, turned = Move(line), list(self.at), list(self.turned)
         write_straight(self, kind, end, feed_speed(self) if v_f is None and kind != TRAVERSE else v_f or 0.0, row)
         if kind == TAP:
@@ -235,6 +244,14 @@ class Machine:
             lift = [told - true for told, true in zip(tool.offset, self.tool.offset)]
         if lift != (self.lifts[-1][1] if self.lifts else [0.0, 0.0, 0.0]):
             self.lifts.append((len(self.recorder), lift))
+
+    def set_tilted(self, plane: Any) -> None:
+        """A plane of ``tilted`` is in force from the next move on; None: the upright one."""
+        self.recorder.settle()
+        self.tilted = plane
+        if self.planes and self.planes[-1][0] == len(self.recorder):
+            self.planes.pop()
+        self.planes.append((len(self.recorder), plane))
 
     # --- places that only the machine knows
     def set_away(self, away: tuple[bool, ...]) -> None:

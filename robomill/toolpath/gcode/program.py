@@ -59,6 +59,8 @@ class Program:
     tool      (m,) int       tool number in the spindle
     lift      (m, 3) m       from the programmed point to the tip of the tool that is there
     away      (m, 3) bool    where the move ends along x, y, z is known to the machine alone (G28, G30, G53)
+    planes                   tilted planes (``tilted``; None: upright), each with the first move that stands in it as if
+                             it were upright
     """
 
     line: IntArray
@@ -86,6 +88,7 @@ class Program:
     dwells: int
     dwell_time: float
     findings: tuple[Finding, ...] = field(default=(), compare=False)
+    planes: tuple[tuple[int, Any], ...] = ()
     messages: tuple[tuple[int, str], ...] = field(default=(), compare=False)
 
     def __len__(self) -> int:
@@ -138,12 +141,27 @@ class Program:
         for points, axis in product((self.start, self.end), range(3)):  # one after the other, for little memory
             along = points[at_feed, axis] + self.lift[at_feed, axis]
             lower[axis], upper[axis] = min(lower[axis], along.min()), max(upper[axis], along.max())
+        if self.planes:
+            return self._extents_in_part()
         rows = np.flatnonzero(self.kind == ARC)
         wide = self.arcs_of(rows[self.arcs_of(rows).may_leave(lower, upper)])
         if len(wide):
             lower = np.minimum(lower, wide.extents[0].min(axis=0))
             upper = np.maximum(upper, wide.extents[1].max(axis=0))
         return lower, upper
+
+    def _extents_in_part(self) -> tuple[FloatArray, FloatArray]:
+        """``extents`` of a program that tilts its plane, arcs by chords within ``arcs.CHORD_ERROR``."""
+        found = []
+        bounds = [0, *(row for row, _ in self.planes), len(self)]
+        for plane, begin, end in zip([None, *(plane for _, plane in self.planes)], bounds, bounds[1:]):
+            rows = begin + np.flatnonzero(self.at_feed[begin:end])
+            turns = self.arcs_of(rows[self.kind[rows] == ARC])
+            chords = turns.chords(arcs.chord_counts(turns.sweep, turns.bend, arcs.CHORD_ERROR))
+            points = np.vstack([*(q[rows] + self.lift[rows] for q in (self.start, self.end)), chords])
+            found.append(points if plane is None else plane.in_part(points))
+        every = np.vstack(found)
+        return every.min(axis=0), every.max(axis=0)
 
 
 class Move:
@@ -253,11 +271,15 @@ class Recorder:
             self._columns[name] = column = grown
         return column
 
-    def columns(self) -> dict[str, Any]:
-        """All moves as read-only arrays by column name."""
+    def settle(self) -> None:
+        """No move comes that would have a corner with the last one."""
         if self.held is not None:
             (last, _), self.held = self.held, None
             self._add(last)
+
+    def columns(self) -> dict[str, Any]:
+        """All moves as read-only arrays by column name."""
+        self.settle()
         self._flush()
         out: dict[str, Any] = {}
         for name in _COLUMNS:

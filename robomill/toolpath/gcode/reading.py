@@ -23,6 +23,7 @@ from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program, most_moves
+from robomill.toolpath.gcode.tilted import check_rotary
 from robomill.toolpath.path import TABLES, Toolpath, far_off
 from robomill.toolpath.text import Source, is_apt, named_as_file, read_source
 from robomill.toolpath.tools import Tools
@@ -178,7 +179,9 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
         dwells=machine.dwells,
         dwell_time=machine.dwell_time,
         messages=tuple(machine.messages),
+        planes=tuple(machine.planes) if any(plane is not None for _, plane in machine.planes) else (),
     )
+    check_rotary(program.planes, columns)
     doubt(machine, program)
     return replace(program, findings=machine.findings.freeze())
 

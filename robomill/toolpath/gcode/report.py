@@ -73,6 +73,8 @@ def write_moves_jsonl(program: Program, path: str | Path) -> None:
     """
     sweep, length = program.sweep, program.length
     turned = bool(program.rotary.any())
+    if program.planes:
+        raise GCodeError("Program: it tilts its working plane, and its moves stand in that; write its path instead.")
     with written(path, GCodeError) as place, place.open("w", encoding="utf-8") as out:
         for i in range(len(program)):
             kind = int(program.kind[i])

@@ -176,7 +176,15 @@ SUPPORT: tuple[Support, ...] = (
         1,
         dialect="fanuc",
     ),
-    Support("G68.2", "tilted planes", "refused", "G68.2 X0 Y0 Z0 I0 J30 K0", dialect="fanuc"),
+    _row("G68.2 G53.1", "tilted planes", "G68.2 I0 J90 K0\nG53.1\nG0 X1 Y2 Z3", (1, 2, 3), 1, dialect="fanuc"),
+    _row(
+        "CYCLE800",
+        "tilted planes",
+        'CYCLE800(1,"TC1",0,57,0,0,0,0,90,0,0,0,0,1)\nG0 X1 Y2 Z3',
+        (1, 2, 3),
+        1,
+        dialect="sinumerik",
+    ),
     _row("A3= B3= C3=", "direction of the tool", "G0 X1 A3=0 B3=0 C3=1", (1, 0, 0), 1, dialect="sinumerik"),
     _row("AC( ) IC( )", "places and steps", "G91\nG0 X=AC(4)\nG90\nX=IC(1)", (5, 0, 0), 2, dialect="sinumerik"),
     _row("R1= X=R1*2", "R parameters and expressions", "R1=2\nG0 X=R1*2+1", (5, 0, 0), 1, dialect="sinumerik"),
@@ -278,7 +286,15 @@ SUPPORT: tuple[Support, ...] = (
         1,
         dialect=_TNC,
     ),
-    Support("FL, PLANE, other cycles", "of Heidenhain", "refused", "FL X+1 LEN5", dialect=_TNC),
+    _row(
+        "PLANE SPATIAL, PLANE RESET",
+        "tilted planes",
+        "PLANE SPATIAL SPA+0 SPB+90 SPC+0 TURN\nL X+1 Y+2 Z+3 FMAX",
+        (1, 2, 3),
+        1,
+        dialect=_TNC,
+    ),
+    Support("FL, other PLANE, other cycles", "of Heidenhain", "refused", "FL X+1 LEN5", dialect=_TNC),
     _row("$ lines", "settings of grbl are left out", "$10=1\nG0 X1", (1, 0, 0), 1, dialect="grbl"),
     Support(
         "G81, G90.1, G95, A, #1, [ ], ...", "what grbl 1.1 does not know", "refused", "G81 X1 Z-1 R1", dialect="grbl"

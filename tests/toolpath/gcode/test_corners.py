@@ -132,7 +132,6 @@ def test_no_corner_is_where_a_cut_and_an_arc_go_on_tangentially() -> None:
         ("G16\nG91 X5 Y10\n", "Line 5: G16 counts X from where the tool is in G91, which is not read"),
         ("G16\nG18\nX5 Y10\n", "Line 6: G16 is read in G17 alone"),
         ("G51 X0 Y0\n", "Line 4: G51 needs P"),
-        ("G68.2 X0 Y0 Z0 I0 J30 K0\n", "Line 4: G68.2 tilts the working plane"),
     ],
 )
 def test_what_cannot_be_is_refused(body: str, says: str) -> None:

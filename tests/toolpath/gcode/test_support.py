@@ -17,9 +17,8 @@ SAYS = {
     "other G codes": "may move",
     "G70 to G72": "may move",
     "U V W, G17.1": "no U axis",
-    "G68.2": "tilts the working plane",
     "POCKET SLOT LONGHOLE CYCLE60 to 79, 90, 840": "mills a circular pocket in passes that the control plans",
-    "FL, PLANE, other cycles": "FL X.1 LEN5 is of Heidenhain's",
+    "FL, other PLANE, other cycles": "FL X.1 LEN5 is of Heidenhain's",
     "$H $J": "moves the machine",
 }
 TOOLS = {n: Tool(n, 3e-3, (0.0, 0.0, n * 1e-2)) for n in range(1, 9)}

@@ -11,7 +11,7 @@ from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
 from robomill.toolpath.gcode.dialects import plain_numbers
-from robomill.toolpath.gcode.klartext.approach import KlartextApproach
+from robomill.toolpath.gcode.klartext.planes import KlartextPlanes
 from robomill.toolpath.gcode.klartext.values import NUMBER
 from robomill.toolpath.gcode.sinumerik.lines import named_tool
 from robomill.toolpath.gcode.tool_axis import angles_of
@@ -35,10 +35,9 @@ _TOOL = re.compile(rf"TOOL CALL ?(\d+|\"[^\"]*\"|Q[LR]?\d+)?(?: ([XYZ])\b)?((?: 
 _REPEAT = re.compile(r"REP(\d)")
 _CORNER = re.compile(rf"(RND ?R?|CHF ?L?) ?({NUMBER})(?: ?F ?(?:({NUMBER})|.*))?")
 _SILENT = re.compile(
-    r"BLK FORM|TOOL DEF|FUNCTION (?:RESET )?TCPM|FUNCTION MODE MILL|PLANE RESET|M1(?:07|08|16|17|20|24|26|27|38)\b|"
+    r"BLK FORM|TOOL DEF|FUNCTION (?:RESET )?TCPM|FUNCTION MODE MILL|M1(?:07|08|16|17|20|24|26|27|38)\b|"
     r"DECLARE STRING|QS\d+ ?=|FN ?(?:16|20|29|37|38) ?:"
 )
-_UPRIGHT = re.compile(r"PLANE SPATIAL(?: SP[ABC][-+]?0*\.?0*(?![\d.]))+(?: (?:STAY|SEQ[-+]|TABLE ROT|COORD ROT))*$")
 MAX_CODE, MAX_LINES = 1000, 100
 """Characters of a line and lines of a block that can be read."""
 _PLANES = {frozenset({0, 1}): 17, frozenset({0, 2}): 18, frozenset({1, 2}): 19}
@@ -50,7 +49,7 @@ Words = dict[str, tuple[str, float]]
 """By letter: "I" where it counts as a step, and the value."""
 
 
-class Klartext(KlartextApproach):
+class Klartext(KlartextPlanes):
     """Reads what stands in a dialogue; what is left of a line goes on to the reader of words."""
 
     heading: tuple[float, float] | None = None
@@ -64,6 +63,8 @@ class Klartext(KlartextApproach):
         if skipped:
             self.machine.findings.add("block-delete", "info", line, "block delete (/) is off: these lines are executed")
         if not code or code[0] in "*(":
+            return None
+        if (code[:5] == "PLANE" or self.leans or self.machine.stuck) and self.plane_line(code, line):
             return None
         first = code.split(" ", 1)[0]
         if first in ("L", "LN", "LP", "C", "CR", "CP", "CT") or _FEED.match(code) or _M.match(code):
@@ -94,10 +95,7 @@ class Klartext(KlartextApproach):
             return "M0"
         if self.tool_defined(code, line):
             return None
-        if _UPRIGHT.match(code):
-            for number in (120, 121, 122):
-                self.set_q(f"Q{number}", 0.0, line)
-        if _SILENT.match(code) or _UPRIGHT.match(code):
+        if _SILENT.match(code):
             name = " ".join(code.split(" ")[:2])
             self.machine.findings.add("harmless-word", "ignored", line, f"{name} is left out: it moves nothing")
             return None
@@ -185,6 +183,8 @@ class Klartext(KlartextApproach):
             out.append(self._feed(feed[1], feed[2], line))
         machine.machine_word = "M140" if 140 in codes else "M91" if 91 in codes else "M92"
         if where:
+            if not {91, 92} & {*codes} and (feed is None or feed[2] != "MAX"):
+                self.need_upright_tool(line)
             if 91 in codes or 92 in codes:
                 out.append("G53")
             places = " ".join(f"{letter}{value:.12f}" for letter, value in where.items())

@@ -4,7 +4,9 @@ import re
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.offsets import frame_of
 from robomill.toolpath.gcode.rules.motion_rules import MINUTE
+from robomill.toolpath.gcode.tilted import tilt, turned_by, upright
 from robomill.toolpath.gcode.tool_axis import angles_of
 from robomill.units import to_si
 
@@ -15,7 +17,7 @@ _SILENT = re.compile(
     r"\bOFFN[ \t]*=[ \t]*0+(?:\.0*)?(?![.\d])|"
     r"\b(?:ADIS|ADISPOS|CTOL|OTOL|ATOL|(?:ACC|JERKLIM|VELOLIM)\[\w+\])[ \t]*=[ \t]*[.\d]+|"
     r"\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|\bGROUP_(?:BEGIN|END)[ \t]*\([^()]*\)|"
-    r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)|\bCYCLE800[ \t]*\([ \t]*\)",
+    r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)",
     re.IGNORECASE,
 )
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
@@ -84,10 +86,32 @@ def translated(raw: str, number: int, machine: Machine) -> str:
 
 
 def _unswivelled(found: re.Match[str], number: int, machine: Machine) -> str:
-    """CYCLE800 whose places and angles are all 0 swivels nothing."""
-    if any(each.strip().strip("0.+-") for each in found[1].split(",")[4:13]):
-        return found[0]
-    machine.findings.add("harmless-word", "ignored", number, "CYCLE800 by 0 is left out: it swivels nothing")
+    """CYCLE800 whose places and angles are all 0 swivels nothing, and back what is swivelled; others tilt the plane.
+
+    _MODE names the axes that _A, _B and _C turn about, each as the turns before have left it, by two bits each: 1 X, 2
+    Y, 3 Z, from the lowest on (0 and others: no sequence of axes, but other angles). _X0 to _Z0 are the place that is
+    turned about, _X1 to _Z1 lead to the new zero along the new axes.
+    """
+    said = [each.strip() for each in found[1].split(",")] + [""] * 16
+    if not any(each.strip("0.+-") for each in said[4:13]):
+        if machine.tilted is None:
+            machine.findings.add("harmless-word", "ignored", number, "CYCLE800 by 0 is left out: it swivels nothing")
+        upright(machine)
+        return ""
+    if not all(re.fullmatch(rf"(?:{_NUMBER})?", each) for each in (said[2], said[3], *said[4:14])):
+        raise GCodeError.at(number, "CYCLE800 is read with numbers alone; write them out.")
+    state, mode = (int(float(said[at] or "0")) for at in (2, 3))
+    axes = "".join(" XYZ"[mode >> 2 * place & 3] for place in range(3))
+    if mode >> 6 or " " in axes or len(set(axes)) < 3:
+        raise GCodeError.at(number, f"CYCLE800 is read axis by axis (_MODE 57, 27 ...), found {mode}; write that.")
+    if state % 10 or (said[13] and float(said[13]) == 0.0):
+        text = "CYCLE800 is read as a new plane (_ST ends in 0) to which the tool is swivelled (_DIR -1 or 1) alone."
+        raise GCodeError.at(number, text)
+    if any(frame_of(machine)[0]):
+        raise GCodeError.at(number, "CYCLE800 inside of TRANS is not read; end that before, or give it as X0, Y0, Z0.")
+    x0, y0, z0, a, b, c, x1, y1, z1 = (float(each or "0") for each in said[4:13])
+    upright(machine)
+    tilt(machine, "CYCLE800", turned_by(axes, (a, b, c)), (x0, y0, z0), (x1, y1, z1))
     return ""
 
 

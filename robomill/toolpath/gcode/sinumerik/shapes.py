@@ -90,6 +90,8 @@ class SinumerikShapes(SinumerikWords):
             if not 1e-6 <= abs(factor) <= 1e3 or (letter == "Z" and factor != 1.0):
                 raise GCodeError.at(line, f"{name} {letter}{value} is not read; expected X and Y, by 0.000001 to 1000.")
             factors["XYZ".index(letter)] *= factor
+        if machine.tilted is not None:
+            raise GCodeError.at(line, f"{name} in a swivelled plane is not read; end that before: CYCLE800().")
         if not adds:
             turn_back(machine)
         machine.set_scale(Scale(tuple(factors)) if any(f != 1.0 for f in factors) else None)  # type: ignore[arg-type]

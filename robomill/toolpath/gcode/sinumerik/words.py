@@ -258,6 +258,8 @@ class SinumerikWords(Holes):
     # --- frames
     def _frame(self, name: str, text: str, line: int) -> None:
         """TRANS and ROT begin anew, ATRANS and AROT add; without words they end what was."""
+        if self.machine.tilted is not None and text.strip():
+            raise GCodeError.at(line, f"{name} in a swivelled plane is not read; end that before: CYCLE800().")
         words = list(_FRAME_WORD.finditer(text))
         ends = [word.start() for word in words[1:]] + [len(text)]
         said = {word[1]: self.value(text[word.end() : end].strip(), line) for word, end in zip(words, ends)}

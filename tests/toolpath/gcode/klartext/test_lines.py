@@ -69,7 +69,7 @@ def test_fauto_is_the_feed_of_the_last_tool_call() -> None:
 
 
 def test_feeds_per_turn() -> None:
-    """At 1000 turns a minute 0.2 mm a turn are 200 mm/min: by FU for its line and on, by M136 for every F until M137."""
+    """At 1000 turns a minute 0.2 mm a turn are 200 mm/min: by FU for its line and on, by M136 for every F till M137."""
     body = "L X+1 F500\nL X+2 FU0.2\nL X+3\nL X+4 F300\nM136\nL X+5 F0.1\nL X+6\nM137\nL X+7 F80\n"
     assert read(body).v_f[-7:] * 6e4 == pytest.approx([500, 200, 200, 300, 100, 100, 80])
 
@@ -235,7 +235,7 @@ def test_tool_axes_and_m_words() -> None:
     [
         ("FL X+1 R5 RL\n", "FL X.1 R5 is of Heidenhain's and is not read"),
         ("FL AN+45\n", r"FL AN\+45 is of"),
-        ("PLANE SPATIAL SPA+0 SPB+45 SPC+0 TURN\n", "PLANE SPATIAL"),
+        ("PLANE VECTOR BX1 BY0 BZ0 NX0 NY0 NZ1 TURN\n", "PLANE VECTOR BX1 is of Heidenhain's"),
         ("CALL PGM TNC:\\SUB.H\n", "CALL PGM TNC"),
         ("L X+1 FZ0.1\n", "found 'FZ0.1' in a line that begins with L"),
         ("C X+1 Y+1 DR+ F9\n", "need their centre"),

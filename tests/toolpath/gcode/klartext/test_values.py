@@ -183,7 +183,6 @@ def test_dwells_are_waited() -> None:
         ("CYCL DEF 8.1 X\nL X+9 RL F9\n", "RL while coordinates are mirrored"),
         ("CYCL DEF 220 ~\nQ241=4\n", "CYCL DEF 220 repeats a cycle, but none is defined"),
         ("CYCL DEF 200 ~\nQ200=2 ~\nQ201=-5\nCYCL DEF 221 Q242=0\n", "CYCL DEF 221 has Q242=0 repeats"),
-        ("PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY\n", "PLANE SPATIAL SPA.0 is of Heidenhain's"),
         ("CYCL DEF 11.1 SCL 0.9\n", "tilts or scales"),
         ("CYCL DEF 19.1 A+0 B+30\n", "tilts or scales"),
         ("CYCL DEF 10.1 ROT+30\nCYCL DEF 7.1 X+3\n", "a datum shift inside of a rotation"),

@@ -1,0 +1,169 @@
+"""Tilted working planes, by an independent library of rotations and by what their manuals say of their angles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import gcode_report, interpret, read_gcode, write_moves_jsonl
+from robomill.toolpath.gcode.chords import to_toolpath
+from robomill.toolpath.path import Toolpath
+
+FANUC = "%\nO0001\nG21 G90 G17 G54 S1000 M3\nG0 X0. Y0. Z50.\n"
+SIEMENS = "G17 G90 G71 G54 S1000 M3\nG0 X0 Y0 Z50\n"
+KLARTEXT = "BEGIN PGM A MM\nTOOL CALL 1 Z S1000 F500\nL X+0 Y+0 Z+50 R0 FMAX M3\n"
+PLACES = np.array([[5, 6, 10], [5, 6, 0], [20, 6, 0], [20, -3, 0]])
+MOVES = "G0 X5. Y6.\nZ10.\nG1 Z0. F100.\nX20.\nY-3.\n"
+L_MOVES = "L X5 Y6 FMAX\nL Z10 FMAX\nL Z0 F100\nL X20\nL Y-3\n"
+
+
+def cuts(path: Toolpath) -> tuple[np.ndarray, np.ndarray]:
+    """The last places (mm) and the tool's axes there."""
+    k = np.broadcast_to(path.k, path.p.shape)
+    return path.p[-4:] * 1e3, k[-4:]
+
+
+def fits(
+    path: Toolpath, turn: Rotation, origin: tuple[float, ...] = (0, 0, 0), moved: tuple[float, ...] = (0, 0, 0)
+) -> None:
+    p, k = cuts(path)
+    np.testing.assert_allclose(p, np.array(origin) + turn.apply(PLACES + np.array(moved)), atol=1e-9)
+    np.testing.assert_allclose(k, np.tile(turn.apply([0, 0, 1]), (4, 1)), atol=1e-12)
+    assert path.cutting[-3:].all()
+
+
+@pytest.mark.parametrize("angles", [(90, 90, 0), (30, -40, 70), (0, 25, 0), (-120, 15, 200)])
+def test_g68_2_turns_by_eulers_angles_about_its_origin(angles: tuple[float, ...]) -> None:
+    """About Z, about X as that has left it, and about Z as both have: in capitals scipy's intrinsic sequence."""
+    i, j, k = angles
+    head = f"{FANUC}G68.2 X10. Y-20. Z3. I{i}. J{j}. K{k}.\nG53.1\n"
+    fits(read_gcode(f"{head}{MOVES}M30\n%\n"), Rotation.from_euler("ZXZ", angles, degrees=True), (10, -20, 3))
+    back = read_gcode(f"{head}{MOVES}G69\nG0 X1. Y2. Z50.\nG1 Z7.\nM30\n%\n")
+    np.testing.assert_allclose(back.p[-1] * 1e3, [1, 2, 7], atol=1e-9)
+    np.testing.assert_allclose(back.k[-2:], [[0, 0, 1], [0, 0, 1]], atol=1e-12)
+
+
+@pytest.mark.parametrize(("mode", "axes"), [(57, "XYZ"), (27, "ZYX"), (54, "YXZ"), (45, "XZY")])
+def test_cycle800_turns_axis_by_axis(mode: int, axes: str) -> None:
+    """_MODE has the axes by two bits each, X 1, Y 2, Z 3, the first one lowest."""
+    assert mode == sum(("XYZ".index(axis) + 1) << 2 * place for place, axis in enumerate(axes))
+    turn = Rotation.from_euler(axes, (30, -50, 70), degrees=True)
+    for state in ("0", "200000"):
+        cycle = f'N20 CYCLE800(1,"TC1",{state},{mode},10,20,-5,30,-50,70,1,2,3,-1,100,1)\n'
+        path = read_gcode(f"{SIEMENS}{cycle}{MOVES}M30\n", dialect="sinumerik")
+        fits(path, turn, (10, 20, -5), (1, 2, 3))
+    back = f"{SIEMENS}{cycle}{MOVES}CYCLE800()\nG0 X1 Y2 Z50\nG1 Z7\nM30\n"
+    np.testing.assert_allclose(read_gcode(back, dialect="sinumerik").p[-1] * 1e3, [1, 2, 7], atol=1e-9)
+
+
+@pytest.mark.parametrize("behaves", ["TURN FMAX", "MOVE DIST50 F2000 SEQ-", "TURN MB MAX FMAX SYM+ TABLE ROT"])
+def test_plane_spatial_turns_about_the_upright_axes_x_y_z(behaves: str) -> None:
+    """TNC 620, 10/2017: A-B-C in the non-tilted system, which is C-B-A by successive turns; scipy's small letters."""
+    plane = f"PLANE SPATIAL SPA+30 SPB-50 SPC+70 {behaves}\n"
+    path = read_gcode(f"{KLARTEXT}{plane}{L_MOVES}END PGM A MM\n")
+    fits(path, Rotation.from_euler("xyz", (30, -50, 70), degrees=True))
+    fits(path, Rotation.from_euler("ZYX", (70, -50, 30), degrees=True))
+
+
+def test_a_face_at_the_side_of_a_part_is_drilled_along_its_own_axis() -> None:
+    """SPA90 SPC90 on a shift by X186.5 faces along X: 4.75 deep below -1.5 is X 180.25, 10 along the face is Y 10."""
+    plane = "CYCL DEF 7.0\nCYCL DEF 7.1 X186.5\nCYCL DEF 7.2 Z-25\nPLANE SPATIAL SPA90 SPB0 SPC90 STAY SEQ- TABLE ROT\n"
+    turned = "L A+Q120 C+Q122 R0 FMAX M126\nL X10 Y-5 R0 F MAX M3\nL Z69 R0 FMAX\n"
+    drilled = "CYCL DEF 200 Q200=3 Q201=-4.75 Q206=50 Q202=4.75 Q210=0 Q203=-1.5 Q204=70.5 Q211=0\nL X10 Y-5 FMAX M99\n"
+    end = "CYCL DEF 7.0\nCYCL DEF 7.1 X0\nCYCL DEF 7.2 Z0\nPLANE RESET STAY\nL Z0 R0 FMAX M91\nL A0 C0 R0 FMAX\n"
+    path = read_gcode(f"{KLARTEXT}{plane}{turned}{drilled}{end}L X0 Y0 Z50 FMAX\nL Z1 F100\nEND PGM A MM\n")
+    deepest = int(np.flatnonzero(path.cutting)[0])
+    np.testing.assert_allclose(path.p[deepest] * 1e3, [180.25, 10, -30], atol=1e-9)
+    np.testing.assert_allclose(path.k[deepest], [1, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(path.p[-1] * 1e3, [0, 0, 1], atol=1e-9)
+
+
+def test_arcs_lie_in_the_plane_and_the_way_there_turns_the_tool_evenly() -> None:
+    turn = Rotation.from_euler("ZXZ", (20, 60, 10), degrees=True)
+    arc = "G0 X10. Y0.\nZ5.\nG1 Z0. F100.\nG3 X0. Y10. I-10. J0.\n"
+    program = interpret(f"{FANUC}G68.2 I20. J60. K10.\nG53.1\n{arc}M30\n%\n")
+    path = to_toolpath(program)
+    upright = turn.inv().apply(path.p[path.cutting] * 1e3)
+    np.testing.assert_allclose(upright[:, 2], 0, atol=1e-9)
+    np.testing.assert_allclose(np.hypot(upright[:, 0], upright[:, 1]), 10, atol=1e-9)
+    np.testing.assert_allclose(upright[-1], [0, 10, 0], atol=1e-9)
+    angles = np.degrees(np.arccos(np.clip((path.k[1:] * path.k[:-1]).sum(axis=1), -1, 1)))
+    assert angles.max() < 2.001
+    assert angles.sum() == pytest.approx(60, abs=1e-6)
+    lower, upper = np.array(gcode_report(program)["extents_mm"])
+    swept = path.p[1:][path.cutting[1:] | np.append(path.cutting[2:], False)] * 1e3
+    np.testing.assert_allclose(lower, swept.min(axis=0), atol=2e-3)
+    np.testing.assert_allclose(upper, swept.max(axis=0), atol=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("G68.2 I0 J30. K0\nG0 X1.\n", "Line 6: G68.2 is not followed by G53.1"),
+        ("G68.2 P1 I0 J30. K0\n", "Line 5: G68.2 is read with Euler's angles"),
+        ("G68.2 X1. Y2.\n", "Line 5: G68.2 is read with Euler's angles"),
+        ("G53.1\n", "Line 5: G53.1 is not known"),
+        ("G68 X0 Y0 R5.\nG68.2 I0 J30. K0\nG53.1\n", "Line 7: G68.2 while coordinates are turned"),
+        ("G1 A30. F9.\nG68.2 I0 J30. K0\nG53.1\n", "Line 7: G68.2 while A, B or C stand elsewhere than at 0"),
+        ("G68.2 I0 J30. K0\nG53.1\nG0 X0 Y0 Z9.\nG1 A3. F9.\n", "Line 8: A, B or C in a tilted plane is not read"),
+        *(
+            (f"G68.2 I0 J30. K0\nG53.1\n{line}\n", f"Line 7: {line.split(' ')[0]} in a tilted plane is not read")
+            for line in ("G52 X1.", "G92 X1.", "G55 G0 X1.", "G68 X0 Y0 R5.", "G10 L2 P1 X1.", "G54.1 P2")
+        ),
+    ],
+)
+def test_what_is_not_read_of_a_fanuc_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError) as caught:
+        read_gcode(f"{FANUC}{body}M30\n%\n", dialect="fanuc")
+    assert says in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ('CYCLE800(1,"TC1",1,57,0,0,0,30,0,0,0,0,0,1)', "CYCLE800 is read as a new plane"),
+        ('CYCLE800(1,"TC1",0,57,0,0,0,30,0,0,0,0,0,0)', "CYCLE800 is read as a new plane"),
+        ('CYCLE800(1,"TC1",0,192,0,0,0,30,0,0,0,0,0,1)', "CYCLE800 is read axis by axis"),
+        ('TRANS X5\nCYCLE800(1,"TC1",0,57,0,0,0,30,0,0,0,0,0,1)', "CYCLE800 inside of TRANS"),
+        ('CYCLE800(1,"TC1",0,57,0,0,0,30,0,0,0,0,0,1)\nATRANS X5', "ATRANS in a swivelled plane"),
+        ('CYCLE800(1,"TC1",0,57,0,0,0,30,0,0,0,0,0,1)\nMIRROR X0', "MIRROR in a swivelled plane"),
+        ('CYCLE800(1,"TC1",0,57,0,0,0,R5,0,0,0,0,0,1)', "CYCLE800 is read with numbers alone"),
+    ],
+)
+def test_what_is_not_read_of_a_sinumerik_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=f"Line [34]: {says}"):
+        read_gcode(f"{SIEMENS}{body}\nG0 X1\nM30\n", dialect="sinumerik")
+
+
+PLANE = "PLANE SPATIAL SPA+30 SPB+0 SPC+0"
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        (f"{PLANE} STAY\nL X1 F9\n", "Line 5: PLANE with STAY leaves the tool as it stands"),
+        (f"{PLANE} TURN FMAX\nCYCL DEF 7.1 X5\n", "Line 5: a datum shift or rotation in a tilted plane"),
+        (f"{PLANE} TURN FMAX\nCYCL DEF 8.1 X\n", "Line 5: a mirror image in a tilted plane"),
+        (f"CYCL DEF 7.1 X5\n{PLANE} TURN FMAX\nCYCL DEF 7.1 X0\nL Z3 F9\n", "Line 7: the datum shift has ended in"),
+        (f"CYCL DEF 10.1 ROT5\n{PLANE} TURN FMAX\n", "Line 5: PLANE inside of a rotation"),
+        (f"{PLANE} TURN FMAX\nPLANE RESET STAY\nL X0 Y0 Z1 F9\n", "Line 6: the tool still leans"),
+        (f"{PLANE} JUMP\n", "Line 4: found 'JUMP' behind PLANE"),
+        ("PLANE EULER EULPR1 EULNU2 EULROT3\n", "Line 4: PLANE EULER EULPR1 is of Heidenhain's"),
+    ],
+)
+def test_what_is_not_read_of_a_heidenhain_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError) as caught:
+        read_gcode(f"{KLARTEXT}{body}END PGM A MM\n")
+    assert says in str(caught.value)
+
+
+def test_a_table_and_a_file_of_moves_are_refused_for_tilted_planes(tmp_path: Path) -> None:
+    text = f"{FANUC}G68.2 I0 J30. K0\nG53.1\n{MOVES}M30\n%\n"
+    with pytest.raises(GCodeError, match="it tilts its plane, and a rotary table is stated"):
+        read_gcode(text, table="A")
+    with pytest.raises(GCodeError, match="its moves stand in that"):
+        write_moves_jsonl(interpret(text), tmp_path / "moves.jsonl")
