@@ -33,7 +33,7 @@ HARMLESS: dict[str, frozenset[int]] = {
     "fanuc": frozenset({90, 150, 220, 230, 401, 501, 500, 600, 620, 630, 670, 690, 1870}),
     "grbl": frozenset(),
     "heidenhain": frozenset(),
-    "sinumerik": frozenset({90, 600, 601, 602, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450}),
+    "sinumerik": frozenset({90, 600, 4600, 601, 602, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450}),
 }
 """G words that move nothing, by dialect; they are counted as ignored."""
 

@@ -9,6 +9,7 @@ from robomill.toolpath.gcode.rules.mode_rules import system_code
 from robomill.toolpath.gcode.rules.motion_rules import rotate
 from robomill.toolpath.gcode.standing import begins, stand
 from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.plane import axes
 from robomill.toolpath.tools import MOST, Tool
 from robomill.units import from_si, to_si
 
@@ -355,8 +356,6 @@ def compensation_on(machine: Machine, block: Block) -> None:
     """G41, G42, G41.1 and G42.1."""
     code = block.g[COMPENSATION]
     name = machine.sides.get(code, g_name(code))
-    if machine.scale is not None and min(machine.scale.factors) < 0.0:
-        raise block.refuse(f"{name} while coordinates are mirrored is not read; end that first (G50.1).")
     if machine.plane not in (17, 18):
         raise block.refuse(f"{name} works in the planes G17 and G18 only.")
     if machine.compensation is not None and not machine.other_control:
@@ -388,7 +387,9 @@ def compensation_on(machine: Machine, block: Block) -> None:
         radius, orientation = from_si(tool.diameter, machine.unit) / 2.0, tool.orientation
         if machine.plane != 18 and orientation not in (0, 9):
             raise block.refuse(f"{name} with a lathe tool works in the plane G18 only.")
-    left = (code in (410, 411)) == (radius >= 0)
+    u, v, _ = axes(machine.plane)
+    mirrored = machine.scale is not None and machine.scale.factors[u] * machine.scale.factors[v] < 0.0
+    left = ((code in (410, 411)) == (radius >= 0)) != mirrored  # left of what is said is right of its image
     if radius == 0:
         machine.note("zero-diameter", "warning", f"{name} with a diameter of 0: the contour is followed as it is")
     before = machine.compensation

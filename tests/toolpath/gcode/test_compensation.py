@@ -535,3 +535,48 @@ def test_a_change_of_units_behind_a_corner_that_waits_for_its_second_cut_changes
     np.testing.assert_allclose(inch.rotary, plain.rotary, atol=1e-12)
     np.testing.assert_allclose(inch.v_f, plain.v_f)
     np.testing.assert_allclose(inch.sweep, plain.sweep)
+
+
+CONTOUR = "G1 X0 Y-10\nY40\nG3 X-10 Y50 {}\nG1 X-30\nG2 X-50 Y70 {}\nG1 Y90\n"
+IMAGES = {
+    "fanuc": ("G21 G90 F100\nT1 M6\nG0 X-30 Y-30 Z0\n{}G0 X-30 Y-30\n{} D1 {}G40 G1 X-90 Y99\nM30\n", "R10.", "R20."),
+    "sinumerik": (
+        "G71 G90 F100\nT1 D1\nM6\nG0 X-30 Y-30 Z0\n{}G0 X-30 Y-30\n{} {}G40 G1 X-90 Y99\nM30\n",
+        "CR=10",
+        "CR=20",
+    ),
+}
+
+
+@pytest.mark.parametrize("side", ["G41", "G42"])
+@pytest.mark.parametrize("axes", ["X", "Y", "XY"])
+@pytest.mark.parametrize("dialect", IMAGES)
+def test_beside_the_image_of_a_contour_is_the_image_of_what_is_beside_it(dialect: str, axes: str, side: str) -> None:
+    """Mirrored along one axis the cutter goes on the other side and arcs turn the other way; along both they do not."""
+    program, inner, outer = IMAGES[dialect]
+    contour = CONTOUR.format(inner, outer)
+    word = {"fanuc": "G51.1", "sinumerik": "MIRROR"}[dialect]
+    image = f"{word} {' '.join(f'{axis}0' for axis in axes)}\n"
+    tools = {1: Tool(1, 8e-3)}
+    plain, mirrored = (
+        interpret(program.format(said, side, contour), dialect=dialect, tools=tools) for said in ("", image)
+    )
+    flip = np.array([-1.0 if axis in axes else 1.0 for axis in "XYZ"])
+    cuts = slice(-6, None)
+    np.testing.assert_allclose(mirrored.end[cuts], plain.end[cuts] * flip, atol=1e-12)
+    np.testing.assert_allclose(mirrored.centre[cuts], plain.centre[cuts] * flip, atol=1e-12)
+    np.testing.assert_allclose(mirrored.sweep[cuts], plain.sweep[cuts] * (1.0 if len(axes) > 1 else -1.0), atol=1e-12)
+    start = plain.end[-7, :2] * 1e3
+    assert start[0] == pytest.approx(-4.0 if side == "G41" else 4.0)
+
+
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_beside_the_image_of_a_heidenhain_contour(side: str) -> None:
+    head, body = (
+        "BEGIN PGM A MM\nTOOL CALL 1 Z F100\nL X-30 Y-30 Z0 FMAX\n",
+        f"L X0 Y-10 R{side}\nL Y40\nCR X-10 Y50 R10 DR+\nL X-30\n",
+    )
+    texts = (f"{head}{said}L X-30 Y-30 FMAX\n{body}L X-60 Y99 R0\nEND PGM A MM\n" for said in ("", "CYCL DEF 8.1 X\n"))
+    plain, mirrored = (interpret(text, tools={1: Tool(1, 8e-3)}) for text in texts)
+    np.testing.assert_allclose(mirrored.end[-4:] * [-1, 1, 1], plain.end[-4:], atol=1e-12)
+    assert plain.end[-5, 0] * 1e3 == pytest.approx(-4.0 if side == "L" else 4.0)

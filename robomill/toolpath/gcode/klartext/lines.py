@@ -55,6 +55,7 @@ class Klartext(KlartextPlanes):
     heading: tuple[float, float] | None = None
     leaving: tuple[float, float] | None = None
     modal_cycle = False
+    oversize = 0.0
 
     def klartext_line(self, index: int) -> str | None:
         """Line ``index``, and those that continue it, in LinuxCNC's words; None where it is done."""
@@ -67,7 +68,7 @@ class Klartext(KlartextPlanes):
         if (code[:5] == "PLANE" or self.leans or self.machine.stuck) and self.plane_line(code, line):
             return None
         first = code.split(" ", 1)[0]
-        if first in ("L", "LN", "LP", "C", "CR", "CP", "CT") or _FEED.match(code) or _M.match(code):
+        if first in ("L", "LN", "LP", "C", "CR", "CP", "CT", "CTP") or _FEED.match(code) or _M.match(code):
             return self._move("L" if first[0] in "FM" else first, code, line)
         if first == "CC":
             self.set_pole(code, line)
@@ -173,7 +174,7 @@ class Klartext(KlartextPlanes):
         words = {letter: (step, self.number(value, line)) for step, letter, value in _WORD.findall(rest)}
         codes = [int(number[:6]) for number in _M.findall(rest)]
         where, arc = self._end(kind, words, rest, line)
-        out = [self._compensated(side[1] if side else self.side)]
+        out = [self._compensated(side[1] if side else self.side, line)]
         if not arc and machine.plane != 17:
             out.append("G17")
         if 136 in codes or 137 in codes:
@@ -228,8 +229,11 @@ class Klartext(KlartextPlanes):
             return ""
         return f"G0 Z{self.here()[2] + self.number(found[1], line):.9f}"
 
-    def _compensated(self, side: str) -> str:
+    def _compensated(self, side: str, line: int) -> str:
         before, self.side = self.side, side
+        if side != "0" and self.oversize:
+            text = f"R{side} with DR{self.oversize:+g} of TOOL CALL is not read; put it in the tool table."
+            raise GCodeError.at(line, text)
         return "" if side == before else {"0": "G40", "L": "G41", "R": "G42"}[side]
 
     def _end(self, kind: str, words: Words, code: str, line: int) -> tuple[dict[str, float], str]:
@@ -248,10 +252,10 @@ class Klartext(KlartextPlanes):
             if max(map(abs, axis3)) < 1e-9:
                 raise GCodeError.at(line, "the tool axis TX TY TZ is 0; expected a direction.")
             end[3], end[4] = angles_of(axis3, (at[3], at[4]))
-        if kind in ("LP", "CP"):
+        if kind in ("LP", "CP", "CTP"):
             self.polar_place(words, at, end, line)
         moved = {letter for letter in "XYZABC" if letter in words}
-        if kind in ("LP", "CP", "C"):
+        if kind in ("LP", "CP", "C", "CTP"):
             moved |= {"XYZ"[axis] for axis in axes(self._pole(line)[0])[:2]}
         moved |= {"X", "Y"} if kind in ("CR", "CT") else {"A", "B"} if "TX" in words else set()
         places = {letter: end["XYZABC".index(letter)] for letter in sorted(moved)}
@@ -276,7 +280,7 @@ class Klartext(KlartextPlanes):
     def _arc(self, kind: str, words: Words, code: str, at: list[float], end: list[float], line: int) -> str:
         """G2 or G3 with what says its form; ``leaving`` is its direction at its end."""
         sense = _SENSE.search(code)
-        if kind == "CT":
+        if kind in ("CT", "CTP"):
             return self._tangent(at, end, line)
         if sense is None:
             raise GCodeError.at(line, f"{kind} needs DR+ or DR-, the way round.")
@@ -337,13 +341,14 @@ class Klartext(KlartextPlanes):
         if found is None or found[2] in ("X", "Y"):
             raise GCodeError.at(line, f"{code[:30]} is not read; expected a tool, Z and S, as TOOL CALL 1 Z S2000.")
         out = []
-        self.tool_feed = self.tool_feed if found[1] is None else None
+        if found[1] is not None:
+            self.tool_feed, self.oversize = None, 0.0
         for name, value in re.findall(rf"(S|F|DL|DR2?) ?({NUMBER})", found[3] or ""):
             size = self.number(value, line)
-            if name[0] == "D" and size != 0.0:
-                raise GCodeError.at(
-                    line, f"TOOL CALL has {name}{size:+g}, which is not read; put it in the tool table."
-                )
+            if name == "DL" and size != 0.0:
+                raise GCodeError.at(line, f"TOOL CALL has DL{size:+g}, which is not read; put it in the tool table.")
+            if name == "DR":
+                self.oversize = size
             if name == "F":
                 self.tool_feed = size / self.tenth
                 out.append(self._feed("", "AUTO", line))

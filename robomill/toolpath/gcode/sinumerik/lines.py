@@ -13,10 +13,10 @@ from robomill.units import to_si
 _SILENT = re.compile(
     r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|COMPCURV|COMPSURF|STOPRE|CFTCP|CFIN|CFC|ORIWKS|"
     r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|KONT|DIAMOF|FNORM|FLIN|FGROUP|SETMS|CUT2D|CDOF|WALIMOF|WALIMON|"
-    r"STOPFIFO|STARTFIFO|CPRECON|CPRECOF|ORISON|ORISOF|SBLON|SBLOF|DISPLON|DISPLOF)\b(?:[ \t]*\([^()]*\))?|"
+    r"STOPFIFO|STARTFIFO|FIFOCTRL|CPRECON|CPRECOF|ORISON|ORISOF|SBLON|SBLOF|DISPLON|DISPLOF)\b(?:[ \t]*\([^()]*\))?|"
     r"\bOFFN[ \t]*=[ \t]*0+(?:\.0*)?(?![.\d])|"
     r"\b(?:ADIS|ADISPOS|CTOL|OTOL|ATOL|(?:ACC|JERKLIM|VELOLIM)\[\w+\])[ \t]*=[ \t]*[.\d]+|"
-    r"\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|\bGROUP_(?:BEGIN|END)[ \t]*\([^()]*\)|"
+    r"\bLIMS(?:\[\d\])?[ \t]*=[ \t]*[.\d]+|\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|\bGROUP_(?:BEGIN|END)[ \t]*\([^()]*\)|"
     r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)",
     re.IGNORECASE,
 )
@@ -36,6 +36,9 @@ _TOOL = re.compile(r"\bT[ \t]*=?[ \t]*\"([^\"]*)\"", re.IGNORECASE)
 _SPINDLE = re.compile(r"\bM1[ \t]*=[ \t]*(\d+)", re.IGNORECASE)
 _TAP = re.compile(r"\bG33[12]\b", re.IGNORECASE)
 _PITCH = re.compile(rf"\bK[ \t]*=?[ \t]*({_NUMBER})", re.IGNORECASE)
+_FIXED_POINT = re.compile(
+    rf"\b(G7[45])((?:[ \t]+(?:[XYZ](?:1[ \t]*=|[ \t]*=)?[ \t]*{_NUMBER}|FP[ \t]*=[ \t]*\d))+)[ \t]*$", re.IGNORECASE
+)
 _MODES = re.compile(r"\bG9[01]\b(?!\.)", re.IGNORECASE)
 _CODE = re.compile(r"(?:[^;\"]|\"[^\"]*\"|\"(?=[^\"]*$))*+")
 _FOLLOWS = {"G70": False, "G71": False, "G700": True, "G710": True}
@@ -68,6 +71,7 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
     if message is not None:
         code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
+    code = _FIXED_POINT.sub(lambda found: _fixed_point(found, machine), code)
     code = _feeds(code, number, machine)
     code = _WORDS.sub(lambda found: _UNITS[found[0].upper()], code)
     code = _EXPONENT.sub(lambda found: f"{float(found[1] + 'e' + found[2]):.15f}", code)
@@ -142,6 +146,18 @@ def _tapped(code: str, number: int, machine: Machine) -> str:
         return "G33"
     machine.note("tap-turns", "info", "G331 turns the spindle by itself (rigid tapping)")
     return "G33 M3" if float(pitch[1]) > 0.0 else "G33 M4"
+
+
+def _fixed_point(found: re.Match[str], machine: Machine) -> str:
+    """G74 and G75 lead some axes to places of the machine; they are of their block alone."""
+    text = (
+        f"{found[1].upper()} goes to a fixed point of the machine, which is not known here: the tool is taken to be "
+        "clear of the part until X, Y and Z are given again"
+    )
+    machine.note("machine-place", "info", text)
+    named = {letter.upper() for letter in re.findall(r"\b([XYZ])", found[2], re.IGNORECASE)}
+    machine.set_away(tuple(away or letter in named for away, letter in zip(machine.away, "XYZ")))
+    return ""
 
 
 def _whole_turns(said: str, number: int) -> str:

@@ -56,7 +56,6 @@ def test_a_mirror_turns_arcs_round_and_lets_the_programmed_word_stay() -> None:
         ("G68 X0 Y0 R5\nG51 P2.\n", "Line 3: G51 inside of G68 or G16"),
         ("G51 P2.\nG92 X0\n", "Line 3: G92 while coordinates are scaled"),
         ("G91\nG51 P2.\n", "Line 3: G51 is read in G90 alone"),
-        ("G51.1 X0\nT1 M6\nG41 D1\n", "Line 4: G41 while coordinates are mirrored"),
     ],
 )
 def test_what_cannot_be_scaled_is_refused(body: str, says: str) -> None:

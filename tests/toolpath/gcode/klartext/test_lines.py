@@ -58,6 +58,18 @@ def test_fmax_holds_for_its_line_alone() -> None:
     assert read("L X+1 F100\nL X+2 FMAX\nL X+3\n").kind.tolist() == [0, 1, 0, 1]
 
 
+def test_an_oversize_of_the_radius_counts_beside_a_contour_alone() -> None:
+    assert ends("TOOL CALL 2 Z S100 DR+0.5\nL X+1 F9\nL X+2\n")[-2:] == [[1, 0, 0], [2, 0, 0]]
+
+
+def test_ctp_ends_at_a_polar_place() -> None:
+    """From (10, 0) along X, tangentially to (10, 20): a half circle about (10, 10); the pole is part zero."""
+    program = read("L X+10 F9\nCC X+0 Y+0\nCTP PR+22.360679775 PA+63.434948823\n")
+    np.testing.assert_allclose(program.end[-1] * 1e3, [10, 20, 0], atol=1e-6)
+    np.testing.assert_allclose(program.centre[-1, :2] * 1e3, [10, 10], atol=1e-6)
+    assert program.sweep[-1] == pytest.approx(np.pi)
+
+
 def test_fauto_is_the_feed_of_the_last_tool_call() -> None:
     """F300 holds until FAUTO goes back to what TOOL CALL says, here in tenths of an inch a minute, and then 700."""
     body = "TOOL CALL 1 Z S1000 F500\nL X+1\nL X+2 F300\nL X+3\nL X+4 FAUTO\n"
@@ -254,6 +266,7 @@ def test_tool_axes_and_m_words() -> None:
         ("CC X+1 Z+2\nCC Y+5\n", "CC needs two of X, Y and Z"),
         ("L X+1 F9\nCR X+9 R+9 DR+\nCHF 1\n", "CHF is read between two straight cuts"),
         ("CC X+0 Y+5\nCP IPA-0.5 DR+ F9\n", "IPA against its DR"),
+        ("TOOL CALL 2 Z S100 DR+0.5\nL X+1 F9\nL X+2 RL\n", r"RL with DR\+0.5 of TOOL CALL is not read"),
         ("L X+1 FAUTO\n", "FAUTO is the feed of TOOL CALL, which has none"),
         ("L X+1 F9\nTOOL CALL 2 Z S100\nL X+2 FAUTO\n", "FAUTO is the feed of TOOL CALL, which has none"),
         ("FN 18: SYSREAD Q1 = ID210 NR4\n", "FN 18: SYSREAD is of Heidenhain's and is not read"),

@@ -180,7 +180,6 @@ def test_dwells_are_waited() -> None:
         ("CYCL DEF 7.1 #5\n", "CYCL DEF 7 takes its shift from a table"),
         ("CYCL DEF 8.1 Z\n", "CYCL DEF 8.1 Z is not read; expected X, Y or both"),
         ("CYCL DEF 8.1 X\nCYCL DEF 7.1 X+3\n", "a datum shift or rotation inside of a mirror image"),
-        ("CYCL DEF 8.1 X\nL X+9 RL F9\n", "RL while coordinates are mirrored"),
         ("CYCL DEF 220 ~\nQ241=4\n", "CYCL DEF 220 repeats a cycle, but none is defined"),
         ("CYCL DEF 200 ~\nQ200=2 ~\nQ201=-5\nCYCL DEF 221 Q242=0\n", "CYCL DEF 221 has Q242=0 repeats"),
         ("CYCL DEF 11.1 SCL 0.9\n", "tilts or scales"),

@@ -186,7 +186,6 @@ def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
         ("MIRROR Z0\n", "MIRROR Z0 is not read"),
         ("SCALE X0\n", "SCALE X0 is not read"),
         ("MIRROR X0\nATRANS X5\n", "ATRANS inside of MIRROR or SCALE is not read"),
-        ("MIRROR X0\nG41 G1 X5 T1 D1\n", "G41 while coordinates are mirrored"),
         ("CASE(1) OF X GOTOF A\n", "CASE is not read as it stands"),
         ("CASE(1) OF 1 GOTOF L_A\n", "GOTOF L_A leads nowhere"),
     ],

@@ -372,3 +372,14 @@ def test_words_of_the_first_spindle() -> None:
     program = interpret("G90 G71 G0 X0 Y0 Z0\nM1=4 S1=600\nG1 X10 F100\nM30\n", dialect="sinumerik")
     assert program.n_s[-1] == pytest.approx(10)
     assert program.ccw[-1]
+
+
+@pytest.mark.parametrize("line", ["G74 X1=0 Y1=0 Z1=0", "G75 FP=2 X1=0 Y1=0 Z1=0", "N9 G75 Z1=0", "G75 Z=0"])
+def test_fixed_points_are_where_only_the_machine_knows(line: str) -> None:
+    """They are of their block alone: G1 goes on behind them."""
+    body = f"G90 G71 G1 X5 Y5 Z-1 F100\n{line}\nX0 Y0 Z9\nZ-2\nM30\n"
+    program = interpret(body, dialect="sinumerik")
+    assert [f.line for f in program.findings if f.code == "machine-place"] == [2]
+    assert program.at_feed.tolist()[-1]
+    np.testing.assert_allclose(program.end[-1] * 1e3, [0, 0, -2])
+    assert len(program) == 3
