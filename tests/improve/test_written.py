@@ -45,7 +45,7 @@ def test_a_program_that_would_not_lead_where_it_should_is_never_given_out(monkey
     [
         ("BEGIN PGM X MM\n1 L X+0 Y+0 Z-2 R0 FMAX M3\n2 L X+40 F500\nEND PGM X MM\n", "", "Heidenhain"),
         ("G21 G90\nG0 X0 Y0 Z5 A0\nG1 X10 A90 F500\nM2\n", "A", "a table turns the part"),
-        ("%\nO0001\nG21 G90\nG68.2 I0 J30. K0\nG53.1\nG0 X0 Y0 Z5.\nG1 Z0 F500\nX9.\nM30\n%\n", "", "tilts its working"),
+        ("G21 G90\nG68.2 I0 J30. K0\nG53.1\nG0 X0 Y0 Z5.\nG1 Z0 F500\nX9.\nM30\n", "", "tilts its working"),
     ],
 )
 def test_what_is_not_written_is_refused_by_name(text: str, table: str, words: str) -> None:

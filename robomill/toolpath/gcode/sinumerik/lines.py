@@ -16,7 +16,8 @@ _SILENT = re.compile(
     r"STOPFIFO|STARTFIFO|FIFOCTRL|CPRECON|CPRECOF|ORISON|ORISOF|SBLON|SBLOF|DISPLON|DISPLOF)\b(?:[ \t]*\([^()]*\))?|"
     r"\bOFFN[ \t]*=[ \t]*0+(?:\.0*)?(?![.\d])|"
     r"\b(?:ADIS|ADISPOS|CTOL|OTOL|ATOL|(?:ACC|JERKLIM|VELOLIM)\[\w+\])[ \t]*=[ \t]*[.\d]+|"
-    r"\bLIMS(?:\[\d\])?[ \t]*=[ \t]*[.\d]+|\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|\bGROUP_(?:BEGIN|END)[ \t]*\([^()]*\)|"
+    r"\bLIMS(?:\[\d\])?[ \t]*=[ \t]*[.\d]+|"
+    r"\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|\bGROUP_(?:BEGIN|END)[ \t]*\([^()]*\)|"
     r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)",
     re.IGNORECASE,
 )
