@@ -5,7 +5,7 @@ from functools import partial
 import streamlit as st
 
 from robomill import ui
-from robomill.ui import session
+from robomill.ui import pieces, session
 from robomill.ui.entry import inputs
 from robomill.ui.improve import opened, remedies, stiffen, studied, sure
 
@@ -31,9 +31,13 @@ ui.headline(
 )
 with st.container(border=True):
     remedies.table(found, now)
-    inputs.choice("Judged by", remedies.BY, remedies.JUDGED, by, partial(session.keep, remedies.BY))
+    remedies.once(result)
+    asked, beside = pieces.split((1, 1), "judged")
+    with asked:
+        inputs.choice("Judged by", remedies.BY, remedies.JUDGED, by, partial(session.keep, remedies.BY))
     if waits is not None:
-        waits.show()
+        with beside:
+            waits.show()
 there = {each.remedy.code: each.remedy.title for each in found if each.shown is not None}
 if there:
     chosen = inputs.pick("Remedy", "improve.remedy", there)

@@ -132,16 +132,20 @@ def table(rows: Sequence[Sequence[str]], kinds: str, head: Sequence[str] = (), s
 
     ``kinds`` has a letter a column: q what is asked (s where that is short), n a number, v a value in words, w text,
     b a bar, a blank for a remark, which stands under its q in a narrow window. Where a table with text (w) has no
-    room for its columns, each row is a paragraph in which every cell stands under its title.
+    room for its columns, each row is a paragraph in which every cell stands under its title. The last cell of a row
+    with fewer cells than columns is a text over the columns that are left.
     """
     titled = "w" in kinds and all(head)
     named = [f' data-title="{html.escape(title, quote=True)}"' if titled else "" for title in head or kinds]
 
     def row(tag: str, cells: Sequence[str], titles: Sequence[str], style: str = "") -> str:
+        over = len(kinds) - len(cells) + 1
+        whole = zip(kinds, titles, cells[:-1] if over > 1 else cells, strict=over == 1)
         inner = "".join(
             f'<{tag if cell else "td"} class="{kind}"{title}>{as_html(cell)}</{tag if cell else "td"}>'
-            for kind, title, cell in zip(kinds, titles, cells, strict=True)
+            for kind, title, cell in whole
         )
+        inner += f'<td class="w" colspan="{over}">{as_html(cells[-1])}</td>' if over > 1 else ""
         return f"<tr{style}>{inner}</tr>"
 
     body = "".join(row("td", cells, named, ' class="rm-strong"' if i == strong else "") for i, cells in enumerate(rows))

@@ -4,6 +4,8 @@ empty state where the cut has no result."""
 from __future__ import annotations
 
 import dataclasses
+import html
+import re
 
 import numpy as np
 import pytest
@@ -12,8 +14,10 @@ from streamlit.testing.v1 import AppTest
 
 import robomill as rm
 from robomill.cutting.forces.mechanistic import MechanisticForce
+from robomill.errors import CompensationError
 from robomill.improve.design import design
 from robomill.improve.stiffening import Stiffening, some_stiffer
+from robomill.io.compensated import compensate
 from robomill.io.materials import load_material, sample_materials
 from robomill.io.robot.robots import load_robot
 from robomill.io.samples import samples_dir
@@ -92,6 +96,23 @@ def test_a_cut_that_is_not_judged_is_not_called_good_with_a_stiffer_joint(app: A
     assert not app.exception
     assert "met with that joint" not in words(app)
     assert "Not judged" in words(app)
+
+
+def test_what_is_not_judged_is_said_once_and_not_in_every_row(app: AppTest) -> None:
+    kept = store(app)
+    source = GCodeSource("G21 G90 S12000 M3\nG0 X0 Y0 Z5\nG1 Z-2 F300\nG1 X20 F1800\nG0 Z5\nG33 Z-8 K1\nG0 Z5\nM2\n")
+    setup = kept.project.setup.replace(source=source)
+    kept.project = kept.project.replace(setup=setup)
+    sentence = simulate(setup).verdict.sentence
+    with pytest.raises(CompensationError, match=re.escape(sentence)):
+        compensate(setup)
+    go(app, "7_Improve")
+    said = html.unescape(words(app))
+    assert said.count("prediction is not to be trusted.") == 2, "of the corrected program, here and at the best place"
+    (table,) = (each for each in re.findall("<table.*?</table>", said, re.DOTALL) if "Verdict then" in each)
+    assert sentence not in table
+    assert sentence in said
+    assert "There is no number to design for." in table
 
 
 @pytest.mark.parametrize("page", ["5_Toolpath", "6_Milling", "7_Improve"])

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import streamlit as st
 
 from robomill.errors import RobomillError
 from robomill.identification.fit.confidence import LEVEL
@@ -222,10 +223,18 @@ def known(result: SimulationResult, unit: str, by: str = NOMINAL) -> tuple[list[
             waits = now
             every.append(Found(remedy, why="is being computed"))
         except RobomillError as refusal:
-            every.append(Found(remedy, why=str(refusal)))
+            every.append(Found(remedy, why=_why(str(refusal), result, every)))
     made = tuple(each.made for each in every if each.shown is not None)
     session.hold(report.REMEDIES, (result.setup.digest(), made))  # for the report
     return sorted(every, key=_rank), waits
+
+
+def _why(refusal: str, result: SimulationResult, above: Sequence[Found]) -> str:
+    """Why there is none, in short: the verdict that refusals end with (that of the cut, or of one much like it whose
+    refusal begins as one ``above``) is said once, beneath the table."""
+    begun = next((each.why for each in above if each.why and refusal.startswith(each.why)), None)
+    said = refusal.removesuffix(result.verdict.sentence)
+    return begun or (refusal if said == refusal else f"{said.rstrip(': .')}.")
 
 
 def _rank(found: Found) -> tuple[bool, bool, float]:
@@ -283,17 +292,25 @@ def sentence(found: Sequence[Found], result: SimulationResult, now: Shown, unit:
 
 
 def table(found: Sequence[Found], now: Shown) -> None:
-    """Remedies with what they leave, what they cost and how sure that is, beneath the cut as it is ``now``."""
+    """Remedies with what they leave, what they cost and how sure that is, beneath the cut as it is ``now``; of those
+    that are not there, why."""
     rows = [["As it is", now.error, format_share(now.left.share), WORDS[now.left.level], "", now.sure]]
     for each in found:
         row = each.shown
         if row is None:
-            rows.append([each.remedy.title, "–", "–", "–", each.why, ""])
+            rows.append([each.remedy.title, each.why])
         else:
             used, verdict = format_percent(row.left.share), WORDS[row.left.level]
             rows.append([each.remedy.title, row.error, used, verdict, row.cost, row.sure])
     head = ("Remedy", "Error then", "Of tolerance", "Verdict then", "What it takes", "How sure")
-    pieces.table(rows, "snnvww", head, strong=1 if found and found[0].shown else -1)
+    with st.container(key="improve-table"):
+        pieces.table(rows, "snnvww", head, strong=1 if found and found[0].shown else -1)
+
+
+def once(result: SimulationResult) -> None:
+    """What of the cut is not judged, which the remedies leave out."""
+    if result.verdict.level == "unjudged":
+        pieces.note(result.verdict.sentence)
 
 
 def use(row: Shown, title: str) -> None:
