@@ -3,7 +3,6 @@
 import streamlit as st
 
 from robomill import ui
-from robomill.learn.push import AsidePush
 from robomill.ui.learn import edge, exercises, lesson, mathematics, steps
 
 project = ui.begin("Learn")
@@ -31,8 +30,6 @@ else:
     lesson.question(found)
     st.divider()
     edge.edge(found)
-    st.divider()
-    mathematics.equations(found.pose, AsidePush.of(found.pose.C))
     st.divider()
     steps.to_hand_out(found, place, now)
 if not now.number:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import re
 
-from conftest import go, words
+import numpy as np
+from conftest import go, store, words
 from streamlit.testing.v1 import AppTest
+
+import robomill as rm
 
 WORKSPACE, COMPLIANCE, LEARN = "2_Workspace", "3_Compliance", "8_Learn"
 
@@ -50,6 +53,23 @@ def test_the_reproduction_table_is_on_the_page(app: AppTest) -> None:
     for item in ("Table 1", "Table 3", "Fig. 5", "Fig. 16"):
         assert item in said
     assert "0.2644 mm from Table 3" in said
+
+
+def test_the_mathematics_follows_the_arm_to_the_edge(app: AppTest) -> None:
+    """C_yy in the equations against J C_theta J^T where the arm stands, by the product of matrices."""
+    go(app, "8_Learn")
+    before = [each.value for each in app.get("latex")]
+    robot, slider = store(app).project.setup.robot, app.select_slider[0]
+    slider.set_value(len(slider.options) - 8).run()
+    assert not app.exception
+    out = store(app).values["learn.lesson"].out
+    found = rm.inverse_kinematics(robot, rm.pose_from_world(np.array([0.0, -out, 0.0, 0.0, 0.0])))
+    J = rm.geometric_jacobian(robot, found.theta)[:3]
+    C_yy = 1e6 * float((J @ np.diag(robot.C_theta) @ J.T)[1, 1])
+    after = [each.value for each in app.get("latex")]
+    assert after != before
+    assert f"{C_yy:.3f}" in "\n".join(after)
+    assert f"The mathematics, {1e3 * out:.0f} mm from the base" in [each.value for each in app.header]
 
 
 def test_the_mathematics_pushes_where_the_question_does(app: AppTest) -> None:

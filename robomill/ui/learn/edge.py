@@ -1,4 +1,5 @@
-"""The lesson's second half: the arm is dragged to the edge of its workspace and the ellipsoid stretches."""
+"""The lesson's second half: the arm is dragged to the edge of its workspace, the ellipsoid stretches, and the equations
+follow."""
 
 import numpy as np
 import streamlit as st
@@ -7,10 +8,10 @@ from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import soft_direction
 from robomill.kinematics.dexterity import near_singular
-from robomill.learn.push import FORCE
+from robomill.learn.push import FORCE, AsidePush
 from robomill.ui import pieces, session, shell
 from robomill.ui.entry import inputs
-from robomill.ui.learn import lesson
+from robomill.ui.learn import lesson, mathematics
 from robomill.ui.posed import fields
 from robomill.ui.posed.arm import arm
 from robomill.ui.posed.point import InHand, in_hand
@@ -30,7 +31,7 @@ _ray = shared(lambda robot, point: (fields.geometry_key(robot), point), "Moving 
 
 @st.fragment
 def edge(found: InHand) -> None:
-    """Drag the arm to the edge of its workspace: the ellipsoid stretches, det(J) beside it."""
+    """Drag the arm to the edge of its workspace: the ellipsoid stretches, det(J) beside it, the mathematics beneath."""
     st.html('<p class="rm-ask">Now drag the arm to the edge of its workspace.</p>')
     robot = found.pose.robot
     way = pieces.attempt(_ray, robot, found.point)
@@ -57,6 +58,9 @@ def edge(found: InHand) -> None:
         _stretch(found, here, way)
     with right:
         _measure(here.pose, way, i)
+    if here.pose.reached:
+        st.divider()
+        mathematics.equations(here.pose, AsidePush.of(found.pose.C), format_si(float(way.radius[i]), unit, 0))
 
 
 def _stretch(found: InHand, here: InHand, way: Ray) -> None:

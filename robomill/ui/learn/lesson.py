@@ -43,9 +43,11 @@ SIDE = {
 BIG = """<style>
 /* Question and picture stand side by side from 900 px on, where the pages' columns stand under each other. */
 @media (min-width: 900px) and (max-width: 1080px) {
-  :is(.st-key-split-ask, .st-key-split-steps) [data-testid="stHorizontalBlock"]:has(> [data-testid="stColumn"]) {
+  :is(.st-key-split-ask, .st-key-split-edge, .st-key-split-steps)
+    [data-testid="stHorizontalBlock"]:has(> [data-testid="stColumn"]) {
     flex-wrap: nowrap !important; gap: 1.2rem; }
-  :is(.st-key-split-ask, .st-key-split-steps) [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] {
+  :is(.st-key-split-ask, .st-key-split-edge, .st-key-split-steps)
+    [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] {
     flex: 1 1 0 !important; min-width: 0 !important; width: auto !important; }
   .st-key-split-ask [data-testid="stHorizontalBlock"] > [data-testid="stColumn"] { flex-grow: 55 !important; }
   .st-key-split-ask [data-testid="stHorizontalBlock"] > [data-testid="stColumn"]:last-child {

@@ -20,9 +20,10 @@ TONE = {"reproduced": "computed", "assumed": "assumed", "gap": "user", "not comp
 SHORT = {**WORDS, "assumed": "reproduced, assumed lengths"}
 
 
-def equations(pose: PoseReport, push: AsidePush) -> None:
-    """Eqs. (13), (14) and (15) with this robot's numbers at this pose, for the push of the question."""
-    st.header("The mathematics, with the numbers of now")
+def equations(pose: PoseReport, push: AsidePush, far: str) -> None:
+    """Eqs. (13), (14) and (15) with this robot's numbers at this pose, ``far`` from the base, for the push of the
+    question."""
+    st.header(f"The mathematics, {far} from the base")
     left, right = pieces.split([1, 1], "mathematics", gap="large")
     with left:
         st.latex(r"\large C_X = \sum_{i=1}^{n} C_{\theta i}\,\mathbf{J}_i\,\mathbf{J}_i^{T} \qquad (13),\,(14)")
