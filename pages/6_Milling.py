@@ -10,7 +10,7 @@ setup, unit, dark = project.setup, project.view.length, ui.dark()
 result = ui.attempt(ui.result, setup)
 
 kicker = f"Milling · {setup.name}"
-ui.headline(kicker, "No result yet" if result is None else ui.verdict_sentence(result, unit))
+ui.headline(kicker, "No result yet" if result is None else ui.verdict_headline(result, unit))
 if result is None:
     panel.waiting(dark)
     st.stop()

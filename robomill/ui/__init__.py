@@ -41,7 +41,13 @@ Rules of the house:
 """
 
 from robomill.ui.entry.inputs import number
-from robomill.ui.judged.verdict import open_question, tip_tile, verdict_sentence, verdict_tiles
+from robomill.ui.judged.verdict import (
+    headline as verdict_headline,
+    open_question,
+    tip_tile,
+    verdict_sentence,
+    verdict_tiles,
+)
 from robomill.ui.pieces import Tile, attempt, figure, headline, note, split, thirds, tiles
 from robomill.ui.project import Project, View
 from robomill.ui.shell import begin, dark
@@ -66,6 +72,7 @@ __all__ = [
     "thirds",
     "tiles",
     "tip_tile",
+    "verdict_headline",
     "verdict_sentence",
     "verdict_tiles",
 ]

@@ -78,7 +78,7 @@ def parcel(result: SimulationResult, exaggerations: Sequence[float]) -> Parcel:
     state (f,) u1             1 reached, 2 counts for the verdict, 4 the cut goes on from the frame before, 8 in air
     arm.o, arm.a, arm.do, arm.da (a, n + 1, 3) f4   joints' places and axes, and what the load does to them
     """
-    packing, frames = _Packing(), frames_of(result)
+    packing, frames, worst = _Packing(), frames_of(result), result.decided.sample
     shown = [enlarged(result, times, CELLS, must_touch=False) for times in exaggerations]
     first = shown[0]
     heights = [first.ideal.z, *(each.drawn.z for each in shown), first.ideal.z_stock]
@@ -104,7 +104,7 @@ def parcel(result: SimulationResult, exaggerations: Sequence[float]) -> Parcel:
         "frames": len(frames),
         "total": _mm(float(result.path.s[-1]))[0],
         "tolerance": _mm(result.setup.tolerance)[0],
-        "worst": int(np.searchsorted(frames, result.worst)) if result.worst >= 0 else -1,
+        "worst": int(np.searchsorted(frames, worst)) if worst >= 0 else -1,
         "tools": [tool_outlines(cutter) for cutter in result.tooling.cutters],
         "cameras": cameras(result, first),
         "lines": _lines(result, frames, packing),

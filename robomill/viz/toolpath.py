@@ -225,7 +225,7 @@ def _marks(fig: Chart, picture: PathPicture, dark: bool) -> None:
     _dots(fig, picture.points[:1], {"size": 9, "symbol": "circle-open", "color": p.text, "line": rim}, "start")
     if picture.worst >= 0:
         worst = {"size": 12, "symbol": "diamond-open", "color": p.text, "line": rim}
-        _dots(fig, picture.points[picture.worst][None], worst, "worst")
+        _dots(fig, picture.points[picture.worst][None], worst, "tip most off")
     if picture.value is not None:
         fig.dots([None], [None], _scale(picture, dark), **QUIET)
 

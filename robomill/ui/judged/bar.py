@@ -107,7 +107,9 @@ def words(setup: SimulationSetup, result: SimulationResult | None, unit: str, wh
     tone = verdict.tone(result.verdict)
     tiles = verdict.plain_tiles(result, unit)
     shown = [name, _gauge(result.verdict, unit), _verdict(result, tiles["share"], why)]
-    shown += [_tile(tiles[each], said) for each, said in (("wall", "Wall"), ("floor", "Floor"), ("tip", "Tip"))]
+    shown += [
+        _tile(tiles[each], said) for each, said in (("wall", "Wall"), ("floor", "Floor"), ("tip", "Tip off path"))
+    ]
     return _bar([*shown, _force(result)], f"{tone} rm-old" if why else tone, mark)
 
 
@@ -129,7 +131,7 @@ def _was(old: str) -> Html:
 
 def _tile(tile: Tile, label: str) -> Html:
     """A tile in short: its name, its value, and the value before the last edit."""
-    return _cell(label + _was(tile.was if tile.was != tile.value else ""), tile.value, f"rm-{label.lower()}")
+    return _cell(label + _was(tile.was if tile.was != tile.value else ""), tile.value, f"rm-{label.split()[0].lower()}")
 
 
 def _verdict(result: SimulationResult, tile: Tile, why: str) -> Html:

@@ -1,5 +1,6 @@
 """The verdict as start, robot, toolpath and milling show it: its tiles, its one sentence and what it leaves out."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -7,6 +8,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.arrays import digest
+from robomill.errors import RobomillError
 from robomill.identification.knowledge import Knowledge
 from robomill.report.ranges import Range, out_over, ranges
 from robomill.simulation.judging.verdict_words import FLOOR, TIP, TITLES, WALL, Reading, ReadingKind, Verdict, said, way
@@ -20,7 +22,9 @@ from robomill.ui.posed.push import by_axis
 from robomill.ui.project import Project
 from robomill.ui.serving.menu import file_of
 from robomill.ui.work import cached
+from robomill.ui.work.job import Underway
 from robomill.units import format_beside, format_count, format_limit, format_many, format_share, format_si
+from robomill.wording import listed
 
 WORDS = TITLES
 TONES = {"unreached": "out", "missed": "out"}  # the others are their own
@@ -31,10 +35,12 @@ NOT_COUNTED = f"Left out: {', '.join(LEFT_OUT)}."
 
 def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     """What a gauge would read of walls and floors, the tip's deviation as detail, and the verdict."""
-    made, found = plain_tiles(result, unit), ranges_of(result)
-    words = {name: [range_words(each, name, unit) for each in found] for name in made}
+    made, found = plain_tiles(result, unit), widest_first(ranges_of(result))
+    words = {name: [range_words(each, name, unit) for each in found[:1]] for name in made}
     if out_over(result.verdict, found):
         words["share"].append("so it could be out of tolerance")
+    if len(found) > 1:
+        words["share"].append(f"less: {listed(each.over for each in found[1:])}")
     return [replace(tile, ranges=[ends for ends in words[name] if ends]) for name, tile in made.items()]
 
 
@@ -73,6 +79,11 @@ def ranges_of(result: SimulationResult) -> tuple[Range, ...]:
 )
 def _ranges(result: SimulationResult, known: Knowledge | None) -> tuple[Range, ...]:
     return ranges(result, known)
+
+
+def widest_first(found: Sequence[Range]) -> list[Range]:
+    """The range that leads, at whose end most of the tolerance is used, and then those that say less."""
+    return sorted(found, key=lambda each: -each.share[1] if np.isfinite(each.share[1]) else np.inf)
 
 
 def range_words(found: Range, name: str, unit: str) -> str:
@@ -142,6 +153,16 @@ def tip_tile(result: SimulationResult, unit: str) -> Tile:
 def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
     """What a gauge would read on the part, for a foreman, and how much of the cut is not judged."""
     return " ".join(said(result, result.verdict, unit)).strip()
+
+
+def headline(result: SimulationResult, unit: str = "mm") -> str:
+    """The same, and over what a cut within tolerance may be out of it, where that is known by now."""
+    words = verdict_sentence(result, unit)
+    try:
+        found = widest_first(out_over(result.verdict, _ranges(result, session.known(result.setup))))
+    except (RobomillError, Underway):
+        return words
+    return f"{words} It may be out, over {found[0].over}." if found else words
 
 
 def open_question(result: SimulationResult, on: str = "") -> None:

@@ -42,7 +42,7 @@ def path_figure(setup: SimulationSetup, reach: PathReach, result: SimulationResu
     key = f"toolpath.{seen}"
     if seen == "arm" and result is not None:
         index = result.worst if result.worst >= 0 else nearest_judged(result, 0.0)
-        pieces.note("The arm at the worst point of the path.")
+        pieces.note("The arm where the tip is farthest off its path.")
         arm_at(result, index, key, height, zoom=0.85)
         return
     picture = _picture(setup, reach, result, colour, unit)

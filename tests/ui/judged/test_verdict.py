@@ -92,6 +92,25 @@ def test_a_green_cut_whose_ends_lie_beyond_the_tolerance_says_so(
     assert "so it could be out of tolerance" not in tiles(simulate(setup.replace(tolerance=1e-4)))["Verdict"].ranges
 
 
+def test_one_range_leads_and_the_others_are_named_once(setup: SimulationSetup, monkeypatch: pytest.MonkeyPatch) -> None:
+    none = (float("nan"), float("nan"))
+    little = Range("as teeth come by", "computed", (2.2e-4, 2.4e-4), none, (2.4e-4, 2.6e-4), (0.73, 0.80))
+    much = Range("assumed lengths", "assumed", (2.1e-4, 3.2e-4), none, (2.3e-4, 3.3e-4), (0.70, 1.07))
+    monkeypatch.setattr(panel, "ranges_of", lambda result: (little, much))
+    monkeypatch.setattr(panel, "_ranges", lambda result, known: (little, much))
+    shown = tiles(simulate(setup))
+    assert shown["Wall error"].ranges == ["+0.210 to +0.320: assumed lengths"]
+    assert shown["Floor error"].ranges == []
+    assert shown["Verdict"].ranges == [
+        "70 % to 107 %: assumed lengths",
+        "so it could be out of tolerance",
+        "less: as teeth come by",
+    ]
+    assert panel.headline(simulate(setup)).endswith("(77 % of it used). It may be out, over assumed lengths.")
+    monkeypatch.setattr(panel, "_ranges", lambda result, known: (little,))
+    assert panel.headline(simulate(setup)) == panel.verdict_sentence(simulate(setup))
+
+
 def test_what_a_later_pass_cleans_up_is_said_and_what_is_nothing_is_left_out(setup: SimulationSetup) -> None:
     assert tiles(simulate(setup))["Tip off its path"].note == "Y +0.230, Z −0.102 · most at line 7"
     assert tiles(simulate(preset_setup("pocket_arcs")))["Tip off its path"].note.endswith(
