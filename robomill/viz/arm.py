@@ -14,6 +14,8 @@ from robomill.viz.rendered import framing
 from robomill.viz.theme import axis3d, axis_colours, figure, palette
 
 EYE = (1.30, -0.95, 0.62)
+# Of arrows: the size at which one is half as long as it gets, and how long that is, in the arm's yardstick.
+FORCE, MOVED = (50.0, 0.30), (0.125e-3, 0.255)  # N, m
 WORD = (0.24, 0.09)  # of the arm's yardstick: what a word takes, wide and high
 
 
@@ -66,12 +68,12 @@ def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str 
         beside = scene.T_MW @ np.array([-0.1275 * reach, -0.045 * reach, 0.0, 1.0])
         said.append((beside[:3], "{W}", name_colour))
     if scene.force is not None:
-        vector = _sized(scene.force, 0.20 * reach)
+        vector = scene.force * _drawn(float(np.linalg.norm(scene.force)), FORCE, reach)
         opaque += solids.arrow(tip - vector, vector * 0.96, p.accent, width)
-        upright = max(float(vector[2]), 0.0) / 0.20 / reach  # its words stand over their point, and the arrow too
+        upright = max(float(vector[2]), 0.0) / (0.20 * reach)  # its words stand over their point, and the arrow too
         said.append((tip - (far[0] + 0.25 * upright) * vector, scene.force_label, p.accent))
     if scene.displacement is not None:
-        vector = _sized(scene.displacement, 0.17 * reach)
+        vector = scene.displacement * displacement_scale(scene.displacement, scene.frames)
         opaque += solids.arrow(tip, vector, p.warm, width)
         said.append((tip + far[1] * vector, scene.displacement_label, p.warm))
     if scene.aspect is not None:
@@ -122,7 +124,7 @@ def _filling(fig: Chart, scene: ArmScene, said: list[solids.Said], dark: bool) -
 def displacement_scale(displacement: FloatArray, frames: FloatArray) -> float:
     """How many times larger than true ``arm_figure`` draws the displacement (for its caption)."""
     size = float(np.linalg.norm(displacement))
-    return 0.17 * solids.yardstick(frames) / size if size > 0 else 1.0
+    return _drawn(size, MOVED, solids.yardstick(frames)) if size > 0 else 1.0
 
 
 def _scene_layout(bounds: FloatArray, unit: str, dark: bool, revision: str, zoom: float) -> dict[str, Any]:
@@ -244,6 +246,7 @@ def _bench(lower: FloatArray, upper: FloatArray, T_MW: FloatArray, reach: float,
     return solids.trace([solids.box(low, high, T_MW)], p.link, "table", opacity=0.28, flatshading=True)
 
 
-def _sized(vector: FloatArray, length: float) -> FloatArray:
-    size = float(np.linalg.norm(vector))
-    return np.asarray(vector, dtype=float) * (length / size if size > 0 else 0.0)
+def _drawn(size: float, law: tuple[float, float], reach: float) -> float:
+    """How many times its size an arrow is long: longer for more, so that an edit is seen, and never beyond its most."""
+    half, most = law
+    return most * reach / (size + half)

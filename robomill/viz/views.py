@@ -81,7 +81,7 @@ def arm_scene(result: SimulationResult, index: int, length: str = "mm") -> ArmSc
         force=F if np.isfinite(F).all() else None,
         displacement=delta if np.isfinite(delta).all() else None,
         force_label=format_si(float(np.linalg.norm(F)), "N", 0),
-        displacement_label=format_si(float(np.linalg.norm(delta)), length, 2),
+        displacement_label=format_si(float(np.linalg.norm(delta)), length),
         cutter_radius=result.tooling.at(index).radius,
     )
 

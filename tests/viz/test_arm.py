@@ -22,6 +22,26 @@ def test_drawn_displacement_says_its_scale(result: SimulationResult) -> None:
     assert 500 < displacement_scale(scene.displacement, scene.frames) < 5000
 
 
+@pytest.mark.parametrize("what", ["force", "displacement"])
+def test_more_is_drawn_longer_and_nothing_beyond_a_third_of_the_arm(result: SimulationResult, what: str) -> None:
+    scene = replace(arm_scene(result, result.worst), part=None, path=None, T_MW=None, aspect=1.1)
+    given = getattr(scene, what)
+    assert given is not None
+    tip, other = scene.frames[-1][:3, 3], "displacement" if what == "force" else "force"
+
+    def length(times: float) -> float:
+        fig = arm_figure(replace(scene, **{what: times * given, other: None}), dark=False).figure
+        bare = arm_figure(replace(scene, **{what: None, other: None}), dark=False).figure
+        drawn, before = (np.stack([t.x, t.y, t.z], axis=1) for t in (fig.data[0], bare.data[0]))
+        new = {tuple(point) for point in drawn.tolist()} - {tuple(point) for point in before.tolist()}
+        return float(np.linalg.norm(np.array(sorted(new)) - tip, axis=1).max())
+
+    lengths = [length(times) for times in (0.5, 1.0, 1.1, 3.0, 100.0)]
+    assert lengths == sorted(lengths)
+    assert min(np.diff(lengths)) > 0.02 * lengths[1] / 2
+    assert lengths[-1] < 0.34 * yardstick(scene.frames)
+
+
 def test_the_joints_of_an_arm_with_a_held_axis_keep_their_numbers() -> None:
     robot = rm.load_robot("slavkovic_5r").replace(blocked=np.array([np.nan, 0.1, np.nan, np.nan, np.nan]))
     fig = arm_figure(ArmScene(joint_frames(robot, np.zeros(4)), joints=robot.joint_numbers), dark=False)
@@ -105,4 +125,4 @@ def test_an_arm_that_fills_its_frame_shows_the_part_too_and_has_no_axes_that_cou
     assert (corners.min(axis=0) - 1e-3 <= tip).all()
     assert (tip <= corners.max(axis=0) + 1e-3).all()
     assert not any(fig.layout.scene[f"{axis}axis"].visible for axis in "xyz")
-    assert {"100 N", "0.25 mm", "{W}", "{M}"} <= {each.text for each in fig.layout.scene.annotations}
+    assert {"100 N", "0.251 mm", "{W}", "{M}"} <= {each.text for each in fig.layout.scene.annotations}
