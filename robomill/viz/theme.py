@@ -1,8 +1,9 @@
 """Colours and layout shared by every picture, one set for light and one for dark.
 
-All figures take ``dark: bool``; none asks the screen. Joints keep one colour everywhere (Okabe and Ito), signed
-errors are blue (below the ideal, gouge) to orange (material left), sizes run through cividis: each is
-readable with any colour vision, and words stand beside the colours.
+All figures take ``dark: bool``; none asks the screen. Joints keep one colour everywhere (Tol's muted set), axes have
+theirs, and neither is a colour of what is within tolerance or out of it; signed errors are blue (below the ideal) to
+orange (material left), sizes run through cividis: each is readable with any colour vision, and words stand beside
+the colours.
 """
 
 import html
@@ -16,11 +17,11 @@ from robomill.viz.chart import Chart
 HOVERED = 4  # decimals, in mm as in inches, where one points at a curve of errors
 FONT = '"Source Sans", "Source Sans 3", "Source Sans Pro", sans-serif'
 
-JOINT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#8C7A00")
-JOINT_COLOURS_DARK = ("#4BA3DB", "#F0B73E", "#33BE95", "#DD98BE", "#F0803C", "#86CDF3", "#C9B437")
+JOINT_COLOURS = ("#332288", "#C9B44A", "#117733", "#AA4499", "#6DBDE3", "#999933", "#44AA99")
+JOINT_COLOURS_DARK = ("#8F86E0", "#E3D791", "#4FB86F", "#D07CC4", "#9ED8F2", "#BDBD5A", "#6CC7B8")
 
-AXIS_COLOURS = {"x": "#D55E00", "y": "#009E73", "z": "#0072B2"}
-AXIS_COLOURS_DARK = {"x": "#F0803C", "y": "#33BE95", "z": "#4BA3DB"}
+AXIS_COLOURS = {"x": "#882255", "y": "#6E6E1A", "z": "#4C6A85"}
+AXIS_COLOURS_DARK = {"x": "#D983AE", "y": "#C6C65E", "z": "#9DBBD6"}
 
 DIVERGING = [[0.0, "#08457E"], [0.25, "#4E93C8"], [0.5, "#ECECE8"], [0.75, "#E8954A"], [1.0, "#A33E00"]]
 DIVERGING_DARK = [[0.0, "#6FC1FF"], [0.25, "#2F7DB5"], [0.5, "#3A444B"], [0.75, "#D07A2C"], [1.0, "#FFB368"]]
