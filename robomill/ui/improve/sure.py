@@ -94,7 +94,8 @@ def _pictures(found: Uncertainty, result: SimulationResult) -> None:
     with beside:
         tornado = found.tornado
         names = [
-            each.label + (" (assumed)" if each.provenance.kind == "assumed" else "") for each in tornado.inputs[:SHOWN]
+            each.label + (" (± assumed)" if each.provenance.kind == "assumed" else "")
+            for each in tornado.inputs[:SHOWN]
         ]
         low, high = (np.asarray(from_si(end[:SHOWN], "%")) for end in (tornado.low, tornado.high))
         pieces.figure(

@@ -66,8 +66,8 @@ def strip(unit: str) -> None:
                 out = Html(' <span class="rm-card-out">out of tolerance</span>') if row.level == "out" else ""
                 pieces.note(unparted(off), out)
     pieces.note(
-        "Six example programs as this robot would mill them; under each its largest surface error, of the tolerance "
-        f"allowed. {_shown(times)}"
+        "Six examples, each with its own robot; under each its largest surface error, of the tolerance allowed. "
+        f"{_shown(times)}"
     )
 
 

@@ -3,6 +3,7 @@
 import html
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,7 @@ DOORS = (
     ("I teach", "Why does a robot bend sideways?", file_of("Learn"), "Start the lesson"),
 )
 CHECKED = "start.checked"
+OPENED, STIFFEN = "improve.remedy", "stiffen"  # what the Improve page shows opened
 KINDS = {"paper": "published", "user": "of your own"}  # as one counts them; the others are their own word
 
 
@@ -140,7 +142,17 @@ def doors(take: Callable[[bytes, str], None]) -> None:
         for title, text, page, label in DOORS:
             with st.container(border=True, key=f"door-{label.split()[-1]}", height="stretch"):
                 _door(title, text)
-                st.page_link(page, label=label, icon=":material/arrow_forward:")
+                _lead(page, label)
+
+
+def _lead(page: str, label: str) -> None:
+    """To the page of a door, which opens at what the door says."""
+    if page == file_of("Learn"):
+        st.page_link(page, label=label, icon=":material/arrow_forward:")
+        return
+    open_at = partial(session.keep, OPENED, STIFFEN)
+    if st.button(label, key="start.stiffen", icon=":material/arrow_forward:", on_click=open_at):
+        st.switch_page(page)
 
 
 def _door(title: str, text: str) -> None:
