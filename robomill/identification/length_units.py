@@ -1,10 +1,12 @@
-"""Lengths under another unit than their header's: inches as mm, a wrong prefix. Told by what they would explain."""
+"""Lengths under another unit than their header's, of the tests or of the robot: told by what they would explain."""
 
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
-from robomill.errors import LoadTestError
+from robomill.errors import LoadTestError, RobotError
 from robomill.identification.configurations import OTHER_UNITS
 from robomill.identification.fit.models import Model
 from robomill.identification.fit.system import build_system
@@ -27,7 +29,7 @@ MOST = 100  # tests that are looked at; more are thinned evenly
 
 
 def length_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
-    """Points or pulleys that explain the readings far better in another unit."""
+    """Points, pulleys or lengths of the robot that explain the readings far better in another unit."""
     tests = tests.thinned(MOST)
     stated = _left_over(robot, tests)
     if stated < WELL:
@@ -43,7 +45,14 @@ def length_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
             for slip, times in OTHER_UNITS.items():
                 scaled = replace(tests, **{key: start + far[key] * times for key, start in stated_from.items()})
                 found[what, slip] = min(_left_over(robot, scaled), found.get((what, slip), np.inf))
-    (what, slip), least = min(found.items(), key=lambda each: each[1], default=(("", ""), np.inf))
+    for what, scaled_by in _lengths_of(robot).items():
+        for slip, times in OTHER_UNITS.items():
+            with suppress(RobotError):  # no robot has lengths like that
+                found[what, slip] = _left_over(scaled_by(times), tests)
+    # Of two that explain the readings alike (lengths a a thousand times longer, d as much shorter) the larger is meant.
+    (what, slip), least = min(
+        found.items(), key=lambda each: (round(each[1], 6), -OTHER_UNITS[each[0][1]]), default=(("", ""), np.inf)
+    )
     if not np.isfinite(stated) or least * BETTER > stated:
         return ()
     was, now = format_percent(stated), format_percent(least)
@@ -52,6 +61,22 @@ def length_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
         "unit right?"
     )
     return (Finding("suspicious", text, code="length-unit"),)
+
+
+def _lengths_of(robot: Robot) -> dict[str, Callable[[float], Robot]]:
+    """The robot with some of its lengths times a factor, where it has any."""
+
+    def tool(times: float) -> Robot:
+        T = np.array(robot.T_tool)
+        T[:3, 3] *= times
+        return robot.replace(T_tool=T)
+
+    every: dict[str, tuple[bool, Callable[[float], Robot]]] = {
+        "the robot's lengths a": (bool(robot.a.any()), lambda times: robot.replace(a=robot.a * times)),
+        "the robot's lengths d": (bool(robot.d.any()), lambda times: robot.replace(d=robot.d * times)),
+        "the tool's place on the flange": (bool(robot.T_tool[:3, 3].any()), tool),
+    }
+    return {what: scaled for what, (there, scaled) in every.items() if there}
 
 
 def _left_over(robot: Robot, tests: LoadTests) -> float:

@@ -8,6 +8,7 @@ from robomill.identification.fit.models import Model
 from robomill.identification.fit.system import build_system
 from robomill.identification.length_units import length_suspicions
 from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.other_axes import axes_suspicions
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.robot.sources import block_in_force
@@ -29,8 +30,10 @@ def suspicions(tests: LoadTests | JointTests, robot: Robot | None = None) -> tup
     """
     if tests.single:
         return _joint_suspicions(tests, robot)
-    lengths = () if robot is None or tests.theta is None else length_suspicions(robot, tests)
-    return (*_signs(tests), *_sizes(tests, robot), *lengths, *_repeats(tests))
+    explained: tuple[Finding, ...] = ()
+    if robot is not None and tests.theta is not None:
+        explained = length_suspicions(robot, tests) or axes_suspicions(robot, tests)
+    return (*_signs(tests), *_sizes(tests, robot), *explained, *_repeats(tests))
 
 
 def _signs(tests: LoadTests) -> list[Finding]:

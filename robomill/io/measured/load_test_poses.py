@@ -43,15 +43,29 @@ def poses(table: Columns, robot: Robot | None) -> dict[str, Any]:
         for k, (number, key) in enumerate(joints, 1):
             if number != k:
                 raise table.place.refuse(f"found {table.written(key)} but no theta{k}_deg; number the joints from 1.")
-        return {"theta": np.stack([table.values[key] for _, key in joints], axis=-1)}
+        return {"theta": np.stack([table.values[key] for _, key in joints], axis=-1), "findings": _unused(table)}
     turned = _turned(table)
     if turned is None:
         x_M = group(table, WORLD)
         if x_M is None:
             raise table.place.refuse("no pose columns; give theta1_deg to thetaN_deg, or X_mm,Y_mm,Z_mm,A_deg,B_deg.")
-        return {"x_M": x_M}
+        return {"x_M": x_M, "findings": _unused(table)}
     (p, R), how = turned
     return _of_frame(table, robot, transform(R, p), how)
+
+
+def _unused(table: Columns) -> tuple[Finding, ...]:
+    """Remarks on what poses with three angles mean, where there are none."""
+    head = head_of(table)
+    said = [f"'{key}: {head[key]}'" for key in ("frame", "angles") if key in head]
+    if not said:
+        return ()
+    text = (
+        f"{' and '.join(said)} is said of poses with three angles, of which there are none here, and is not used: "
+        "forces, displacements and pulleys are read along the axes of {M}; turn them there if they were taken in the "
+        "tool's or flange's frame."
+    )
+    return (Finding("suspicious", text, table.place.head, code="frame-unused"),)
 
 
 def _turned(table: Columns) -> tuple[tuple[FloatArray, FloatArray], str] | None:

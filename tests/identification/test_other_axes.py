@@ -1,0 +1,61 @@
+"""Numbers taken along other axes than {M}'s, and robots whose lengths stand in two units, are suspected aloud."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from tests.identification.cables import Arm, Rig, as_csv, make
+
+ARM, ROBOT = Arm.of("kuka_kr270"), rm.load_robot("kuka_kr270")
+TIP = ARM.T_FT[:3, 3]
+RIG = Rig(load_point=TIP, gauge_point=TIP, pulleys=((3.4, -2.2, 1.6), (-1.0, 3.0, 0.2), (2.0, 1.0, 4.0)))
+MADE = make(ARM, RIG, 30, seed=2)
+TOOL = np.array([ARM.frames(q)[-1][:3, :3] @ ARM.T_FT[:3, :3] for q in MADE.q])
+TURN = np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1.0]])
+
+
+def said(robot, F, moved):
+    tests = rm.LoadTests(F, moved, theta=MADE.q)
+    return {f.code: f.message for f in rm.identify(robot, tests).findings}
+
+
+def in_tool(vectors):
+    return np.array([R.T @ v for R, v in zip(TOOL, vectors, strict=True)])
+
+
+@pytest.mark.parametrize(
+    ("F", "moved", "words"),
+    [
+        (in_tool(MADE.F), in_tool(MADE.moved), "frame of the tool for forces and displacements"),
+        (in_tool(MADE.F), MADE.moved, "frame of the tool for forces alone"),
+        (MADE.F, in_tool(MADE.moved), "frame of the tool for displacements alone"),
+        (MADE.F @ TURN.T, MADE.moved @ TURN.T, "as -y, x and z for forces and displacements"),
+        (MADE.F, MADE.moved[:, [1, 0, 2]], "as y, x and z for displacements"),
+        (MADE.F[:, [0, 2, 1]], MADE.moved, "as x, z and y for forces"),
+    ],
+)
+def test_other_axes_are_suspected(F, moved, words):
+    assert words in said(ROBOT, F, moved)["axes"]
+
+
+def test_what_is_right_or_noisy_is_not_suspected():
+    assert "axes" not in said(ROBOT, MADE.F, MADE.moved)
+    for seed in range(10):
+        noisy = MADE.moved + 2e-4 * np.random.default_rng(seed).standard_normal(MADE.moved.shape)
+        assert "axes" not in said(ROBOT, MADE.F, noisy)
+
+
+@pytest.mark.parametrize("name", ["a", "d"])
+def test_lengths_of_the_robot_in_metres_beside_millimetres_are_suspected(name):
+    odd = ROBOT.replace(**{name: getattr(ROBOT, name) / 1000})
+    assert f"Read as m under a header in mm, the robot's lengths {name}" in said(odd, MADE.F, MADE.moved)["length-unit"]
+    assert "length-unit" not in said(ROBOT, MADE.F, MADE.moved)
+
+
+def test_a_frame_said_of_joints_is_not_passed_over():
+    text = "# frame: tool\n" + as_csv(ARM, MADE, TIP, TIP)
+    found = {f.code: f for f in rm.read_load_tests(text, ROBOT).findings}
+    assert found["frame-unused"].level == "suspicious"
+    assert "axes of {M}" in found["frame-unused"].message
