@@ -37,6 +37,8 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
         inputs.model_choice(kept, robot)
         if result is not None:
             points.offer(kept, result)
+            points.bending(result)
+            results.leave_out(kept, result)
             inputs.use(kept, robot, result)
     with right:
         if result is None and refusal is not None:

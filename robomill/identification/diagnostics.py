@@ -14,7 +14,7 @@ from robomill.wording import listed
 
 ALIKE = 0.7  # correlation from which two parameters are said to be confused
 CONDITION_WARNING = 100.0
-MISSES = 0.05  # share of the displacement, on poses left out, from which a model is said to miss it
+MANY = 0.1  # share of the rows from which outliers speak against the model rather than the readings
 COLLINEAR = 1e-10  # 1 - |cosine| below which two columns are one
 
 
@@ -50,26 +50,31 @@ def twins(system: System) -> dict[int, int]:
     return found
 
 
-def outliers(system: System, row: IntArray) -> tuple[Outlier, ...]:
-    """Tests further from the robust fit than normal noise puts any number once in a hundred data sets."""
+def scatter(system: System) -> tuple[FloatArray, FloatArray, float]:
+    """By a robust fit: residuals (e,) measured minus predicted, the standard deviation (e,) of each, and how many of
+    these normal noise puts between any number and its prediction once in a hundred data sets; infinite where unknown.
+    """
     from scipy.special import stdtrit
 
     e = len(system.b)
-    A, b = system.A / system.noise[:, None], system.b / system.noise
-    dof = e - A.shape[1]
-    if dof < 3:
+    dof = e - system.A.shape[1]
+    robust = robust_fit(system.A / system.noise[:, None], system.b / system.noise)
+    limit = float(stdtrit(dof, 1.0 - 0.01 / (2.0 * e))) if dof >= 3 and robust.scale > 0.0 else np.inf
+    return robust.residual * system.noise, robust.scale * system.noise, limit
+
+
+def outliers(system: System, row: IntArray) -> tuple[Outlier, ...]:
+    """Tests further from the robust fit than normal noise puts any number once in a hundred data sets."""
+    residual, spread, limit = scatter(system)
+    if not np.isfinite(limit):
         return ()
-    robust = robust_fit(A, b)
-    if robust.scale == 0.0:
-        return ()
-    miss = np.abs(robust.residual) / robust.scale
-    limit = float(stdtrit(dof, 1.0 - 0.01 / (2.0 * e)))
+    miss = np.abs(residual) / spread
     found: dict[int, Outlier] = {}
     for k in np.flatnonzero(miss > limit):
         number = int(row[system.test[k]])
         best = found.get(number)
         if best is None or miss[k] > best.times:
-            found[number] = Outlier(number, float(miss[k]), float(robust.residual[k] * system.noise[k]))
+            found[number] = Outlier(number, float(miss[k]), float(residual[k]))
     return tuple(sorted(found.values(), key=lambda outlier: -outlier.times))
 
 
@@ -164,15 +169,3 @@ def fit_findings(system: System, fit: Fit, active: tuple[str, ...], lumped: dict
         )
         found.append(Finding("warning", text, code="above-stated-noise"))
     return found
-
-
-def model_findings(error: float) -> tuple[Finding, ...]:
-    """Said where a model misses poses left out by much (a share): its intervals know what chance does, not that."""
-    if not error > MISSES:
-        return ()
-    text = (
-        f"Poses left out are missed by {format_si(error, '%', 0)}: that is noise, or something is missing from this "
-        "model (a spring, a joint that bends, another load or gauge point, a joint's zero), and then a compliance can "
-        "be off by more than its interval says, which knows scatter only."
-    )
-    return (Finding("warning", text, code="model-misses"),)

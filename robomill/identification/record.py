@@ -5,6 +5,8 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.identification.fit.suspects import Suspect
+from robomill.identification.fit.treatment import AUTO
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.pull.found_points import FoundPoint
 from robomill.identification.pull.lines_of_pull import LinesOfPull, lines_of_pull
@@ -50,6 +52,11 @@ def identification_report(result: IdentificationResult) -> dict[str, Any]:
         "cv_relative_error": plain(result.cv_relative_error),
         "cv_leaves_out": result.treatment.leave_out,
         "outliers": [outlier.row for outlier in result.outliers],
+        "outlier_slips": [
+            {"row": outlier.row, "times": outlier.times, "slips": [vars(slip) for slip in outlier.slips]}
+            for outlier in result.outliers
+        ],
+        "suspects": [suspect_record(suspect) for suspect in result.inquest.suspects],
         "unseen_joints": [unseen.joint for unseen in result.unseen_joints],
         "model": result.model,
         "bending_joints": list(result.choice.bending_joints) if result.choice.has("bending") else [],
@@ -67,6 +74,14 @@ def identification_report(result: IdentificationResult) -> dict[str, Any]:
             "cv_relative_error": plain(result.offer.after),
             "points": {NAMES[point.point]: point_record(point) for point in result.offer.points},
         },
+        "bending_offer": None
+        if result.bends is None
+        else {
+            "bending": AUTO,
+            "bending_joints": list(result.bends.joints),
+            "cv_relative_error_before": plain(result.bends.before),
+            "cv_relative_error": plain(result.bends.after),
+        },
         "band": None
         if band is None
         else {
@@ -77,6 +92,21 @@ def identification_report(result: IdentificationResult) -> dict[str, Any]:
             "held": plain(band.held),
             "components": band.components,
         },
+    }
+
+
+def suspect_record(suspect: Suspect) -> dict[str, object]:
+    """A cause that the readings call for: how likely by chance, and the error on poses left out with it."""
+    cause = suspect.cause
+    return {
+        "cause": cause.kind,
+        "joint": cause.at or None,
+        "axes": ("link after" if cause.turned else "link before") if cause.kind == "bending" else None,
+        "points": cause.points or None,
+        "chance": suspect.chance,
+        "cv_relative_error": plain(suspect.error),
+        "off": plain(suspect.off),
+        "off_half95": plain(suspect.half),
     }
 
 

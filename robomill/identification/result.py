@@ -17,12 +17,13 @@ from robomill.errors import LoadTestError
 from robomill.frames import Columns
 from robomill.identification.fit.model_error import ModelError
 from robomill.identification.fit.models import Model, Parameter
+from robomill.identification.fit.suspects import UNASKED, BendingOffer, Inquest
 from robomill.identification.fit.treatment import STANDARD, Treatment
 from robomill.identification.pull.found_points import FoundPoint, Offer
 from robomill.lazy import cached_property
 from robomill.provenance import Finding, Kind, Provenance
 from robomill.robot.model import Robot
-from robomill.units import format_count, format_percent, format_value, from_si
+from robomill.units import format_count, format_number, format_percent, format_value, from_si
 from robomill.values import Tabled
 
 IDENTIFIED = "compliance.identified"  # the block of a robot's provenance
@@ -36,12 +37,27 @@ class Condition(NamedTuple):
 
 
 @dataclass(frozen=True)
+class Slip:
+    """What may have happened to a row: its kind ("sign", "unit", "swapped", "neighbour"), and in words."""
+
+    kind: str
+    says: str
+
+
+@dataclass(frozen=True)
 class Outlier:
-    """A test that does not fit the others: its row, how many robust standard deviations off, and by how much (m)."""
+    """A test that does not fit the others: its row, how many robust standard deviations off, by how much (m), and the
+    slips either of which would explain it."""
 
     row: int
     times: float
     residual: float
+    slips: tuple[Slip, ...] = ()
+
+    def sentence(self) -> str:
+        """The row and what is wrong with it, "row 5 (18 times the usual scatter: the sign of dx is turned)"."""
+        why = " or ".join(slip.says for slip in self.slips)
+        return f"row {self.row} ({format_number(self.times, 0)} times the usual scatter{': ' * bool(why)}{why})"
 
 
 @dataclass(frozen=True)
@@ -80,7 +96,8 @@ class IdentificationResult(Tabled):
     outliers, unseen_joints, active_bounds (labels of parameters held at zero), lumped (extra springs that move
     exactly as another one and are counted with it), findings, row (m,) of each test; treatment: what was chosen;
     points: those that were fitted; band: what predictions miss beyond the fit's noise, None where it is not known;
-    offer: points that are worth fitting, where they were not; votes: the joints at which links bend as chosen with
+    offer: points that are worth fitting, where they were not; bends: links that are worth letting bend; inquest: what
+    the readings call for besides the model; votes: the joints at which links bend as chosen with
     each fold left out, where that was left to the tests.
 
     Examples
@@ -124,6 +141,8 @@ class IdentificationResult(Tabled):
     band: Band | None = None
     votes: tuple[tuple[int, ...], ...] = ()
     offer: Offer | None = None
+    bends: BendingOffer | None = None
+    inquest: Inquest = UNASKED
 
     @property
     def single(self) -> bool:
@@ -267,6 +286,11 @@ class IdentificationResult(Tabled):
         """The robot with these compliances ("measured"); joints that were not seen keep the robot's own values."""
         if not self.has_joints:
             raise LoadTestError("The constant model has no joint compliances to give to a robot.")
+        if self.dof <= 0 and not np.isfinite(self.parameter_stderr).any():
+            raise LoadTestError(
+                f"{format_count(self.equations, 'measured number')} for as many unknowns: nothing is left to say how "
+                "sure the compliances are, so no robot is given them; measure at more poses or in more directions."
+            )
         if not self.gives:
             raise LoadTestError(
                 "No joint gives way by these tests: each came out rigid or is not seen, which no arm is; look at the "

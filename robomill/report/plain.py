@@ -255,6 +255,4 @@ def identification_lines(record: dict[str, Any]) -> list[str]:
         lines.append(f"95 % bands: {band['made_of']}; {held}")
     if record["unseen_joints"]:
         lines.append(f"not seen by these tests: joint {', '.join(map(str, record['unseen_joints']))}")
-    if record["outliers"]:
-        lines.append(f"do not fit the others: row {', '.join(map(str, record['outliers']))}")
     return lines + finding_lines(record["findings"])

@@ -124,14 +124,25 @@ def leave_out(folds: int, choose: Choose) -> Missed:
 def relative_by_pose(system: System, missed: FloatArray, weights: FloatArray | None = None) -> FloatArray:
     """(poses,) |missed| / |measured| from the errors (e,) of all equations; NaN where nothing moved or is not known.
 
-    What robust weights have switched off as gross is not counted: it is no measure of the model.
+    Rows that robust weights have switched off as gross are not counted (``good``): they are no measure of the model.
     """
     poses = int(system.pose.max()) + 1
-    linear = system.linear if weights is None else system.linear & (weights > 0.0)
+    linear = system.linear & good(system, weights)
     error = np.bincount(system.pose[linear], missed[linear] ** 2, minlength=poses)
     size = np.bincount(system.pose[linear], system.b[linear] ** 2, minlength=poses)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(size > 0, np.sqrt(error / size), np.nan)
+
+
+def good(system: System, weights: FloatArray | None) -> BoolArray:
+    """(e,) equations of tests none of whose readings robust weights have switched off as gross.
+
+    A row of which one reading is gross is wrong as a whole: what is left of it fits by chance, and a share of a small
+    remainder would be any number.
+    """
+    if weights is None:
+        return np.ones(len(system.b), dtype=bool)
+    return np.asarray(np.bincount(system.test, weights <= 0.0)[system.test] == 0)
 
 
 def headline(errors: Sequence[float] | FloatArray) -> float:

@@ -12,12 +12,15 @@ import numpy as np
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
 from robomill.identification import diagnostics
-from robomill.identification.fit.crossvalidation import Folded, Missed, headline, leave_out, relative_by_pose
+from robomill.identification.fit.causes import Inquiry
+from robomill.identification.fit.crossvalidation import Folded, Missed, good, headline, leave_out, relative_by_pose
+from robomill.identification.fit.doubts import bending_offer, model_findings
 from robomill.identification.fit.fitting import Fitted, fit_system
 from robomill.identification.fit.folds import folds_of
 from robomill.identification.fit.model_error import Errors, held, model_error
 from robomill.identification.fit.models import Model
 from robomill.identification.fit.selection import Candidates
+from robomill.identification.fit.suspects import UNASKED
 from robomill.identification.fit.system import System, build_system
 from robomill.identification.fit.treatment import AUTO, BENDING_JOINTS, STANDARD, Treatment
 from robomill.identification.load_test import JointTests, LoadTests
@@ -26,6 +29,7 @@ from robomill.identification.pull.lines_of_pull import lines_of_pull
 from robomill.identification.pull.offer import offer_of
 from robomill.identification.pull.points import Point, at_shift
 from robomill.identification.result import Band, Condition, IdentificationResult
+from robomill.identification.slips import outlier_findings, with_slips
 from robomill.identification.suspicion import suspicions
 from robomill.robot.model import Robot
 
@@ -63,18 +67,24 @@ def identify(
         tests = tests.moved(robot, fitted.found.shift[:3])  # cables aimed from the point found: a law linear about it
     missed = candidates.missed()
     result = _result(robot, tests, choice, fitted)
-    offer = offer_of(robot, tests, choice, treatment)
     error = headline(relative_by_pose(fitted.system, missed.error, fitted.weights))
+    inquest = UNASKED
+    if choice.has("joint"):
+        inquest = Inquiry.of(robot, tests, result, treatment, fitted).inquest()
+    offer = offer_of(robot, tests, choice, treatment, inquest)
+    bends = bending_offer(candidates, model, inquest, error)
     points = found_points(robot, stated, treatment.freed, fitted.found, tests.force_point - stated.force_point)
     return replace(
         result,
         findings=(
             *result.findings,
-            *diagnostics.model_findings(error),
+            *model_findings(robot, inquest),
             *point_findings(points),
-            *(() if offer is None else (offer.finding(),)),
+            *(each.finding() for each in (offer, bends) if each is not None),
         ),
         offer=offer,
+        bends=bends,
+        inquest=inquest,
         cv_relative_error=error,
         points=points,
         band=_band(_errors(robot, tests, choice, fitted, missed), result.dof),
@@ -113,7 +123,7 @@ def _errors(robot: Robot, tests: LoadTests, choice: Model, fitted: Fitted, misse
     else:
         size2 = ((at_shift(choice.terms(robot, tests, freed)[:, :3], fitted.found.shift, freed) @ x) ** 2).sum(axis=1)
     size = np.sqrt(size2)[system.test]
-    counted = system.linear if fitted.weights is None else system.linear & (fitted.weights > 0.0)
+    counted = system.linear & good(system, fitted.weights)
     load = np.linalg.norm(tests.wrench[:, :3], axis=1)[system.test]
     return Errors(missed.error, missed.variance, size, load, missed.fold).chosen(counted)
 
@@ -131,13 +141,15 @@ def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: 
     active = tuple(p.label for k, p in enumerate(system.parameters) if negative[k] and fit.seen[k] and not p.signed)
     found = diagnostics.fit_findings(system, fit, active, lumped)
     interval = fit.interval(system.signed)
+    odd = with_slips(robot, tests, choice, fitted, diagnostics.outliers(system, tests.row))
+    unjudged = fit.dof <= 0 and not system.stated
     denied = np.isinf(interval[:, 1]) & (fit.free < 0.0)
     return IdentificationResult(
         choice=choice,
         labels=system.parameters,
         parameters=frozen(fit.x),
         covariance=frozen(fit.covariance),
-        parameter_stderr=frozen(np.where(denied, np.inf, fit.stderr)),
+        parameter_stderr=frozen(np.where(denied | unjudged, np.inf, fit.stderr)),
         parameter_ci95=frozen(interval),
         correlation=frozen(diagnostics.correlation(fit.covariance)),
         n=robot.n,
@@ -153,12 +165,12 @@ def _result(robot: Robot, tests: LoadTests | JointTests, choice: Model, fitted: 
         components=tests.components,
         kind=tests.provenance.kind,
         share=frozen(share),
-        outliers=diagnostics.outliers(system, tests.row),
+        outliers=odd,
         unseen_joints=diagnostics.unseen_joints(fit, system.parameters, share),
         active_bounds=active,
         explanations=tuple(diagnostics.sentence(fit, system.parameters, share, k) for k in range(len(fit.x))),
         lumped=lumped,
-        findings=(*tests.findings, *suspicions(tests, robot), *found),
+        findings=(*tests.findings, *suspicions(tests, robot), *found, *outlier_findings(odd, len(tests))),
     )
 
 

@@ -64,7 +64,7 @@ class Candidates:
                 checkpoint()
                 found = {bend: score for bend in self._next(best) if (score := self._score(bend, left)) is not None}
                 bend = min(found, key=found.__getitem__, default=NONE)
-                if bend == NONE or not _pays(found[bend], error):
+                if bend == NONE or not pays(found[bend], error):
                     break
                 best, error = bend, found[bend]
             self.chosen[left] = best
@@ -76,7 +76,7 @@ class Candidates:
         if self.robot.joint_numbers[-1] in still[0]:
             return still
         before, after = (self._score(bend, left) for bend in (still, turned))
-        return turned if before is not None and after is not None and _pays(after, before) else still
+        return turned if before is not None and after is not None and pays(after, before) else still
 
     def _next(self, bend: Bend) -> list[Bend]:
         """The same with one joint more; the last joint moves the tool alone, where a turned axis has no next frame."""
@@ -111,6 +111,6 @@ class Candidates:
         return [list(self.bends(frozenset({k}))[0]) for k in range(int(self.fold.max()) + 1)]
 
 
-def _pays(after: float, before: float) -> bool:
+def pays(after: float, before: float) -> bool:
     """Whether an error on poses left out has become so much smaller that it was worth another spring."""
     return before > EXACT and after < PAYS * before

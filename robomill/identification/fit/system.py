@@ -104,10 +104,7 @@ def build_system(
         return _joint_system(robot, tests, model, freed)
     tests = tests.with_joints(robot)
     parameters = model.parameters(robot)
-    D = model.terms(robot, tests, freed)
-    if tests.gauges is not None:
-        D = np.concatenate([np.einsum("mgc,mckp->mgkp", tests.gauges, D[:, :3]), D[:, 3:]], axis=1)
-    measured = np.isfinite(tests.displacement) & np.isfinite(D[:, :, 0, 0])
+    terms, measured = measured_terms(robot, tests, model, freed)
     if not measured.any():
         raise LoadTestError("Load tests: nothing measured that this model predicts; give displacements.")
     test, component = np.nonzero(measured)
@@ -115,7 +112,6 @@ def build_system(
     noise, stated = _noise(tests.noise)
     if by_size:
         noise, stated = noise * _sizes(tests), False
-    terms = D[measured]
     system = System(
         terms[:, 0],
         tests.displacement[measured],
@@ -130,6 +126,17 @@ def build_system(
     )
     _refuse_too_few(system, len(np.unique(pose)), model, len(tests))
     return system if system.linear.all() else _balance_kinds(system)
+
+
+def measured_terms(
+    robot: Robot, tests: LoadTests, model: Model, freed: tuple[Point, ...] = ()
+) -> tuple[FloatArray, BoolArray]:
+    """(e, k, p) terms of the readings that were taken and the model predicts, and which (m, 6) these are."""
+    D = model.terms(robot, tests, freed)
+    if tests.gauges is not None:
+        D = np.concatenate([np.einsum("mgc,mckp->mgkp", tests.gauges, D[:, :3]), D[:, 3:]], axis=1)
+    measured = np.isfinite(tests.displacement) & np.isfinite(D[:, :, 0, 0])
+    return D[measured], np.asarray(measured)
 
 
 def _sizes(tests: LoadTests) -> FloatArray:

@@ -74,6 +74,15 @@ def offer(bench: Bench, result: IdentificationResult) -> None:
         inputs.button("Take the points as stated", "identification.stated", "undo", *back, width="stretch")
 
 
+def bending(result: IdentificationResult) -> None:
+    """The button that lets the tests say where links bend, where that is worth it."""
+    if result.bends is not None:
+        bend = (decided("bending_auto"), True)
+        inputs.button(
+            "Let the tests say where links bend", "identification.bend", "auto_fix_high", *bend, width="stretch"
+        )
+
+
 def _row(name: str, point: FoundPoint, unit: str) -> tuple[str, str, str]:
     half = np.ptp(point.ci95, axis=1) / 2
     place = format_many(point.in_flange, unit, 1, with_unit=False)

@@ -6,6 +6,7 @@ import numpy as np
 import streamlit as st
 
 from robomill.identification.result import IdentificationResult
+from robomill.identification.slips import outlier_findings
 from robomill.report.tags import Html
 from robomill.robot.model import Robot
 from robomill.ui import pieces, session
@@ -154,17 +155,8 @@ def _outliers(bench: Bench, result: IdentificationResult) -> None:
     if not rows and not bench.excluded:
         st.info("Every test fits the others; nothing is left out.", icon=":material/check_circle:")
         return
-    if rows:
-        unit = "urad" if result.single else session.project().view.of("um")
-        named = "; ".join(
-            f"row {o.row}: {format_si(abs(o.residual), unit, 0)}, {format_number(o.times, 0)} times the usual"
-            for o in result.outliers[:6]
-        )
-        more = f"; and {len(rows) - 6} more" if len(rows) > 6 else ""
-        words = f"{len(rows)} tests do not fit the others ({named}{more}). They are used until you leave them out."
-        pieces.said("warning", words, "flag")
-        if len(rows) > 0.1 * len(result.row):
-            pieces.note("So many at once speak against the model rather than against the readings: compare the models.")
+    for finding in outlier_findings(result.outliers, len(result.row)):
+        pieces.said("warning", finding.message, "flag")
     flagged = tuple(sorted({*rows, *bench.excluded}))
     inputs.several(
         "Rows left out",
@@ -173,12 +165,16 @@ def _outliers(bench: Bench, result: IdentificationResult) -> None:
         bench.excluded,
         lambda chosen: decide(excluded=tuple(sorted(chosen))),
     )
-    left, right = st.columns(2)
-    leave_out = decided("excluded")
+    every = ("identification.use_all", "undo", decided("excluded"), ())
+    inputs.button("Use every row again", *every, disabled=not bench.excluded)
+
+
+def leave_out(bench: Bench, result: IdentificationResult) -> None:
+    """The button that leaves out the rows that do not fit (they are named among the findings)."""
+    rows = [o.row for o in result.outliers]
+    if not rows:
+        return
+    flagged = tuple(sorted({*rows, *bench.excluded}))
     these = "this row" if len(rows) == 1 else f"these {len(rows)} rows"
-    with left:
-        out = ("identification.leave_these_out", "filter_alt", leave_out, flagged)
-        inputs.button(f"Leave out {these} and refit", *out, disabled=not rows, width="stretch")
-    with right:
-        every = ("identification.use_all", "undo", leave_out, ())
-        inputs.button("Use every row again", *every, disabled=not bench.excluded, width="stretch")
+    out = ("identification.leave_these_out", "filter_alt", decided("excluded"), flagged)
+    inputs.button(f"Leave out {these} and refit", *out, width="stretch")

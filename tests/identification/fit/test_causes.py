@@ -1,0 +1,122 @@
+"""What is missing from a model is named: links that bend, the tool, points, a joint's zero; noise calls for nothing.
+
+The readings are those of ``cables.py``: springs turned one by one by rotation matrices, nothing of the product.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.identification.record import identification_report
+from tests.identification.cables import Arm, Rig, as_csv, make, postures
+
+ARM, ROBOT = Arm.of("kuka_kr270"), rm.load_robot("kuka_kr270")
+TIP = ARM.T_FT[:3, 3]
+
+
+def pulled(seed=0, count=40, stated=TIP, zero=None, grow=0.0, **rig):
+    """Tests at the tip, pulled in any direction; ``zero`` (6,) rad by which the arm stands from the stated angles."""
+    rng = np.random.default_rng([5, seed])
+    q = postures(ARM, count, rng)
+    made = make(ARM, Rig(**{"load_point": TIP, "gauge_point": TIP, **rig}), count, seed, q)
+    F = rng.standard_normal((count, 3))
+    F *= (rng.uniform(200.0, 600.0, count) / np.linalg.norm(F, axis=1))[:, None]
+    point, bending, noise = rig.get("load_point", TIP), rig.get("bending", {}), rig.get("noise", 4e-6)
+    moved = np.array([ARM.yields(a, point, TIP, f, bending) for a, f in zip(q, F, strict=True)])
+    moved = moved * (1.0 + grow * rng.standard_normal(moved.shape)) + noise * rng.standard_normal(moved.shape)
+    said = q if zero is None else q - np.asarray(zero)
+    return rm.read_load_tests(as_csv(ARM, replace(made, q=said, F=F, moved=moved), stated, TIP), ROBOT)
+
+
+def codes(result):
+    return [finding.code for finding in result.findings]
+
+
+@pytest.mark.parametrize("noise", [4e-6, 2e-5, 4e-5])
+def test_a_link_that_bends_is_offered_however_small_the_error_is(noise):
+    """Joint 1 is wrong by dozens of its standard errors while poses left out are missed by a few percent."""
+    tests = pulled(bending={2: (4e-7, 2e-7)}, noise=noise, count=60)
+    plain = rm.identify(ROBOT, tests)
+    assert abs(plain.C_theta[0] - ARM.C_theta[0]) > 8 * plain.stderr[0]
+    assert {"model-misses", "bending-pays"} <= set(codes(plain))
+    assert plain.bends.joints == (2,)
+    auto = rm.identify(ROBOT, tests, bending="auto")
+    assert auto.cv_relative_error == pytest.approx(plain.bends.after)
+    assert {"model-misses", "bending-pays"} & set(codes(auto)) == set()
+    assert abs(auto.C_theta[0] - ARM.C_theta[0]) < 4 * auto.stderr[0]
+    record = identification_report(plain)
+    assert record["bending_offer"]["bending_joints"] == [2]
+    assert record["suspects"][0]["cause"] == "bending"
+
+
+def alarms(seeds, noise, count):
+    """How many sets of tests with noise alone are said to lack something."""
+    said = {"model-misses", "bending-pays", "joint-zero", "fit-force", "fit-gauge", "fit-both"}
+    results = (rm.identify(ROBOT, pulled(seed, count, noise=noise)) for seed in seeds)
+    return sum(bool(said & set(codes(result))) for result in results)
+
+
+@pytest.mark.parametrize(("count", "noise"), [(8, 2e-4), (20, 2e-5)])
+def test_noise_alone_calls_for_nothing(count, noise):
+    assert alarms(range(10), noise, count) <= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [8, 30])
+def test_noise_alone_calls_for_nothing_in_a_hundred_sets(count):
+    assert alarms(range(100), 5e-5, count) <= 3
+
+
+@pytest.mark.parametrize("joint", [2, 3])
+def test_a_joints_zero_is_not_blamed_on_the_load_point(joint):
+    off = np.radians(3.0) * (np.arange(6) == joint - 1)
+    result = rm.identify(ROBOT, pulled(zero=off, count=60))
+    assert result.offer is None
+    first = result.inquest.likeliest[0]
+    assert (first.cause.kind, first.cause.at) == ("zero", joint)
+    assert np.degrees(first.off) == pytest.approx(3.0, abs=0.5)
+    said = next(f.message for f in result.findings if f.code == "joint-zero")
+    assert f"Joint {joint} seems to stand +" in said
+
+
+def test_a_load_point_is_not_blamed_on_a_joints_zero():
+    off = np.array([0.09, 0.096, -0.072])
+    result = rm.identify(ROBOT, pulled(load_point=TIP + off, stated=TIP))
+    assert result.offer.fit_points == "force"
+    assert "joint-zero" not in codes(result)
+
+
+def test_a_spring_of_the_tool_is_named():
+    tests = pulled(noise=2e-5, count=60)
+    F = tests.wrench[:, :3]
+    soft = replace(tests, displacement=tests.displacement + np.pad(3e-7 * F, ((0, 0), (0, 3))))
+    result = rm.identify(ROBOT, soft)
+    assert result.inquest.likeliest[0].cause.kind == "tool"
+    assert "a spring of the tool" in next(f.message for f in result.findings if f.code == "model-misses")
+
+
+def test_what_grows_with_the_displacement_is_said():
+    result = rm.identify(ROBOT, pulled(grow=0.1, noise=1e-7, count=60))
+    assert result.inquest.growth < 1e-3
+    assert "model-misses" in codes(result)
+
+
+def test_an_arm_unlike_any_model_is_told_by_poses_loaded_three_ways():
+    """Every pose has a symmetric compliance of its own, 15 % from the joints': within a pose all is in order."""
+    rng = np.random.default_rng(3)
+    plain = pulled(count=20, noise=0.0)
+    theta = np.repeat(plain.theta, 3, axis=0)
+    F = np.tile(250.0 * np.eye(3), (20, 1))
+    moved = np.empty((60, 3))
+    for k in range(20):
+        C = np.array([ARM.yields(theta[3 * k], TIP, TIP, e, {}) for e in np.eye(3)]).T
+        twist = np.eye(3) + 0.1 * rng.standard_normal((3, 3))
+        moved[3 * k : 3 * k + 3] = 250.0 * (twist @ C @ twist.T)
+    noise = 2e-6 * rng.standard_normal(moved.shape)
+    result = rm.identify(ROBOT, rm.LoadTests(F, moved + noise, theta=theta))
+    assert result.inquest.lack < 1e-6
+    assert "model-misses" in codes(result)
