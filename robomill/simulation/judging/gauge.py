@@ -9,7 +9,7 @@ material the wall across its end is moved by the deviation along the feed; that 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -131,13 +131,45 @@ def _rims(at: Places, q: IntArray, u: FloatArray, sign: FloatArray, length: Floa
     share = np.repeat(HEIGHTS, len(q))
     q, u, sign = np.tile(q, len(HEIGHTS)), np.tile(u, (len(HEIGHTS), 1)), np.tile(sign, len(HEIGHTS))
     length = np.tile(length, len(HEIGHTS)) / len(HEIGHTS)
-    R, nose = at.number("radius")[q], at.number("nose_height")[q]
-    deep = at.depth(q, at.c[q] + (R + BESIDE)[:, None] * u)
-    low = np.maximum(nose, at.below[q])
+    deep = _deep(at, q, u)
+    low = np.maximum(at.number("nose_height")[q], at.below[q])
     height = np.where(deep > low, low + share * (deep - low), ON_NOSE * deep)
-    radius = at.radius_at(q, height)
-    stands = at.stands(q, at.c[q] + (radius + BESIDE)[:, None] * u, height)
-    return Rims(q, u, sign, length, height, radius, deep - at.below[q]).only((deep > at.below[q] + SAME) & stands)
+    return _at_height(at, Rims(q, u, sign, length, height, at.radius_at(q, height), deep))
+
+
+def _on_fillets(at: Places, q: IntArray, u: FloatArray, sign: FloatArray) -> Rims:
+    """Beneath rims, where round noses are met between wall and floor: at the height at which their surface faces the
+    way that the tip is off, out and down or in and up, and so is off further than either of them."""
+    out = at.d[q, 0] * _dot(u, at.feed[q]) + at.d[q, 1] * _dot(u, at.left_of[q])
+    faces = np.arctan2(np.abs(out), np.abs(at.d[q, 2]))
+    height = _round(at, q) * (1.0 - np.cos(faces))
+    deep = _deep(at, q, u)
+    rims = Rims(q, u, sign, np.zeros(len(q)), height, at.radius_at(q, height), deep)
+    return _at_height(at, rims.only((out * at.d[q, 2] < 0.0) & (height > at.below[q] + SAME) & (height < deep)))
+
+
+def _round(at: Places, q: IntArray) -> FloatArray:
+    """(m,) m: radii of the round noses at places q; 0 of cones and flat ends."""
+    return np.asarray(np.where(at.number("conical") > 0, 0.0, at.number("nose_height"))[q])
+
+
+def _normal(at: Places, rims: Rims, error: FloatArray, upright: FloatArray) -> FloatArray:
+    """(m,) m: how far what stands ``error`` (m,) m further out at the height of a rim is from the side that was told,
+    normal to it: of a round nose from the middle of its arc."""
+    rho, out = _round(at, rims.q), rims.radius - at.number("flat_radius")[rims.q] + error
+    return np.where(rims.height < rho, np.hypot(out, rho - rims.height) - rho, error * upright)
+
+
+def _deep(at: Places, q: IntArray, u: FloatArray) -> FloatArray:
+    """(m,) m: how high the stock stood above the tip beside the tools at places q, in directions u (m, 3)."""
+    return at.depth(q, at.c[q] + (at.number("radius")[q] + BESIDE)[:, None] * u)
+
+
+def _at_height(at: Places, rims: Rims) -> Rims:
+    """Those with material at their height, each on a wall from the bottom of the stock on."""
+    below = at.below[rims.q]
+    stands = at.stands(rims.q, at.c[rims.q] + (rims.radius + BESIDE)[:, None] * rims.u, rims.height)
+    return replace(rims, deep=rims.deep - below).only((rims.deep > below + SAME) & stands)
 
 
 def _standing(at: Places, rims: Rims) -> Walls:
@@ -169,7 +201,7 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
     error = np.where(np.isnan(left) | steep[q] | begin[q] | end[q], own, error)
     level, up = np.hypot(at.d[:, 0], at.d[:, 1]).max(), np.abs(at.d[:, 2]).max()
     most = level * upright + up * slanting  # no wall moves further
-    error = np.clip(error * upright, -most, most)
+    error = np.clip(_normal(at, rims, error, upright), -most, most)
     reached = at.c[q] + (rims.radius + np.nan_to_num(left) + BESIDE)[:, None] * rims.u
     lost = _nothing_stands(at, rims, (left - told > most + SAME) | ~at.stands(q, reached, rims.height))
     way = rims.sign[:, None] * np.column_stack([ahead * upright, aside * upright, -slanting])
@@ -246,7 +278,9 @@ def _directions(at: Places, around: BoolArray) -> Rims:
     sign = [np.ones(len(every)), -np.ones(len(every)), np.where(aside < -1e-9, -1.0, 1.0)]
     length = at.length
     lengths = [length, length, np.zeros(len(q))]
-    return _rims(at, np.concatenate([every, every, q]), *map(np.concatenate, (u, sign, lengths)))
+    q, u, sign, length = np.concatenate([every, every, q]), *map(np.concatenate, (u, sign, lengths))
+    both = _rims(at, q, u, sign, length), _on_fillets(at, q, u, sign)
+    return Rims(*(np.concatenate([getattr(some, each.name) for some in both]) for each in fields(Rims)))
 
 
 def _upright(at: Places, q: IntArray, height: FloatArray) -> FloatArray:
