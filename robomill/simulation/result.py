@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +30,7 @@ from robomill.simulation.origin.doubts import frame_notes, known_notes, rigid_to
 from robomill.simulation.posture import posture_notes
 from robomill.simulation.steadiness import steadiness
 from robomill.simulation.tools import feed_notes, tool_notes
+from robomill.simulation.uncoupled import coupling_notes, met_where_pushed
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.sections.groove import GrooveSection, GrooveSections, groove_sections
 from robomill.surface.swept import CutPath
@@ -100,6 +101,7 @@ class SimulationResult(Run):
         found += rigid_tool_notes(self.setup, self.tooling, self.force_components)
         if self.coupling is not None:
             found.append(self.coupling.finding)
+        found += self._uncoupled
         if self.setup.add_sag:
             text = (
                 "the sag under the arm's own weight is in the deviation; a part that is zeroed on the arm has lost it."
@@ -109,6 +111,17 @@ class SimulationResult(Run):
         if self.worst >= 0:
             found += posture_notes(self.setup.robot, self.ik.T_MT[self.worst], self.F[self.worst])
         return self._placed([*found, *self.turned])
+
+    @cached_property
+    def _uncoupled(self) -> tuple[Finding, ...]:
+        """Whether a green verdict rests on taking the tool to cut where it is told to."""
+        follows = self.setup.engagement and self.setup.force.follows_cut and self.coupling is None
+        if not follows or self.ahead is not None or self.verdict.level not in ("ok", "tight"):
+            return ()
+        met, F = met_where_pushed(self)
+        return coupling_notes(
+            self, replace(self, conditions=met, F=F, delta=self.delta + displacement(self.C, F - self.F))
+        )
 
     @cached_property
     def steadiness(self) -> tuple[Finding, ...]:

@@ -1,0 +1,83 @@
+"""What a run without coupling leaves out, against the place where brute force and the arm's compliance agree."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import root
+
+import robomill as rm
+from tests.cutting.brute_force import Cut, Floats, Move, box
+from tests.cutting.test_brute_force import AL7075, UPRIGHT
+
+LOW, HIGH = np.array([-30.0, -20.0, -10.0]), np.array([30.0, 20.0, 0.0])
+FEED = np.array([1500.0 / 3 / 12000.0, 0.0, 0.0]) * 1e-3  # of a tooth
+DEPTH, REACH = 1.5, 1.0
+
+
+def run_of(
+    cutter: rm.Cutter, passes: int, *, force: rm.ForceModel | None = None, **given: object
+) -> rm.SimulationResult:
+    way = [[-36.0, 0.0, -DEPTH], [36.0, 0.0, -DEPTH], [36.0, 0.0, 5.0], [-36.0, 0.0, 5.0]] * passes
+    feeds = [0.0, 1500.0, 0.0, 0.0] * passes
+    setup = rm.SimulationSetup(
+        robot=rm.load_robot("slavkovic_5r"),
+        source=rm.Toolpath.from_points(p_mm=way[:-2], feed_mm_min=feeds[:-2], spindle_1_min=12000),
+        cutter=cutter,
+        force=force or rm.process_force("al7075_t6_carbide_ref190", cutter),
+        stock=rm.Stock(lower_mm=LOW, upper_mm=HIGH),
+        part_zero_mm=(0, -1300, 0),
+        engagement=True,
+        tolerance_mm=0.3,
+        **given,  # type: ignore[arg-type]
+    )
+    return rm.simulate(setup)
+
+
+def told_of(run: rm.SimulationResult) -> list[rm.Finding]:
+    return [each for each in run.notes if each.code == "uncoupled"]
+
+
+def off_by_brute_force(run: rm.SimulationResult, passes: int) -> Floats:
+    """(3,) m in {W}: where the tip stands in the middle of its last pass, each in what the ones before have left."""
+    cutter, C = run.setup.cutter, run.C[int(np.argmin(np.abs(run.path.p[:, 0])))]
+    cut = Cut(box(LOW * 1e-3, HIGH * 1e-3), reach=(DEPTH + REACH) * 1e-3, points=20_000)
+    tip, before, off = np.array([0.0, 0.0, -DEPTH]) * 1e-3, [], np.zeros(3)
+    for _ in range(passes):
+        so_far = Cut(cut.stock, tuple(before), cut.reach, cut.points)
+
+        def rest(x: Floats, so_far: Cut = so_far) -> Floats:
+            there = tip + x * 1e-3
+            own = Move(cutter, there - [0.01, 0.0, 0.0], there, UPRIGHT)
+            met = Cut(so_far.stock, (*so_far.before, own), so_far.reach, so_far.points)
+            return np.asarray(C @ met.mean_force(cutter, AL7075, there, FEED) * 1e3 - x)
+
+        off = root(rest, off * 1e3, tol=1e-4).x * 1e-3
+        before.append(Move(cutter, tip + off - [0.03, 0.0, 0.0], tip + off + [0.03, 0.0, 0.0], UPRIGHT))
+    return off
+
+
+@pytest.mark.parametrize(("kind", "passes", "told"), [("ball", 2, True), ("ball", 1, False), ("flat", 1, False)])
+def test_what_an_earlier_pass_has_left_is_told(kind: str, passes: int, told: bool) -> None:
+    """A ball nose sent once more along its slot meets what its first pass, pushed up by 0.16 mm, has left."""
+    run = run_of(rm.Cutter(kind, diameter_mm=8, flutes=3), passes)
+    truth = max(np.abs(off_by_brute_force(run, passes)[1:])) / 0.3e-3
+    assert (truth > run.verdict.share + 0.1) == told
+    notes = told_of(run)
+    assert bool(notes) == told
+    if told:
+        (note,) = notes
+        assert note.level == "warning"
+        assert note.message.count("%") == 2
+        assert "(point 6)" in note.message
+        share = float(note.message.split("about ")[1].split(" %")[0]) / 100.0
+        assert truth == pytest.approx(share, abs=0.15)
+        assert math.isclose(run.verdict.share, 0.07, abs_tol=0.005)
+
+
+def test_a_coupled_run_and_a_stated_force_are_told_nothing() -> None:
+    ball = rm.Cutter("ball", diameter_mm=8, flutes=3)
+    assert not told_of(run_of(ball, 2, coupling=True))
+    assert not told_of(run_of(ball, 2, force=rm.PathForce(feed_normal=100.0)))
