@@ -119,9 +119,8 @@ class SimulationResult(Run):
         if not follows or self.ahead is not None or self.verdict.level not in ("ok", "tight"):
             return ()
         met, F = met_where_pushed(self)
-        return coupling_notes(
-            self, replace(self, conditions=met, F=F, delta=self.delta + displacement(self.C, F - self.F))
-        )
+        pushed = replace(self, conditions=met, F=F, delta=self.delta + displacement(self.C, F - self.F))
+        return coupling_notes(self, pushed, (self.verdict, pushed.verdict), pushed.decided.sample)
 
     @cached_property
     def steadiness(self) -> tuple[Finding, ...]:

@@ -1,7 +1,5 @@
 """What a run that takes each step as if the tool had gone where it was told leaves out: the cut of a deflected tool."""
 
-from typing import Protocol
-
 import numpy as np
 
 from robomill.arrays import FloatArray
@@ -10,22 +8,13 @@ from robomill.cutting.force import force_on_tool
 from robomill.provenance import Finding
 from robomill.simulation.cut import Led, met_conditions, through_stock
 from robomill.simulation.judging.seen import Run
-from robomill.simulation.judging.verdict_words import Deciding, Verdict
+from robomill.simulation.judging.verdict_words import Verdict
 from robomill.simulation.samples import ways
 from robomill.surface.contact.engagement import engage
 from robomill.units import format_share
 
 FELT = 0.05  # of the tolerance: a step that would be off by less otherwise moves no reading that counts
 MORE = 0.1  # of the tolerance: so much more than was read is told
-
-
-class Judged(Run, Protocol):
-    """A run with its verdict."""
-
-    @property
-    def verdict(self) -> Verdict: ...
-    @property
-    def decided(self) -> Deciding: ...
 
 
 def met_where_pushed(run: Run) -> tuple[CutConditions, FloatArray]:
@@ -36,17 +25,17 @@ def met_where_pushed(run: Run) -> tuple[CutConditions, FloatArray]:
     return met, force_on_tool(run.setup.force, met, run.R_MF)
 
 
-def coupling_notes(run: Judged, pushed: Judged) -> tuple[Finding, ...]:
+def coupling_notes(run: Run, pushed: Run, verdicts: tuple[Verdict, Verdict], sample: int) -> tuple[Finding, ...]:
     """Whether the verdict of a run without coupling would be another, or a tenth of the tolerance worse, where what the
-    deflected tool meets ``pushed`` it."""
+    deflected tool meets ``pushed`` it: ``verdicts`` of both, the second decided at ``sample``."""
     limits = np.array([run.setup.limits["wall"], run.setup.limits["floor"]])
     change = np.abs(pushed.delta_in_cut - run.delta_in_cut)[run.judged, 1:]
     if not (change > FELT * limits).any():
         return ()
-    here, there = run.verdict.share, pushed.verdict.share
-    if not (there > here + MORE or (there > here and pushed.verdict.level != run.verdict.level)):
+    here, there = (each.share for each in verdicts)
+    if not (there > here + MORE or (there > here and verdicts[0].level != verdicts[1].level)):
         return ()
-    place = f"{run.path.block_name} {run.path.block[pushed.decided.sample]}"
+    place = f"{run.path.block_name} {run.path.block[sample]}"
     text = (
         "Coupling is off, so the tool is taken to cut where it is told to. Where it is pushed to, and after earlier "
         f"passes that were pushed off, too, about {format_share(there)} of the tolerance would be used ({place}), not "
