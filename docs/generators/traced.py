@@ -22,7 +22,9 @@ from robomill.identification.knowledge import Knowledge
 from robomill.io.beside import Beside
 from robomill.io.materials import material_from_toml, material_to_toml, sample_materials
 from robomill.io.measured.identified import identify
-from robomill.io.robot.robots import load_robot, robot_from_toml, robot_to_toml
+from robomill.io.robot.reader import robot_from_toml
+from robomill.io.robot.robots import load_robot
+from robomill.io.robot.writer import robot_to_toml
 from robomill.io.samples import samples_dir
 from robomill.io.setups import points
 from robomill.io.setups.projects import load_setup, setup_from_toml, setup_to_toml

@@ -16,7 +16,7 @@ def run_identify(arguments: Any) -> int:
     from robomill.identification.record import identification_record
     from robomill.io.declared import kind_to_table
     from robomill.io.measured.load_test_sheets import measuring_sheet
-    from robomill.io.robot.robots import robot_to_toml
+    from robomill.io.robot.writer import robot_to_toml
     from robomill.report.plain import identification_lines
     from robomill.simulation.origin.assumptions import assumed_of_robot, assumed_of_tests
 

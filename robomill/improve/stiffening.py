@@ -18,18 +18,17 @@ TWICE = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Stiffening:
-    """before: the verdict as the robot is; after: the n verdicts with joint i alone ``factor`` times as stiff.
+    """before: the verdict as the robot is; after: the n verdicts with joint i alone ``TWICE`` as stiff.
 
     tip (1+n,) m: the largest deviation of the tip, as it is and with each joint.
     together: where no joint alone brings an error within tolerance, the best joints (0-based, in the order of the
-    ranking) that do when all of them are ``factor`` times as stiff, or all that save something where not even these
+    ranking) that do when all of them are ``TWICE`` as stiff, or all that save something where not even these
     do; ``with_together`` is the verdict then, None where one joint is enough or nothing is out of tolerance.
     """
 
     before: Verdict
     after: tuple[Verdict, ...]
     tip: FloatArray
-    factor: float = TWICE
     together: tuple[int, ...] = ()
     with_together: Verdict | None = None
 
@@ -49,36 +48,27 @@ class Stiffening:
         return np.argsort(self.used, kind="stable")
 
 
-def some_stiffer(robot: Robot, joints: Iterable[int], factor: float = TWICE) -> Robot:
-    """``robot`` with the free ``joints`` (0-based) ``factor`` times as stiff."""
+def some_stiffer(robot: Robot, joints: Iterable[int]) -> Robot:
+    """``robot`` with the free ``joints`` (0-based) ``TWICE`` as stiff."""
     factors = np.ones(robot.n)
-    factors[list(joints)] = factor
+    factors[list(joints)] = TWICE
     return stiffened(robot, factors)
 
 
-def one_stiffer(robot: Robot, joint: int, factor: float = TWICE) -> Robot:
-    """``robot`` with the free joint ``joint`` (0-based) ``factor`` times as stiff."""
-    return some_stiffer(robot, [joint], factor)
-
-
-def stiffer_joints(
-    setup: SimulationSetup,
-    run: Simulate = simulate,
-    factor: float = TWICE,
-) -> Stiffening:
+def stiffer_joints(setup: SimulationSetup, run: Simulate = simulate) -> Stiffening:
     """Every joint in turn, each by a run of the same simulation: exact for what it computes, coupling and sag included;
     then the best of them together, as many as it takes.
 
     ``run`` may keep results. Raises the refusal of the simulation.
     """
-    robots = [setup.robot, *(one_stiffer(setup.robot, joint, factor) for joint in range(setup.robot.n))]
+    robots = [setup.robot, *(some_stiffer(setup.robot, [joint]) for joint in range(setup.robot.n))]
     results = []
     for k, robot in enumerate(robots):
         with step(k, len(robots), "Each joint alone twice as stiff"):
             results.append(run(setup.replace(robot=robot)))
             _ = results[-1].verdict
     before, *after = (result.verdict for result in results)
-    found = Stiffening(before, tuple(after), frozen([result.max_deviation for result in results]), factor)
+    found = Stiffening(before, tuple(after), frozen([result.max_deviation for result in results]))
     return _together(found, setup, run)
 
 
@@ -90,7 +80,7 @@ def _together(found: Stiffening, setup: SimulationSetup, run: Simulate) -> Stiff
     for count in range(2, len(useful) + 1):
         joints = tuple(useful[:count])
         with step(count - 2, len(useful) - 1, "The best joints together twice as stiff"):
-            verdict = run(setup.replace(robot=some_stiffer(setup.robot, joints, found.factor))).verdict
+            verdict = run(setup.replace(robot=some_stiffer(setup.robot, joints))).verdict
         found = replace(found, together=joints, with_together=verdict)
         if verdict.level != "out":
             break

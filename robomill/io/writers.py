@@ -13,8 +13,9 @@ from robomill.files import shown_place, write_whole
 from robomill.io.gcode_out import toolpath_to_gcode
 from robomill.io.materials import material_to_toml
 from robomill.io.meshes import MOST_TRIANGLES, mesh_bytes
-from robomill.io.robot.robots import is_urdf, robot_to_toml
+from robomill.io.robot.robots import is_urdf
 from robomill.io.robot.urdf_writer import robot_to_urdf
+from robomill.io.robot.writer import robot_to_toml
 from robomill.io.setups.projects import setup_to_toml
 from robomill.robot.model import Robot
 from robomill.simulation.setup import SimulationSetup

@@ -16,12 +16,11 @@ from robomill.learn.equations import component, product, settled
 from robomill.learn.exercise import Exercise, Slip
 from robomill.learn.lesson import COUNT, Bars, Choice, Lesson
 from robomill.learn.push import FORCE, AsidePush
+from robomill.learn.readings import LOAD
 from robomill.units import format_number, format_percent, format_si, from_si
 from robomill.workspace.ray import ray_through
 
 WRONG = 0.2  # share by which the model of lesson 7 is too stiff
-LOAD = 250.0  # N of a load test
-NEAR = 0.05  # share of the best within which two answers are not told apart
 
 
 @asked

@@ -19,7 +19,7 @@ import tomli_w
 from robomill.errors import RobomillError, StudyError
 from robomill.improve.ways import fed
 from robomill.io.materials import material_to_toml
-from robomill.io.robot.robots import robot_to_toml
+from robomill.io.robot.writer import robot_to_toml
 from robomill.io.setups.projects import setup_from_table, setup_to_toml
 from robomill.io.tables import parse_toml
 from robomill.simulation.setup import SimulationSetup

@@ -8,7 +8,7 @@ import numpy as np
 
 from robomill.errors import StudyError
 from robomill.io.robot.reader import COMPLIANCE, STIFFNESS
-from robomill.io.robot.robots import robot_to_toml
+from robomill.io.robot.writer import robot_to_toml
 from robomill.io.tables import parse_toml
 from robomill.quantities import quantities
 from robomill.robot.model import Robot

@@ -25,6 +25,7 @@ from robomill.toolpath.apt_moves import (
     numbers_of,
     tangent_arc,
 )
+from robomill.toolpath.arcs import MAX_POINTS
 from robomill.toolpath.findings import NO_UNITS, Findings
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
@@ -58,7 +59,6 @@ _SILENT = frozenset(
         *("INTOL", "OUTTOL", "TOLER", "CLEARP", "DISPLY", "PAINT", "AUTOPS"),
     }
 )
-MAX_POINTS = 5_000_000
 _RATES = ("IPR", "MMPR", "PERREV", "IPM", "MMPM", "PERMIN")
 _STANDS = "feed counts per turn, and the spindle stands; SPINDL comes first."
 

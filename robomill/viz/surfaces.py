@@ -9,12 +9,7 @@ from robomill.viz.chart import Chart
 from robomill.viz.theme import DIVERGING, axis3d, colour_bar, figure, palette
 
 MAX_CELLS = 60_000
-EYES: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {  # from where, and what is up
-    "iso": ((-0.8, -1.15, 0.95), (0.0, 0.0, 1.0)),
-    "along": ((-1.6, 0.0, 0.55), (0.0, 0.0, 1.0)),
-    "top": ((0.0, 0.0, 1.8), (0.0, 1.0, 0.0)),
-    "front": ((0.0, -1.8, 0.05), (0.0, 0.0, 1.0)),
-}
+EYE = {"x": -0.8, "y": -1.15, "z": 0.95}  # from where it is seen until it is turned
 
 
 def thinned(x: FloatArray, y: FloatArray, *fields: FloatArray) -> tuple[FloatArray, ...]:
@@ -23,19 +18,13 @@ def thinned(x: FloatArray, y: FloatArray, *fields: FloatArray) -> tuple[FloatArr
     return (x[::step], y[::step], *[f[::step, ::step] for f in fields])
 
 
-def surface_figure(
-    shown: Enlarged, limit: float, unit: str, *, dark: bool, height: int = 460, camera: str = "iso"
-) -> Chart:
-    """The drawn heights in ``unit``, coloured by the error up to +-``limit`` m; to be turned with the mouse.
-
-    It is seen as the ``camera`` has it until it is turned.
-    """
+def surface_figure(shown: Enlarged, limit: float, unit: str, *, dark: bool, height: int = 460) -> Chart:
+    """The drawn heights in ``unit``, coloured by the error up to +-``limit`` m; to be turned with the mouse."""
     drawn = [from_si(v, unit) for v in (shown.drawn.x, shown.drawn.y, shown.drawn.z)]
     x, y, z, error = thinned(*drawn, from_si(shown.error, unit))
     shown_limit = float(from_si(limit, unit))
     p = palette(dark)
-    revision = f"surface-{camera}"
-    eye, up = EYES[camera]
+    revision = "surface-iso"
     fig = figure(dark=dark, height=height, revision=revision, margin={"l": 0, "r": 0, "t": 0, "b": 0})
     colour = np.nan_to_num(error.T).astype(np.float32)
     fig.add(
@@ -73,8 +62,8 @@ def surface_figure(
                 "z": 2.4 * stretch * height_span / span,
             },
             "camera": {
-                "eye": dict(zip("xyz", eye, strict=True)),
-                "up": dict(zip("xyz", up, strict=True)),
+                "eye": EYE,
+                "up": {"x": 0.0, "y": 0.0, "z": 1.0},
                 "projection": {"type": "orthographic"},
             },
         },

@@ -6,10 +6,10 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.viz.chart import Chart
+from robomill.viz.remedies import WHOLE
 from robomill.viz.theme import axis, figure, palette, rgba, say
 
 HEIGHT, BINS, ROW = 300, 40, 30  # px, bars, px
-WHOLE = 100.0  # % of the tolerance
 BEYOND = 0.999  # of the draws are drawn
 
 

@@ -18,7 +18,8 @@ import numpy as np
 import pytest
 
 from robomill.cli import main, serve
-from robomill.io.robot.robots import load_robot, robot_to_toml
+from robomill.io.robot.robots import load_robot
+from robomill.io.robot.writer import robot_to_toml
 from robomill.io.samples import samples_dir
 from robomill.ui.keeping.settings import Settings
 

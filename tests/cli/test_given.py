@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from robomill.cli import main
-from robomill.io.robot.robots import load_robot, robot_to_toml
+from robomill.io.robot.robots import load_robot
 from robomill.io.robot.urdf_writer import robot_to_urdf
+from robomill.io.robot.writer import robot_to_toml
 from robomill.io.samples import samples_dir
 
 FLUTE = samples_dir() / "paper_flute"

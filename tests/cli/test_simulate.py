@@ -16,7 +16,8 @@ from PIL import Image
 from robomill.cli import main
 from robomill.cli.simulate import NAMES, PICTURES
 from robomill.io.meshes import FEW_TRIANGLES
-from robomill.io.robot.robots import load_robot, robot_to_toml
+from robomill.io.robot.robots import load_robot
+from robomill.io.robot.writer import robot_to_toml
 from robomill.io.samples import samples_dir
 
 FLUTE = samples_dir() / "paper_flute"

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robomill.improve.stiffening import Stiffening, one_stiffer, stiffer_joints
+from robomill.improve.stiffening import Stiffening, some_stiffer, stiffer_joints
 from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup
 from robomill.simulation.run import simulate
@@ -35,7 +35,7 @@ def test_twice_as_stiff_is_half_the_compliance_of_that_joint_alone() -> None:
     setup = load_setup(samples_dir() / "paper_flute" / "setup.toml")
     C = np.array(setup.robot.C_theta)
     C[2] /= 2.0
-    np.testing.assert_array_equal(one_stiffer(setup.robot, 2).C_theta, C)
+    np.testing.assert_array_equal(some_stiffer(setup.robot, [2]).C_theta, C)
     halved = simulate(setup.replace(robot=setup.robot.replace(C_theta=C))).max_deviation
     assert stiffer_joints(setup).tip[3] == pytest.approx(halved, rel=1e-12)
 

@@ -12,7 +12,6 @@ from robomill.errors import ProjectError, RobomillError
 from robomill.files import TABLE
 from robomill.io import beside
 from robomill.io.beside import ALONE, Beside
-from robomill.io.robot.robots import robot_folder
 from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup, setup_from_toml
 from robomill.io.tables import Table
@@ -48,7 +47,7 @@ def _of(block: str, lines: str) -> str:
 # Each key that may name a file: the set-up with %s for the name, what a good file holds, and how it ends.
 KEYS = {
     "path.program": (_of("path", 'program = "%s"'), PROGRAM, ".nc"),
-    "robot.name": (_of("robot", 'name = "%s"'), (robot_folder() / "slavkovic_5r.toml").read_text(), ".toml"),
+    "robot.name": (_of("robot", 'name = "%s"'), (samples_dir() / "robots/slavkovic_5r.toml").read_text(), ".toml"),
     "stock.stl": (_of("stock", 'stl = "%s"'), STL, ".stl"),
     "force.material": (_of("force", 'kind = "mechanistic"\nmaterial = "%s"'), ROW, ".toml"),
     "force.file": (_of("force", 'kind = "measured"\nfile = "%s"'), RECORD, ".csv"),

@@ -11,7 +11,8 @@ from conftest import PAGES, Grid, errors, go, number, store, words
 from streamlit.testing.v1 import AppTest
 
 import robomill as rm
-from robomill.io.robot.robots import robot_from_toml, robot_to_toml
+from robomill.io.robot.reader import robot_from_toml
+from robomill.io.robot.writer import robot_to_toml
 from robomill.kinematics.transforms import rotation_x, rotation_y, rotation_z
 from robomill.robot.model import Robot
 from robomill.ui.project import project_from_toml, project_to_toml

@@ -26,7 +26,8 @@ from robomill.io.measured.load_tests import read_load_tests, read_measured_map
 from robomill.io.measured.profiles import read_profile
 from robomill.io.meshes import read_stl_stock
 from robomill.io.point_tables import points_from_bytes
-from robomill.io.robot.robots import load_robot, robot_from_toml
+from robomill.io.robot.reader import robot_from_toml
+from robomill.io.robot.robots import load_robot
 from robomill.io.robot.urdf import read_urdf
 from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup, setup_from_toml, setup_to_toml

@@ -9,27 +9,9 @@ from robomill.errors import RobotError
 from robomill.files import ROBOT, name_of, read_file
 from robomill.io.robot.reader import robot_from_toml
 from robomill.io.robot.urdf import read_urdf
-from robomill.io.robot.writer import robot_to_toml
-from robomill.io.samples import sample_names, sample_or_file, samples_dir
+from robomill.io.samples import sample_names, sample_or_file
 from robomill.io.texts import read_text
 from robomill.robot.model import Robot
-
-__all__ = [
-    "is_urdf",
-    "load_robot",
-    "read_robot",
-    "read_urdf",
-    "robot_folder",
-    "robot_from_toml",
-    "robot_names",
-    "robot_titles",
-    "robot_to_toml",
-]
-
-
-def robot_folder() -> Path:
-    """Folder of the robots that come with robomill."""
-    return samples_dir() / "robots"
 
 
 def robot_names() -> list[str]:

@@ -26,8 +26,9 @@ from robomill.io.declared import (
 )
 from robomill.io.measured.measured_maps import map_from_table, map_to_table
 from robomill.io.programs import program_from_bytes
-from robomill.io.robot.reader import ANGLE
-from robomill.io.robot.robots import load_robot, read_robot, robot_from_toml, robot_names, robot_to_toml
+from robomill.io.robot.reader import ANGLE, robot_from_toml
+from robomill.io.robot.robots import load_robot, read_robot, robot_names
+from robomill.io.robot.writer import robot_to_toml
 from robomill.io.samples import sample_or_file
 from robomill.io.setups.force_models import force_from_table, force_to_table
 from robomill.io.setups.knowledge import knowledge_from_table, knowledge_to_table

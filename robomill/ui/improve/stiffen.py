@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import streamlit as st
 
+from robomill.improve.remedies import LEAST
 from robomill.improve.stiffening import Stiffening, some_stiffer, stiffer_joints
 from robomill.simulation.estimate import run_seconds
 from robomill.simulation.judging.verdict_words import KINDS, TIP, Verdict
@@ -19,8 +20,6 @@ from robomill.ui.work import cached
 from robomill.units import format_percent, format_share, format_si, from_si, unit_label
 from robomill.viz.shares import gain_bars
 from robomill.wording import listed
-
-LEAST = 0.005  # of the tolerance; what saves less is not offered
 
 
 def _seconds(setup: SimulationSetup) -> float:

@@ -6,9 +6,10 @@ from typing import cast
 
 import streamlit as st
 
-from robomill.io.robot.robots import is_urdf, read_robot, read_urdf, robot_to_toml
-from robomill.io.robot.urdf import Tips, tips_of_urdf
+from robomill.io.robot.robots import is_urdf, read_robot
+from robomill.io.robot.urdf import Tips, read_urdf, tips_of_urdf
 from robomill.io.robot.urdf_writer import robot_to_urdf
+from robomill.io.robot.writer import robot_to_toml
 from robomill.robot.model import Robot
 from robomill.ui import pieces, session
 from robomill.ui.entry import inputs

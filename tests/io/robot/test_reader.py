@@ -5,9 +5,12 @@ import pytest
 
 import robomill as rm
 from robomill.errors import RobotError
-from robomill.io.robot.robots import robot_folder, robot_from_toml, robot_names, robot_to_toml
+from robomill.io.robot.reader import robot_from_toml
+from robomill.io.robot.robots import robot_names
+from robomill.io.robot.writer import robot_to_toml
+from robomill.io.samples import samples_dir
 
-SAMPLE = (robot_folder() / "slavkovic_5r.toml").read_text(encoding="utf-8")
+SAMPLE = (samples_dir() / "robots/slavkovic_5r.toml").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", robot_names())
