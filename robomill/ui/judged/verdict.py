@@ -162,7 +162,7 @@ def headline(result: SimulationResult, unit: str = "mm") -> str:
         found = widest_first(out_over(result.verdict, _ranges(result, session.known(result.setup))))
     except (RobomillError, Underway):
         return words
-    return f"{words} It may be out, over {found[0].over}." if found else words
+    return f"{words} It could be out (up to {format_share(found[0].share[1])}: {found[0].over})." if found else words
 
 
 def open_question(result: SimulationResult, on: str = "") -> None:

@@ -106,7 +106,9 @@ def test_one_range_leads_and_the_others_are_named_once(setup: SimulationSetup, m
         "so it could be out of tolerance",
         "less: as teeth come by",
     ]
-    assert panel.headline(simulate(setup)).endswith("(77 % of it used). It may be out, over assumed lengths.")
+    assert panel.headline(simulate(setup)).endswith(
+        "(77 % of it used). It could be out (up to 107 %: assumed lengths)."
+    )
     monkeypatch.setattr(panel, "_ranges", lambda result, known: (little,))
     assert panel.headline(simulate(setup)) == panel.verdict_sentence(simulate(setup))
 
