@@ -222,7 +222,7 @@ def _marks(fig: Chart, picture: PathPicture, dark: bool) -> None:
     end = picture.points[_selected(picture)][-1:]
     if len(end):
         _dots(fig, end, {"size": 16, "color": rgba(p.text, 0.12), "line": {"color": p.text, **rim}})
-    _dots(fig, picture.points[:1], {"size": 9, "symbol": "circle-open", "color": p.text, "line": rim}, "start")
+    _dots(fig, picture.points[:1], {"size": 11, "symbol": "circle-open", "color": p.text, "line": rim}, "start")
     if picture.worst >= 0:
         worst = {"size": 12, "symbol": "diamond-open", "color": p.text, "line": rim}
         _dots(fig, picture.points[picture.worst][None], worst, "tip most off")

@@ -52,8 +52,8 @@ def path_figure(setup: SimulationSetup, reach: PathReach, result: SimulationResu
         caption, alt = f"Heights shown × {times:g}, parallel projection.", "The path in space, to be turned."
     else:
         figure = plan_picture(picture, dark=dark, height=height)
-        caption = "From above; a click shows the line. Crosses: out of reach."
-        alt = "The path from above; points out of reach are marked with crosses."
+        caption = "From above; a click shows the line."
+        alt = "The path from above."
     pieces.figure(
         figure,
         key,
