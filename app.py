@@ -51,7 +51,7 @@ def start() -> None:
     with right:
         story.doors(take_file)
 
-    carved.strip(unit)
+    carved.strip(unit, dark)
 
     with st.expander(story.why(setup, unit), key="start.open.why"):
         left, right = ui.split([1.55, 1], "rests", gap="large")

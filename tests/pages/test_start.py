@@ -93,6 +93,14 @@ def test_the_first_screen_says_what_this_is_and_counts_what_the_result_rests_on(
     assert words(app).count("<h1") == 1
 
 
+def test_the_door_of_a_designer_opens_at_stiffer_joints(app: AppTest) -> None:
+    app.button(key="start.stiffen").click().run()
+    assert not app.exception
+    (picked,) = (each for each in app.get("button_group") if each.key == "improve.remedy")
+    assert picked.value == "stiffen"
+    assert "twice as stiff" in words(app)
+
+
 def test_a_carved_sample_opens_with_a_click(app: AppTest) -> None:
     app.button(key="start.open.heart").click().run()
     assert not app.exception

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import streamlit as st
 
-from robomill.lazy import cached_property
 from robomill.report.tags import Html
 from robomill.simulation.judging.verdict_words import Level
 from robomill.ui import pieces, session
@@ -30,15 +29,18 @@ class Carved:
     tolerance: float
     level: Level
 
-    @property
-    def picture(self) -> Path:
-        """The part with its displacement enlarged."""
-        return HERE / "carved" / f"{self.sample}.webp"
+    def picture(self, dark: bool) -> Path:
+        """The part with its displacement enlarged, for a light or a dark page."""
+        return HERE / "carved" / f"{self.sample}{'-dark' * dark}.webp"
 
-    @cached_property
-    def address(self) -> str:
+    def address(self, dark: bool) -> str:
         """The picture itself: that of a file would be decoded and encoded anew whenever the page runs."""
-        return f"data:image/webp;base64,{base64.b64encode(self.picture.read_bytes()).decode()}"
+        return _address(self.picture(dark))
+
+
+@cache
+def _address(picture: Path) -> str:
+    return f"data:image/webp;base64,{base64.b64encode(picture.read_bytes()).decode()}"
 
 
 @cache
@@ -52,7 +54,7 @@ def carved() -> tuple[float, tuple[Carved, ...]]:
     return float(said["times"]), tuple(rows)
 
 
-def strip(unit: str) -> None:
+def strip(unit: str, dark: bool) -> None:
     """The six beside each other; a click opens the sample."""
     times, rows = carved()
     with st.container(key="carved"):
@@ -61,7 +63,7 @@ def strip(unit: str) -> None:
             off = f"{format_beside(row.value, row.tolerance, unit, 2)} of {format_limit(row.tolerance, unit)}"
             with st.container(key=f"carved-{row.sample}"):
                 alt = f"{title}: {off} allowed, {WORDS[row.level].lower()}; displacement shown {format_times(times)}."
-                st.image(row.address, alt=alt, width="stretch")
+                st.image(row.address(dark), alt=alt, width="stretch")
                 inputs.button(title, f"start.open.{row.sample}", "", session.open_preset, row.sample, type="tertiary")
                 out = Html(' <span class="rm-card-out">out of tolerance</span>') if row.level == "out" else ""
                 pieces.note(unparted(off), out)
