@@ -12,7 +12,7 @@ from robomill.units import to_si
 
 _SILENT = re.compile(
     r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|COMPCURV|COMPSURF|STOPRE|CFTCP|CFIN|CFC|ORIWKS|"
-    r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|KONT|DIAMOF|FNORM|FLIN|FGROUP|SETMS|CUT2D|CDOF|WALIMOF|WALIMON|"
+    r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|DIAMOF|FNORM|FLIN|FGROUP|SETMS|CUT2D|CDOF|WALIMOF|WALIMON|"
     r"STOPFIFO|STARTFIFO|FIFOCTRL|CPRECON|CPRECOF|ORISON|ORISOF|SBLON|SBLOF|DISPLON|DISPLOF)\b(?:[ \t]*\([^()]*\))?|"
     r"\bOFFN[ \t]*=[ \t]*0+(?:\.0*)?(?![.\d])|"
     r"\b(?:ADIS|ADISPOS|CTOL|OTOL|ATOL|(?:ACC|JERKLIM|VELOLIM)\[\w+\])[ \t]*=[ \t]*[.\d]+|"
@@ -21,6 +21,7 @@ _SILENT = re.compile(
     r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)",
     re.IGNORECASE,
 )
+_ROUND_CORNERS = re.compile(r"\bKONT[CT]?\b", re.IGNORECASE)
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
 _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)"
@@ -68,7 +69,12 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code, comment = parted(raw)
     for found in _SILENT.findall(code):
         machine.findings.add("harmless-word", "ignored", number, f"{_name(found)} is left out: it moves nothing")
-    code = _SWIVEL.sub(lambda found: _unswivelled(found, number, machine), _SILENT.sub("", code))
+    for found in _ROUND_CORNERS.findall(code):
+        text = f"{found} is read as NORM; from behind the contour a control goes round its corner"
+        machine.findings.add("approach", "warning", number, text)
+    code = _SWIVEL.sub(
+        lambda found: _unswivelled(found, number, machine), _ROUND_CORNERS.sub("", _SILENT.sub("", code))
+    )
     message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
     if message is not None:
         code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"

@@ -383,3 +383,8 @@ def test_fixed_points_are_where_only_the_machine_knows(line: str) -> None:
     assert program.at_feed.tolist()[-1]
     np.testing.assert_allclose(program.end[-1] * 1e3, [0, 0, -2])
     assert len(program) == 3
+
+
+def test_a_way_round_the_first_corner_that_is_not_known_is_told() -> None:
+    program = interpret(f"{HEAD}NORM\nKONT\nG1 X5\nM30\n", dialect="sinumerik")
+    assert [(f.code, f.line) for f in program.findings if f.level == "warning"] == [("approach", 3)]
