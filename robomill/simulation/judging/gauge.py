@@ -138,14 +138,15 @@ def _rims(at: Places, q: IntArray, u: FloatArray, sign: FloatArray, length: Floa
 
 
 def _on_fillets(at: Places, q: IntArray, u: FloatArray, sign: FloatArray) -> Rims:
-    """Beneath rims, where round noses are met between wall and floor: at the height at which their surface faces the
-    way that the tip is off, out and down or in and up, and so is off further than either of them."""
+    """Beneath rims: round noses at the height at which their surface faces the way that the tip is off, out and down
+    or in and up, and so is off further than wall and floor; cones half-way up, where others may have cut their rim."""
     out = at.d[q, 0] * _dot(u, at.feed[q]) + at.d[q, 1] * _dot(u, at.left_of[q])
     faces = np.arctan2(np.abs(out), np.abs(at.d[q, 2]))
-    height = _round(at, q) * (1.0 - np.cos(faces))
-    deep = _deep(at, q, u)
+    deep, cone = _deep(at, q, u), (at.number("conical") > 0)[q]
+    height = np.where(cone, 0.5 * np.minimum(deep, at.number("nose_height")[q]), _round(at, q) * (1.0 - np.cos(faces)))
     rims = Rims(q, u, sign, np.zeros(len(q)), height, at.radius_at(q, height), deep)
-    return _at_height(at, rims.only((out * at.d[q, 2] < 0.0) & (height > at.below[q] + SAME) & (height < deep)))
+    some = np.where(cone, ~at.steep[q], out * at.d[q, 2] < 0.0)
+    return _at_height(at, rims.only(some & (height > at.below[q] + SAME) & (height < deep)))
 
 
 def _round(at: Places, q: IntArray) -> FloatArray:
@@ -274,11 +275,10 @@ def _directions(at: Places, around: BoolArray) -> Rims:
     every, turning = np.arange(len(at.i)), np.flatnonzero(around)
     ahead, aside = np.tile(np.cos(AROUND), len(turning)), np.tile(np.sin(AROUND), len(turning))
     q = np.repeat(turning, len(AROUND))
-    u = [at.left_of, -at.left_of, ahead[:, None] * at.feed[q] + aside[:, None] * at.left_of[q]]
-    sign = [np.ones(len(every)), -np.ones(len(every)), np.where(aside < -1e-9, -1.0, 1.0)]
-    length = at.length
-    lengths = [length, length, np.zeros(len(q))]
-    q, u, sign, length = np.concatenate([every, every, q]), *map(np.concatenate, (u, sign, lengths))
+    u = np.concatenate([at.left_of, -at.left_of, ahead[:, None] * at.feed[q] + aside[:, None] * at.left_of[q]])
+    sign = np.concatenate([np.ones(len(every)), -np.ones(len(every)), np.where(aside < -1e-9, -1.0, 1.0)])
+    length = np.concatenate([at.length, at.length, np.zeros(len(q))])
+    q = np.concatenate([every, every, q])
     both = _rims(at, q, u, sign, length), _on_fillets(at, q, u, sign)
     return Rims(*(np.concatenate([getattr(some, each.name) for some in both]) for each in fields(Rims)))
 

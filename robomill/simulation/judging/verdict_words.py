@@ -237,7 +237,9 @@ def _measured(result: Run, verdict: Verdict, unit: str) -> str:
         return _at(result, [int(result.path.block[reading.worst])])
 
     wall, floor = verdict.wall, verdict.floor
-    if result.path.on_one_line and wall.worst >= 0 and floor.worst >= 0:
+    # What a nose or a cone leaves is off normal to itself, which is not how far its groove has gone aside.
+    upright = all(cutter.nose_height == 0.0 for cutter in result.tooling.cutters)
+    if upright and result.path.on_one_line and wall.worst >= 0 and floor.worst >= 0:
         parts = [f"the groove is {size(wall)} off {_aside(result, wall)} and {size(floor)} {way('floor', floor)}"]
     else:
         parts = [

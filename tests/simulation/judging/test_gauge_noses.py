@@ -45,3 +45,26 @@ def test_a_pass_beside_it_takes_the_nose_away() -> None:
     # Up and to the right: further away than either from what stood on the left, which is gone.
     assert abs(pushed(result, left=-off, up=off).verdict.wall.value) == pytest.approx(0.1e-3, rel=0.01)
     assert pushed(result, left=off, up=off).verdict.wall.value == pytest.approx(np.sqrt(2.0) * 0.1e-3, rel=0.03)
+
+
+@pytest.mark.parametrize("kind", [*NOSES, "flat"])
+def test_how_far_a_groove_is_off_in_y_is_not_said_of_what_is_off_normal_to_a_nose(kind: str) -> None:
+    """Pushed aside and up by 0.1 mm each, a nose leaves what is 0.14 mm off, its groove is 0.1 mm off in Y."""
+    result = run(
+        "G0 X-40 Y0 Z5", "G0 Z-3", "G1 X40 F1800", cutter=Cutter(kind, 2 * R, corner_radius=NOSES.get(kind, 0.0))
+    )
+    sentence = pushed(result, left=0.1e-3, up=0.1e-3).verdict.sentence
+    said = "The groove is 0.10 mm off in Y" if kind == "flat" else "Walls are up to 0.14 mm to the left"
+    assert sentence.startswith(said)
+
+
+def test_a_cone_is_read_below_a_rim_that_another_pass_has_cut_away() -> None:
+    """A 90 degree mill goes 2 mm deep between grooves whose sides meet its own 1.25 mm above its tip. Up to there its
+    sides stand, and are off by (0.1 + 0.1) mm / sqrt(2) where it is pushed aside and up."""
+    cutter = Cutter("chamfer", 2 * R, tip_angle=np.radians(90.0), tip_diameter=2e-3)
+    lines = ["G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800", "G0 Z5"]
+    for y in (3.5, -3.5):
+        lines += [f"G0 X-40 Y{y}", "G0 Z-1", "G1 X40", "G0 Z5"]
+    result = run(*lines, cutter=cutter)
+    off = np.where(np.abs(result.path.p[:, 1]) < 1e-3, 0.1e-3, 0.0)
+    assert abs(pushed(result, left=off, up=off).verdict.wall.value) == pytest.approx(np.sqrt(2.0) * 0.1e-3, rel=0.02)
