@@ -210,7 +210,7 @@ def _numerical(robot: Robot, wish: Wish) -> Chosen:
     """Pose by pose from the goal, or along each run from the pose before."""
     if wish.goal is not None:
         start = bent_home(robot)[None] if wish.at_home else wish.goal
-        theta, found = solve_numerically(robot, wish.T_MT, start, wish.mode)
+        theta, found = solve_numerically(robot, wish.T_MT, start, wish.mode, nearest=not wish.at_home)
     else:
         theta, found = np.empty((len(wish.T_MT), robot.n)), np.empty(len(wish.T_MT), dtype=bool)
         for i in range(len(wish.T_MT)):

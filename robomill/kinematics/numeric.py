@@ -21,6 +21,8 @@ from robomill.robot.model import Robot
 STARTS = 64  # starts a pose is given before it counts as not found
 LIBRARY = 8192  # random configurations from which the nearest serve as starts
 COMPARED = 8  # starts of which small arms take the solution nearest to the reference
+NEAREST = 32  # starts of which any arm takes it where the nearest solution is asked for
+TURN = 2.0 * np.pi
 STEPS = 40
 TIGHT = 1e-11  # m and rad: where iteration stops, well inside the residual that counts
 PATIENCE = 6  # steps in which the error must have halved
@@ -29,10 +31,13 @@ BEND = 0.6  # rad (or m)
 LONGEST_STEP = 0.6  # rad (or m) a joint may move in one step
 
 
-def solve_numerically(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode) -> tuple[FloatArray, BoolArray]:
+def solve_numerically(
+    robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode, nearest: bool = False
+) -> tuple[FloatArray, BoolArray]:
     """(theta (m, n), found (m,)) for poses T_MT (m, 4, 4), started from ``near`` (1 or m, n) and then from near misses.
 
-    ``mode`` says what of the pose counts, as in ``result.task_mode``. Deterministic: the starts have a fixed seed.
+    ``mode`` says what of the pose counts, as in ``result.task_mode``; ``nearest`` asks for the solution with the least
+    joint motion from ``near``, over branches and whole turns. Deterministic: the starts have a fixed seed.
     """
     m = len(T_MT)
     theta = np.empty((m, robot.n))
@@ -40,7 +45,7 @@ def solve_numerically(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mo
     for start in range(0, m, BLOCK):
         block = slice(start, start + BLOCK)
         reference = near if len(near) == 1 else near[block]
-        theta[block], found[block] = _solve_block(robot, T_MT[block], reference, mode)
+        theta[block], found[block] = _solve_block(robot, T_MT[block], reference, mode, nearest)
     return theta, found
 
 
@@ -53,27 +58,57 @@ def bent_home(robot: Robot) -> FloatArray:
     return np.clip(robot.home + bend, robot.limits[:, 0], robot.limits[:, 1])
 
 
-def _solve_block(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode) -> tuple[FloatArray, BoolArray]:
+def _solve_block(
+    robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode, nearest: bool
+) -> tuple[FloatArray, BoolArray]:
     m = len(T_MT)
     reference = np.array(np.broadcast_to(near, (m, robot.n)))
     theta, error = descend(robot, T_MT, reference, mode)
+    theta = _turned(robot, theta, reference) if nearest else theta
+    compared = NEAREST if nearest else COMPARED if mode == "position" else 0
+    remote = _motion if nearest else _remoteness
     starts: FloatArray | None = None
     possible = _within_stretch(robot, T_MT)
     for attempt in range(STARTS):
-        compare = mode == "position" and attempt < COMPARED
+        compare = attempt < compared
         open_ = np.flatnonzero(possible if compare else (error > TIGHT) & possible)
         if not open_.size:
             break
         if starts is None:
             starts, first = _starts(robot, T_MT[open_], mode), open_
+            if nearest:
+                starts = _in_order(robot, starts, reference[open_])
         rows = np.searchsorted(first, open_)
         trial, remains = descend(robot, T_MT[open_], starts[rows, attempt], mode)
+        trial = _turned(robot, trial, reference[open_]) if nearest else trial
         better = np.where(error[open_] > TIGHT, remains < error[open_], False)
         if compare:
-            nearer = _remoteness(trial, reference[open_]) < _remoteness(theta[open_], reference[open_])
+            nearer = remote(trial, reference[open_]) < remote(theta[open_], reference[open_])
             better |= (remains <= TIGHT) & (error[open_] <= TIGHT) & nearer
         theta[open_[better]], error[open_[better]] = trial[better], remains[better]
     return theta, error <= TIGHT
+
+
+def _turned(robot: Robot, theta: FloatArray, reference: FloatArray) -> FloatArray:
+    """theta (..., n) with turning joints moved by whole turns to where they are nearest the reference within limits."""
+    low, high, found = robot.limits[:, 0], robot.limits[:, 1], theta
+    turns = np.rint((reference - theta) / TURN)
+    for more in (0.0, -1.0, 1.0):
+        other = theta + TURN * (turns + more)
+        nearer = np.abs(other - reference) < np.abs(found - reference)
+        found = np.where(nearer & (low <= other) & (other <= high) & ~robot.chain.prismatic, other, found)
+    return found
+
+
+def _in_order(robot: Robot, starts: FloatArray, reference: FloatArray) -> FloatArray:
+    """Starts (m, STARTS, n) with those first from which the joints have the least way to the reference (m, n)."""
+    order = np.argsort(_motion(_turned(robot, starts, reference[:, None]), reference[:, None]), axis=1)
+    return np.take_along_axis(starts, order[..., None], axis=1)
+
+
+def _motion(theta: FloatArray, reference: FloatArray) -> FloatArray:
+    """(...) joint motion from the reference (..., n), squared."""
+    return np.asarray(((theta - reference) ** 2).sum(axis=-1))
 
 
 def _remoteness(theta: FloatArray, reference: FloatArray) -> FloatArray:
@@ -82,7 +117,7 @@ def _remoteness(theta: FloatArray, reference: FloatArray) -> FloatArray:
     The side comes first, so that over a map a planar arm keeps its elbow where the limits allow.
     """
     other_side = (theta[:, 1:] * reference[:, 1:] < 0).sum(axis=1)
-    return OTHER_SIDE * other_side + ((theta - reference) ** 2).sum(axis=1)
+    return OTHER_SIDE * other_side + _motion(theta, reference)
 
 
 def _within_stretch(robot: Robot, T_MT: FloatArray) -> BoolArray:
