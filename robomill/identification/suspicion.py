@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from robomill.arrays import FloatArray
 from robomill.compliance.gravity import GRAVITY
 from robomill.errors import LoadTestError
 from robomill.identification.fit.models import Model
@@ -13,12 +14,22 @@ from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.robot.sources import block_in_force
 from robomill.units import to_si
+from robomill.wording import listed
 
 PLAUSIBLE = (5e-8, 1e-4)  # m/N at the tip: stiffer than any arm of joints, to one that can be pushed about by hand
 PLAUSIBLE_JOINT = (1e-8, 1e-3)  # rad/(N m): stiffer than the joints that lift a tonne, to those of a table-top arm
+SMALL = 1e-6  # of the largest motion of a component: none
+FEW = 4  # tests in which a component may be zero by chance
 FACTOR = 8.0  # against the robot's own compliances
 MOST = 200  # tests that are looked at; more are thinned evenly
-SLIPS = {"kilogram-force as N": -GRAVITY[2], "inches as mm": to_si(1.0, "in") / to_si(1.0, "mm"), "a wrong prefix": 1e3}
+POUND = 4.4482216152605  # N a pound-force
+ALIKE = 0.2  # of the displacements that the robot's own compliances leave over, when scaled by one number
+SLIPS = {
+    "pound-force as N": POUND,
+    "kilogram-force as N": -GRAVITY[2],
+    "inches as mm": to_si(1.0, "in") / to_si(1.0, "mm"),
+    "a wrong prefix": 1e3,
+}
 
 
 def suspicions(tests: LoadTests | JointTests, robot: Robot | None = None) -> tuple[Finding, ...]:
@@ -33,7 +44,7 @@ def suspicions(tests: LoadTests | JointTests, robot: Robot | None = None) -> tup
     explained: tuple[Finding, ...] = ()
     if robot is not None and tests.theta is not None:
         explained = length_suspicions(robot, tests) or axes_suspicions(robot, tests)
-    return (*_signs(tests), *_sizes(tests, robot), *explained, *_repeats(tests))
+    return (*_signs(tests), *_unread(tests, robot), *_sizes(tests, robot), *explained, *_repeats(tests))
 
 
 def _signs(tests: LoadTests) -> list[Finding]:
@@ -65,6 +76,23 @@ def _signs(tests: LoadTests) -> list[Finding]:
     return []
 
 
+def _unread(tests: LoadTests, robot: Robot | None) -> list[Finding]:
+    """A component that is zero to the last digit in every test, while others move, though joints would move it."""
+    still = (tests.displacement[:, :3] == 0.0).all(axis=0)
+    if robot is None or tests.theta is None or len(tests) < FEW or tests.gauges is not None or still.sum() in (0, 3):
+        return []
+    moves = np.abs(Model("joints").terms(robot, tests)[:, :3, 0]).max(axis=(0, 2))
+    still &= moves > SMALL * moves.max()
+    if not still.any():
+        return []
+    names = listed([f"d{axis}" for axis, nothing in zip(tests.components, still, strict=True) if nothing])
+    text = (
+        f"{names} is zero in every test: was it read? What was not measured is no zero; give what was by gauge1_x, _y, "
+        "_z and reading1_mm instead."
+    )
+    return [Finding("suspicious", text, code="unread")]
+
+
 def _sizes(tests: LoadTests, robot: Robot | None) -> list[Finding]:
     F, moved = tests.wrench[:, :3], tests.displacement[:, :3]
     size = np.linalg.norm(F, axis=1)
@@ -75,7 +103,7 @@ def _sizes(tests: LoadTests, robot: Robot | None) -> list[Finding]:
     if given == 0.0:
         text = "Most displacements are zero: was the gauge read, and to enough digits?"
         return [Finding("suspicious", text, code="no-displacement")]
-    found = _off(given, _expected(tests, robot), PLAUSIBLE)
+    found = _off(given, _expected(tests, robot), PLAUSIBLE) or _scaled(tests, robot)
     if found is None:
         return []
     text = f"The displacements are about {found}: is their unit, or the forces', right?"
@@ -101,6 +129,35 @@ def _knows(robot: Robot | None) -> bool:
         return False
     source = robot.provenance.get(block_in_force(robot))
     return source is None or source.kind != "assumed"
+
+
+def _scaled(tests: LoadTests, robot: Robot | None) -> str | None:
+    """By how much the readings are the robot's own, all times one number that a slip of the unit makes; None if not."""
+    own = _own(tests, robot)
+    if own is None:
+        return None
+    read, predicted = own
+    times = float(read @ predicted / max(float(predicted @ predicted), 1e-300))
+    if times <= 0.0 or np.linalg.norm(read - times * predicted) > ALIKE * np.linalg.norm(read):
+        return None
+    for slip, factor in SLIPS.items():
+        for made, word in ((factor, "larger"), (1.0 / factor, "smaller")):
+            if abs(times / made - 1.0) < 0.1:
+                return (
+                    f"{max(times, 1.0 / times):.3g} times {word} than this robot's own compliances would give ({slip}?)"
+                )
+    return None
+
+
+def _own(tests: LoadTests, robot: Robot | None) -> tuple[FloatArray, FloatArray] | None:
+    """Displacements (e,) read, and by the robot's own joint compliances, where these are known."""
+    if robot is None or tests.theta is None or not _knows(robot):
+        return None
+    try:
+        system = build_system(robot, tests.thinned(MOST), Model("joints"))
+    except LoadTestError:
+        return None
+    return system.b[system.linear], (system.A @ robot.C_theta)[system.linear]
 
 
 def _expected(tests: LoadTests, robot: Robot | None) -> float | None:

@@ -59,3 +59,9 @@ def test_a_frame_said_of_joints_is_not_passed_over():
     found = {f.code: f for f in rm.read_load_tests(text, ROBOT).findings}
     assert found["frame-unused"].level == "suspicious"
     assert "axes of {M}" in found["frame-unused"].message
+
+
+def test_pounds_under_newtons_and_a_gauge_that_was_not_read_are_suspected():
+    assert "pound-force as N?" in said(ROBOT, MADE.F / 4.448, MADE.moved)["unit"]
+    assert "unit" not in said(ROBOT, MADE.F, MADE.moved)
+    assert said(ROBOT, MADE.F, MADE.moved * [1, 1, 0])["unread"].startswith("dz is zero in every test")

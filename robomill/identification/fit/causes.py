@@ -22,7 +22,7 @@ from robomill.identification.fit.folds import folds_of
 from robomill.identification.fit.least_squares import bounded_solution, solve_triangle, triangle
 from robomill.identification.fit.models import Model
 from robomill.identification.fit.selection import EXACT
-from robomill.identification.fit.suspects import Cause, Inquest, Suspect
+from robomill.identification.fit.suspects import OF_GAUGES, Cause, Inquest, Suspect
 from robomill.identification.fit.system import System, build_system, measured_terms
 from robomill.identification.fit.treatment import Treatment
 from robomill.identification.load_test import LoadTests
@@ -79,6 +79,9 @@ class Inquiry:
         odd = [each.row for each in result.outliers]
         if len(odd) <= MANY * len(tests):
             kept &= ~np.isin(tests.row, odd)
+        table = np.concatenate([tests.tool_poses(robot).reshape(len(tests), -1), tests.wrench, tests.displacement], 1)
+        first = np.unique(np.nan_to_num(table), axis=0, return_index=True)[1]
+        kept &= np.isin(np.arange(len(tests)), first)  # a copy is no second reading
         index = index[kept[index]]
         tests = tests.select(index)
         for k, point in enumerate(freed):
@@ -110,6 +113,7 @@ class Inquiry:
                     yield Cause("bending", j, turned=True)
         if not self.choice.has("tool"):
             yield Cause("tool")
+        yield from (Cause(kind) for kind in OF_GAUGES)
         for name, points in FREED.items():
             if points and not set(points) & set(self.freed):
                 yield Cause("points", points=name)
@@ -155,8 +159,20 @@ class Inquiry:
                 for s in (STEP, -STEP)
             )
             return np.asarray((there - back) / (2.0 * STEP))[:, None]
+        if cause.kind in OF_GAUGES:
+            return self._of_gauges(cause, x)
         springs = Model("joints+bending", (cause.at,), cause.turned) if cause.at else Model("joints+tool")
         return measured_terms(self.robot, tests, springs)[0][:, 0, self.robot.n :]
+
+    def _of_gauges(self, cause: Cause, x: FloatArray) -> FloatArray:
+        """(e, 3) what a gauge that is not zeroed, drifts or sticks adds to each component of the displacement."""
+        each = (self.system.component[:, None] == np.arange(3)).astype(np.float64)
+        if cause.kind == "drift":
+            each *= self.tests.row[self.system.test][:, None] / float(self.tests.row.max())
+            each = np.concatenate([each, (self.system.component[:, None] == np.arange(3))], axis=1)
+        elif cause.kind == "play":
+            each *= np.sign(self.terms[:, 0] @ x)[:, None]
+        return each
 
     def _chance(self, columns: _Columns) -> float:
         """By an F-test: the chance with which noise alone lets what is left over fall as far as the cause does."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 from robomill.identification.fit.crossvalidation import headline, relative_by_pose
 from robomill.identification.fit.models import Model
 from robomill.identification.fit.selection import Candidates, pays
-from robomill.identification.fit.suspects import BendingOffer, Cause, Inquest, Suspect
+from robomill.identification.fit.suspects import OF_GAUGES, BendingOffer, Cause, Inquest, Suspect
 from robomill.identification.fit.treatment import AUTO
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
@@ -20,8 +20,8 @@ SCATTER = "A compliance can then be off by more than its interval says, which kn
 def bending_offer(candidates: Candidates, model: str, inquest: Inquest, before: float) -> BendingOffer | None:
     """What letting the tests say where links bend would bring, where bending may be what is missing; None where it does
     not pay, or the tests have been asked."""
-    treatment = candidates.treatment
-    if treatment.bending == AUTO or not any(each.cause.kind == "bending" for each in inquest.likeliest):
+    treatment, kinds = candidates.treatment, [each.cause.kind for each in inquest.likeliest]
+    if treatment.bending == AUTO or "bending" not in kinds or kinds[0] not in ("bending", "zero", "points"):
         return None
     auto = replace(candidates, model=Model(model), treatment=replace(treatment, bending=AUTO), kept={}, chosen={})
     choice, fitted = auto.best()
@@ -91,6 +91,8 @@ def named(robot: Robot, suspect: Suspect) -> str:
         return f"joint {cause.at} standing {_off(robot, suspect)} from its stated angles"
     if cause.kind == "bending":
         return f"a link that bends {'after' if cause.turned else 'at'} joint {cause.at}"
+    if cause.kind in OF_GAUGES:
+        return OF_GAUGES[cause.kind]
     points = {"force": "another load point", "gauge": "another gauge point", "both": "another load and gauge point"}
     return points.get(cause.points, "a spring of the tool")
 

@@ -6,14 +6,19 @@ from typing import Literal
 from robomill.provenance import Finding
 from robomill.units import format_si
 
-Kind = Literal["bending", "tool", "points", "zero"]
+Kind = Literal["bending", "tool", "points", "zero", "offset", "drift", "play"]
+OF_GAUGES: dict[Kind, str] = {
+    "offset": "a constant in every reading (a gauge that was not zeroed)",
+    "drift": "a drift of the gauges from the first row to the last",
+    "play": "a constant with the sign of the reading (play or friction)",
+}
 ALIKE = 0.95  # share of an error on poses left out above which two causes explain them alike
 
 
 @dataclass(frozen=True)
 class Cause:
     """One thing that may be missing: bending at joint ``at`` in the link before it or (``turned``) after it, the tool,
-    ``points`` by the name of what is fitted ("force", "gauge", "both"), or the zero of joint ``at``."""
+    what gauges do, ``points`` by the name of what is fitted ("force", "gauge", "both"), or the zero of joint ``at``."""
 
     kind: Kind
     at: int = 0

@@ -120,3 +120,24 @@ def test_an_arm_unlike_any_model_is_told_by_poses_loaded_three_ways():
     result = rm.identify(ROBOT, rm.LoadTests(F, moved + noise, theta=theta))
     assert result.inquest.lack < 1e-6
     assert "model-misses" in codes(result)
+
+
+@pytest.mark.parametrize(
+    ("kind", "added"),
+    [
+        ("offset", lambda d: 1e-4 * np.array([1.0, -1.0, 0.5])),
+        ("drift", lambda d: np.linspace(0.0, 2e-4, len(d))[:, None] * [0, 0, 1]),
+        ("play", lambda d: 5e-5 * np.sign(d)),
+    ],
+)
+def test_what_gauges_do_is_named(kind, added):
+    tests = pulled(count=40, noise=1e-5)
+    read = tests.displacement[:, :3]
+    odd = replace(tests, displacement=np.pad(read + added(read), ((0, 0), (0, 3)), constant_values=np.nan))
+    assert rm.identify(ROBOT, odd).inquest.likeliest[0].cause.kind == kind
+
+
+def test_copies_are_no_second_reading():
+    """Every row twice halves the noise that seems to be there; nothing is called for all the same."""
+    tests = pulled(1, 20, noise=3e-5)
+    assert "model-misses" not in codes(rm.identify(ROBOT, tests.joined(tests)))
