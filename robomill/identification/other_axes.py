@@ -27,10 +27,10 @@ XYZ = "xyz"
 
 def axes_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
     """Forces or displacements that explain far more along other axes; of tests read along x, y and z in full."""
-    tests = tests.select(np.isfinite(tests.displacement[:, :3]).all(axis=1)) if tests.gauges is None else tests
-    if tests.gauges is not None or tests.aimed.any() or tests.wrench[:, 3:].any() or len(tests) < FEWEST:
+    whole = np.isfinite(tests.displacement[:, :3]).all(axis=1)
+    if tests.gauges is not None or tests.aimed.any() or tests.wrench[:, 3:].any() or whole.sum() < FEWEST:
         return ()
-    tests = tests.thinned(MOST)
+    tests = tests.select(whole).thinned(MOST)
     F, moved = tests.wrench[:, :3], tests.displacement[:, :3]
     D = np.stack([_yield(robot, tests, axis) for axis in np.eye(3)], axis=-1)
 

@@ -56,7 +56,8 @@ def test_each_pose_is_predicted_without_its_fold(poses, folds, weighted):
         rest, root = fold != k, np.sqrt(w) / system.noise
         A = system.A * root[:, None] * 1e6
         missed[~rest] = system.A[~rest] @ nnls(A[rest], (system.b * root * 1e6)[rest])[0] - system.b[~rest]
-    live = w > 0
+    # A test of which a reading was switched off as gross is wrong as a whole, and says nothing of the model.
+    live = ~np.isin(system.test, system.test[w == 0])
     expected = [
         np.linalg.norm(missed[live & (system.pose == p)]) / np.linalg.norm(system.b[live & (system.pose == p)])
         for p in range(poses)
