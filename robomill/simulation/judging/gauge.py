@@ -32,6 +32,7 @@ BESIDE = 20e-6  # m: material this far beyond the rim makes a wall, and bears it
 ON_NOSES = (0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)  # of the way from the flat end to the rim
 LEVEL = 1.4e-3  # how far a path may rise on its way that counts as level
 CROWN = 0.5  # how steep across the feed a floor may be that the heel of a sinking or rising end has rounded
+BESIDE_ROOT = (1.0, 1.25, 1.5, 1.75, 2.0)  # of how far a groove has gone aside: where nobody may cut below its root
 SLENDER = 0.125  # of its height: a wall as thin gives way to a cutter as the arm does
 ALIKE = 2e-6  # m: readings, and deviations, that differ by less are one
 LEAST = 1e-4  # share of the length that a single place stands for
@@ -193,7 +194,7 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
     rims, told, left, carried = rims.only(keep), told[keep], left[keep], carried[keep]
     q = rims.q
     ahead, aside = _dot(rims.u, at.feed[q]), _dot(rims.u, at.left_of[q])
-    upright = _upright(at, q, rims.height)
+    upright = at.upright(q, rims.height)
     slanting = np.sqrt(1.0 - upright**2)
     own = at.d[q, 0] * ahead + at.d[q, 1] * aside - at.d[q, 2] * slanting / upright
     # Beside a corner one looks along the wall of another pass: it is off by what that one has carried it, no more.
@@ -216,19 +217,9 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
 def _leads(at: Places, rims: Rims) -> FloatArray:
     """(m,) m by which the wall of a nose or a cone that sinks or rises stands further out than its rim at a place: it
     is made a little ahead or behind, where the tool is wider, and by moves that are each taken at their middle."""
-    wider = _wider(at, rims.q, rims.height)
+    wider = at.wider(rims.q, rims.height)
     step = at.result.path.step_length[at.i[rims.q]]
     return np.asarray(rims.radius * (1.0 / np.sqrt(1.0 - wider**2) - 1.0) + wider * step)
-
-
-def _wider(at: Places, q: IntArray, height: FloatArray) -> FloatArray:
-    """(m,) by how much the radius of a tool that sinks or rises changes at a height on its way, of that way; where it
-    is more than 0.9 the surface is the rim's and no more the side's."""
-    incline, wider = at.incline[q], np.zeros(len(q))
-    some = np.flatnonzero(incline > 0.0)
-    upright = _upright(at, q[some], height[some])
-    wider[some] = np.minimum(incline[some] * np.sqrt(1.0 - upright**2) / upright, 0.9)
-    return wider
 
 
 def _place(at: Places, rims: Rims) -> FloatArray:
@@ -283,14 +274,6 @@ def _directions(at: Places, around: BoolArray) -> Rims:
     return Rims(*(np.concatenate([getattr(some, each.name) for some in both]) for each in fields(Rims)))
 
 
-def _upright(at: Places, q: IntArray, height: FloatArray) -> FloatArray:
-    """How upright the cutter's side is at a height: 1 on a cylinder, less on a nose or a cone, where an error across
-    the axis is further than one normal to the surface."""
-    step = 1e-6
-    spread = at.radius_at(q, height + step) - at.radius_at(q, height - step)
-    return np.asarray(1.0 / np.hypot(1.0, spread / (2.0 * step)))
-
-
 def _floors(at: Places) -> Readings:
     """The floor under every place, where there is one left: lowest over the width that the tool cuts flat."""
     aside = np.hypot(at.d[:, 0], at.d[:, 1])
@@ -307,7 +290,7 @@ def _floors(at: Places) -> Readings:
     # beside a shoulder or over a deeper slot.
     found &= (offset == 0.0) | (at.slope < LEVEL)[q] | at.steep[q] | ~np.isin(q, q[found & (offset == 0.0)])
     # A hole, or a groove with the sides of a cone, is as deep as its lowest point, wherever that has gone aside.
-    deepest = (at.bottoms | _alone(at, aside))[q] & (told > -SAME)
+    deepest = (at.bottoms | _roots(at, aside))[q] & (told > -SAME)
     conditions = at.result.conditions
     rise = np.where(at.steep, 0.0, conditions.along[at.i])
     root = at.d[:, 2] * np.where(at.steep, 1.0, conditions.across[at.i]) - at.d[:, 0] * rise
@@ -341,26 +324,32 @@ def _on_noses(at: Places, where: BoolArray, aside: FloatArray) -> tuple[IntArray
     told, error, found = at.outline.floors(lines, offset, slope * aside[q])
     found &= np.abs(told - own) <= slope * at.number("radius")[q] + SAME  # what another pass leaves is read along that
     q, offset, own = q[found], offset[found], own[found]
-    upright = _upright(at, q, own)
+    upright = at.upright(q, own)
     normal = np.column_stack([np.zeros(len(q)), -np.sign(offset) * upright, np.sqrt(1.0 - upright**2)])
     beside = offset[:, None] * at.left_of[q] + own[:, None] * at.axial[q]
     return q, error[found], beside, normal
 
 
-def _alone(at: Places, aside: FloatArray) -> BoolArray:
-    """(q,) bool: grooves of cones below whose sides nobody else was told to cut, as far as they have gone ``aside``."""
-    alone = np.zeros(len(at.i), dtype=bool)
+def _roots(at: Places, aside: FloatArray) -> BoolArray:
+    """(q,) bool: grooves of cones, which are as deep as their root: below whose sides nobody else was told to cut, as
+    far as they have gone ``aside``; or else (the next leg at a corner, a crossing, a raster) nobody below their root,
+    up to twice as far. A lower pass on a slope cut in steps comes below it there."""
+    roots = np.zeros(len(at.i), dtype=bool)
     q = np.flatnonzero((at.number("conical") > 0) & ~at.steep)
-    if not len(q):
-        return alone
-    own = at.profile(q, aside[q])
-    lines, no_slack = np.hstack([at.c[q], at.axial[q], at.left_of[q]]), np.zeros(len(q))
-    left, right = (at.outline.floors(lines, side * aside[q], no_slack)[0] for side in (1.0, -1.0))
     # On its way down or up a cone's groove is flatter across than the cone, and made by moves taken at their middle.
-    flatter = np.sqrt(1.0 - _wider(at, q, own + SAME) ** 2)
+    flatter = np.sqrt(1.0 - at.wider(q, at.profile(q, aside[q]) + SAME) ** 2)
     slack = SAME + at.incline[q] * at.result.path.step_length[at.i[q]]
-    alone[q] = np.minimum(left, right) >= own * flatter - slack
-    return alone
+    sides = at.profile(q, aside[q]) * flatter - slack
+    roots[q] = _lowest(at, q, aside[q]) >= sides
+    q, slack = q[~roots[q]], slack[~roots[q]]
+    roots[q] = np.min([_lowest(at, q, share * aside[q]) for share in BESIDE_ROOT], axis=0) >= -slack
+    return roots
+
+
+def _lowest(at: Places, q: IntArray, offset: FloatArray) -> FloatArray:
+    """(m,) m: how high above the tips of places q the lower told floor is of the two at an ``offset`` (m,) m aside."""
+    lines = np.hstack([at.c[q], at.axial[q], at.left_of[q]])
+    return np.minimum(*(at.outline.floors(lines, side * offset, np.zeros(len(q)))[0] for side in (1.0, -1.0)))
 
 
 def _under(at: Places, flat: FloatArray, aside: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:

@@ -47,6 +47,22 @@ class Places:
         every = np.stack([cutter.profile(np.minimum(offset, cutter.radius)) for cutter in self.cutters])
         return np.asarray(every[self.of[q], np.arange(len(q))])
 
+    def upright(self, q: IntArray, height: FloatArray) -> FloatArray:
+        """(m,) how upright the sides of the cutters at places q are at a height: 1 on a cylinder, less on a nose or a
+        cone, where an error across the axis is further than one normal to the surface."""
+        step = 1e-6
+        spread = self.radius_at(q, height + step) - self.radius_at(q, height - step)
+        return np.asarray(1.0 / np.hypot(1.0, spread / (2.0 * step)))
+
+    def wider(self, q: IntArray, height: FloatArray) -> FloatArray:
+        """(m,) by how much the radius of a tool that sinks or rises changes at a height on its way, of that way; where
+        it is more than 0.9 the surface is the rim's and no more the side's."""
+        incline, wider = self.incline[q], np.zeros(len(q))
+        some = np.flatnonzero(incline > 0.0)
+        upright = self.upright(q[some], height[some])
+        wider[some] = np.minimum(incline[some] * np.sqrt(1.0 - upright**2) / upright, 0.9)
+        return wider
+
     @property
     def length(self) -> FloatArray:
         """(q,) m along the path that a place stands for."""

@@ -1,0 +1,63 @@
+"""The root of a V groove where another groove meets it, against the lowest point across the groove of a swept cone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.cutting.tool import Cutter
+from robomill.simulation.result import SimulationResult
+from tests.simulation.judging.test_gauge import R, pushed, run
+
+ACROSS = np.arange(-0.8e-3, 0.8e-3, 5e-6)
+
+
+def lowest_across(result: SimulationResult, tips, half: float, stations, ways):
+    """(s,) m: the lowest height that a cone about ``tips`` (m, 3) cuts, on lines across ``ways`` (s, 2)."""
+    path, balls = result.path, []
+    for i in np.flatnonzero(result.removes):
+        share = np.linspace(0.0, 1.0, 2 + int(path.step_length[i] / 1e-6))[:, None]
+        balls.append(tips[i - 1] + share * (tips[i] - tips[i - 1]))
+    tip, low = np.concatenate(balls), []
+    for at, way in zip(stations, ways, strict=True):
+        near = tip[np.hypot(*(tip[:, :2] - at).T) < 1e-3]
+        x, y = at[:, None] + np.outer([-way[1], way[0]], ACROSS)
+        r = np.hypot(x[:, None] - near[:, 0], y[:, None] - near[:, 1])
+        low.append((near[:, 2] + r / np.tan(half)).min())
+    return np.array(low)
+
+
+@pytest.mark.parametrize("step", [2.0, 0.5, 0.05])
+@pytest.mark.parametrize(("angle", "turn"), [(60.0, 90.0), (90.0, 90.0), (60.0, 150.0), (60.0, 30.0)])
+def test_at_a_corner_a_root_is_as_high_as_the_lowest_point_across_whatever_the_step(angle, turn, step):
+    """Where the next leg comes by within the shift, its side stands over the told root, but the root is beside it."""
+    half, a = np.radians(0.5 * angle), np.radians(turn)
+    end = 20.0 * np.cos(a), 20.0 * np.sin(a)
+    cone = Cutter("chamfer", 2 * R, tip_angle=2.0 * half)
+    lines = ["G0 X-20 Y0 Z5", "G0 Z-2", "G1 X0 F900", f"G1 X{end[0]:.6f} Y{end[1]:.6f}"]
+    made = run(*lines, cutter=cone, step=step * 1e-3)
+    second = made.path.block == made.path.block[made.path.cutting].max()
+    bent = pushed(made, *(np.where(second, b, a) * 1e-3 for a, b in ((0.05, -0.1), (-0.12, 0.25), (0.1, 0.15))))
+    far = np.concatenate([np.arange(0.025, 1.0, 0.05), np.arange(1.0, 5.0)]) * 1e-3
+    legs = np.array([[1.0, 0.0], [np.cos(a), np.sin(a)]])
+    stations, ways = np.vstack([-far[:, None] * legs[0], far[:, None] * legs[1]]), np.repeat(legs, len(far), axis=0)
+    error = lowest_across(bent, bent.p_machined, half, stations, ways) + 2e-3
+    assert bent.verdict.floor.value == pytest.approx(error.max(), rel=0.02)
+
+
+@pytest.mark.parametrize("step", [2.0, 0.5, 0.05])
+def test_where_a_deeper_groove_crosses_a_root_is_read_up_to_its_edge(step):
+    """The told root ends where the deeper groove begins; pushed 0.2 mm aside and 0.1 mm up none is higher than that."""
+    cone = Cutter("chamfer", 2 * R, tip_angle=np.radians(60.0))
+    lines = ["G0 X-20 Y0 Z5", "G0 Z-2", "G1 X20 F900", "G0 Z5", "G0 X0.37 Y-15", "G0 Z-3", "G1 Y15"]
+    bent = pushed(run(*lines, cutter=cone, step=step * 1e-3), left=0.2e-3, up=0.1e-3)
+    assert bent.gauge.floors.error.max() == pytest.approx(0.1e-3, abs=1e-8)
+
+
+@pytest.mark.parametrize("apart", [0.3, 0.5, 3.0])
+def test_a_raster_of_grooves_that_moves_aside_keeps_its_roots(apart):
+    """Pushed 0.2 mm aside and 0.1 mm up, each root stands 0.1 mm too high, beside where it was told."""
+    cone = Cutter("chamfer", 2 * R, tip_angle=np.radians(60.0))
+    rows = [(f"G0 X-20 Y{k * apart:g} Z5", "G0 Z-2", "G1 X20 F900", "G0 Z5") for k in range(6)]
+    bent = pushed(run(*(line for row in rows for line in row), cutter=cone), left=0.2e-3, up=0.1e-3)
+    np.testing.assert_allclose(bent.gauge.floors.error, 0.1e-3, atol=1e-8)
