@@ -491,3 +491,13 @@ def test_a_floor_has_a_lean_where_it_is_straight_half_a_radius_to_either_side(de
         assert "not straight" in found.why["floor_tilt"]
     else:
         assert found.floor_tilt == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("angle", [60.0, 90.0, 120.0])
+def test_the_walls_of_a_v_groove_are_off_in_plan_as_the_cone_has_gone_aside_and_down(angle):
+    """At one height a cone pushed aside and down is wider by its depth times the tangent of half its angle."""
+    cone, half = Cutter("chamfer", 0.01, tip_angle=np.radians(angle)), np.radians(0.5 * angle)
+    found = section([slot()], cone)
+    wider = 0.06e-3 * np.tan(half)
+    assert found.wall_left_error == pytest.approx(0.15e-3 + wider, abs=EXACT)
+    assert found.wall_right_error == pytest.approx(0.15e-3 - wider, abs=EXACT)
