@@ -51,8 +51,7 @@ class Rewritten:
 
 @dataclass(eq=False)
 class Rewriter:
-    """Writes ``program`` anew. ``pieces`` are those of its moves at feed, ``ends`` (m, 3) m where all others end; both
-    are places of the tip."""
+    """Writes ``program`` anew; ``pieces`` of its moves at feed, and ``ends`` (m, 3) m of all others, tell the tip."""
 
     program: Program
     dialect: str
@@ -108,6 +107,7 @@ class Rewriter:
                     )
                 self._line(text, moves, each.modes, each.index + 1)
             before = each.modes
+        self.lines += [line for line in text_lines[-1:] if line.strip() == "%"]  # what began as a tape ends as one
 
     def _kept(self, text: str, before: Modes | None, modes: Modes) -> bool:
         """Whether a line that makes no move is kept where loops and calls are written out."""
@@ -116,7 +116,7 @@ class Rewriter:
             frame = before is not None and not before.places_as(modes)
             return frame or text.strip()[:1] in ("%", "")
         codes = {token.code for token in tokens}
-        computes = any(token.letter and (token.value is None or token.letter in "OLP#") for token in tokens)
+        computes = any(token.letter and (token.value is None or token.letter in "LP#") for token in tokens)
         return not codes & CALLS and (not computes or "G10" in codes or "G4" in codes)
 
     # --- a line

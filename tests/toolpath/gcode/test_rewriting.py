@@ -265,6 +265,19 @@ def test_loops_keep_what_says_how_their_words_count(name: str) -> None:
     assert found.unrolled[0] == "loops and subprograms"
 
 
+def test_a_program_with_calls_keeps_its_number_and_the_ends_of_its_tape() -> None:
+    """Controls store a program by its O number and read a tape from % to %; those of what it calls are written out."""
+    text = (
+        "%\nO0100 (MAIN)\nN1 G21 G90\nN2 G0 X0 Y0 Z5\nN3 M98 P200 L2\nN4 G0 Z9\nN5 M30\n"
+        "O0200 (PASS)\nG91 G1 Z-6 F300\nX20\nG0 Z6\nG90\nM99\n%\n"
+    )
+    found, program = rewritten(text, "auto", SHIFT)
+    lines = found.text.splitlines()
+    assert (lines[:3], lines[-2:]) == (["%", "O0100 (MAIN)", "N1 G21 G90"], ["N5 M30", "%"])
+    assert not any("200" in line for line in lines)
+    np.testing.assert_allclose(cuts(interpret(found.text.encode(), tools=TOOLS)), cuts(program) + SHIFT, atol=0.3e-6)
+
+
 @pytest.mark.parametrize("length", [0.0, 30e-3])
 def test_what_only_the_machine_knows_is_kept_where_nothing_is_led_aside_and_else_refused(length: float) -> None:
     """G53 and G28 lead where they led, with a tool length on too; a cut by G53 that is to be led aside is refused."""
