@@ -10,7 +10,7 @@ import numpy as np
 
 from robomill.arguments import asked, made_by
 from robomill.arrays import FloatArray, digest
-from robomill.errors import RobomillError, SetupError
+from robomill.errors import RobomillError, SetupError, ToolpathError
 from robomill.frames import Columns
 from robomill.improve.judged import check_improvable
 from robomill.improve.ways import fed, in_levels, turned_round
@@ -30,6 +30,11 @@ MOST_LEVELS = 4
 ALLOWANCE = 0.1  # of the depth: what roughing leaves for a last pass
 AGAIN = ("allowance", "once more")  # ways whose last pass cuts what the one before was too far off to take away
 MARCHED = 5_000  # samples of a path: of longer ones no such way is run step by step
+DEEPEST_FIRST = (
+    "The path goes down in layers, and turned round it would cut the deepest one first; turn each layer round in the "
+    "program."
+)
+NO_THINNER = "these passes would not make them thinner; divide each layer in the program."
 TOLD = " (met as it was told)"  # by a last pass, where that is too long a run
 
 
@@ -192,14 +197,34 @@ def _ways(now: SimulationResult) -> Iterator[tuple[str, str, Callable[[], Toolpa
     """Name, title and path of each way."""
     path, top = now.setup.toolpath, float(now.setup.stock_block.upper[2])
     depth = max(top - float(path.extents[0][2]), 0.0)
-    yield "turned round", "The other way round", partial(turned_round, path, top)
+    layer = _layer(now, top)
+    back = partial(turned_round, path, top)
+    yield "turned round", "The other way round", back if np.isinf(layer) else partial(_refused, DEEPEST_FIRST)
     for count in range(2, MOST_LEVELS + 1):
         levels = depth * (1.0 - np.arange(1, count + 1) / count)
-        yield f"{count} passes", f"In {count} passes", partial(in_levels, path, levels, top)
+        thin = partial(in_levels, path, levels, top)
+        why = f"The path goes down in layers of {format_si(layer, 'mm')} already, and {NO_THINNER}"
+        as_thick = layer * count < depth * (1.0 + 1e-6)
+        yield f"{count} passes", f"In {count} passes", partial(_refused, why) if as_thick else thin
     rest = np.array([ALLOWANCE * depth, 0.0])
     said = f"Roughing, {format_si(rest[0], 'mm')} left for a last pass"
     yield "allowance", said, partial(in_levels, path, rest, top)
     yield "once more", "The same path once more", partial(in_levels, path, np.zeros(2), top)
+
+
+def _layer(now: SimulationResult, top: float) -> float:
+    """m: how thick the layers are in which the path goes down from ``top`` (m); infinite where it goes to its depth at
+    once. A cut that is thinner by no more than the tip is off is such a one: its deflection may have made it so."""
+    met = now.conditions
+    level = now.path.cutting & met.engaged & ~met.mostly_axial
+    if not level.any():
+        return float("inf")
+    thickest, deepest = float(np.nanmax(met.a_p[level])), top - float(now.path.p[level, 2].min())
+    return thickest if thickest + now.max_deviation < deepest else float("inf")
+
+
+def _refused(why: str) -> Toolpath:
+    raise ToolpathError(why)
 
 
 def _along(setup: SimulationSetup, path: Toolpath) -> SimulationSetup:

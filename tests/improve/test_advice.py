@@ -108,3 +108,36 @@ def test_a_last_pass_meets_what_the_deflected_one_before_it_has_left(monkeypatch
 def test_what_another_way_would_not_change_is_refused(setup: rm.SimulationSetup, words: str) -> None:
     with pytest.raises(SetupError, match=words):
         advise(setup)
+
+
+def layered(*z: float, start: int = -70) -> str:
+    """A slot along X in layers at heights ``z`` mm, there and back in turn, begun at X ``start`` mm."""
+    goes = "".join(f"G1 Z{at} F1000\nX{-start * (-1) ** n} F1500\n" for n, at in enumerate(z))
+    return f"G21 G90 S12000 M3\nG0 X{start} Y0 Z5\n{goes}G0 Z5\nM2\n"
+
+
+def test_of_a_path_in_layers_no_way_is_told_that_cuts_the_deepest_first_or_no_thinner() -> None:
+    """By programs of one's own: deepest first it is far worse, and halves of each layer use about half as much; two
+    times the same layers, the first time higher up by half the depth, use as much as they did."""
+
+    def share(text: str) -> float:
+        return rm.simulate(SETUP.replace(source=rm.GCodeSource(text))).verdict.share
+
+    found = advise(SETUP.replace(source=rm.GCodeSource(layered(-1.5, -3.0, -4.5))))
+    now = way(found, "now").share
+    assert share(layered(-4.5, -3.0, -1.5, start=70)) > 1.5 * now
+    assert share(layered(-0.75, -1.5, -2.25, -3.0, -3.75, -4.5)) < 0.65 * now
+    assert share(layered(-0.75, -2.25, -1.5, -3.0, -4.5)) == pytest.approx(now, rel=0.05)
+    for name, why in (("turned round", "deepest one first"), ("2 passes", "1.500 mm already"), ("3 passes", "thinner")):
+        assert way(found, name).run is None
+        assert why in way(found, name).refused
+    thinner = way(found, "4 passes").run
+    assert thinner is not None
+    met = thinner.conditions
+    assert met.a_p[met.engaged & ~met.mostly_axial].max() == pytest.approx(4.5e-3 / 4, rel=1e-3)
+
+
+def test_cuts_of_two_depths_side_by_side_are_no_layers() -> None:
+    text = "G21 G90 S12000 M3\nG0 X-70 Y8 Z5\nG0 Z-1\nG1 X70 F1500\nG0 Z5\nG0 X-70 Y-8\nG0 Z-2\nG1 X70\nG0 Z5\nM2\n"
+    found = advise(SETUP.replace(source=rm.GCodeSource(text)))
+    assert all(each.run is not None for each in found.ways)
