@@ -20,7 +20,9 @@ def resample(path: Toolpath, step: float | FloatArray) -> Toolpath:
     corners are kept.
 
     A feed move that begins a cut or turns by more than ``CORNER`` also gets a sample at its start (a step of
-    no length): there the force already has the new direction. Rapids stay whole: no force acts on them.
+    no length): there the force already has the new direction. One that draws the tool out along its axis does not,
+    but behind a dwell: what the tool is off where it leaves stays in the part, as it does before a rapid. Rapids stay
+    whole: no force acts on them.
     The tool axis is interpolated on the great circle. Raises ToolpathError if the step is not positive or
     would give more points than the memory holds.
     """
@@ -82,7 +84,8 @@ def _begins(path: Toolpath) -> BoolArray:
     angle = np.zeros(len(path))
     angle[1:] = angle_between(move[:-1], move[1:])
     resumed = np.append(True, ~path.cutting[:-1] | ~moved[:-1])
-    begins = path.cutting & moved & (resumed | (angle > CORNER))
+    out = np.sum(move * path.k, axis=1) > (1.0 - 1e-9) * path.step_length
+    begins = path.cutting & moved & (resumed | ((angle > CORNER) & ~(out & (path.dwell == 0.0))))
     begins[0] = False
     return np.asarray(begins)
 

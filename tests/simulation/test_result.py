@@ -337,3 +337,15 @@ def test_a_plunge_beside_the_stock_cuts_air_and_one_into_it_has_no_number(x: flo
     found = rm.simulate(flute.replace(source=rm.GCodeSource(text)))
     assert found.not_judged.sum() == lost
     assert found.verdict.wall.value == pytest.approx(0.2295e-3, rel=1e-3)  # the paper's own
+
+
+@pytest.mark.parametrize("out", ["G0 Z10", "G1 Z10 F100", "G1 Z10 F2000", "G85"])
+def test_a_plunge_is_as_deep_however_the_tool_is_drawn_out_of_it(out: str) -> None:
+    """Who measures the hole finds the plunge's own error, C F of its last step; after a dwell it is cut to depth."""
+    bored = "G85 X0 Y0 Z-5 R1 F100\nG80" if out == "G85" else f"G1 Z-5 F100\n{out}"
+    text = f"G21 G90\nS12000 M3\nG0 X0 Y0 Z10\n{bored}\nG0 Z20\nM2\n"
+    found = rm.simulate(PROCESS.replace(source=GCodeSource(text)))
+    bottom = int(np.flatnonzero(found.path.p[:, 2] == found.path.p[:, 2].min())[0])
+    assert found.verdict.floor.value == pytest.approx((found.C[bottom] @ found.F[bottom])[2], rel=1e-6)
+    waited = rm.simulate(PROCESS.replace(source=GCodeSource(text.replace("G1 Z10", "G4 P1\nG1 Z10"))))
+    assert waited.verdict.floor.value == (0.0 if out.startswith("G1") else found.verdict.floor.value)

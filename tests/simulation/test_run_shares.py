@@ -115,7 +115,10 @@ def test_off_the_cut_a_measured_map_is_not_asked():
 def test_depth_of_a_full_slot_is_measured_from_the_stocks_top():
     run = rm.simulate(SETUP)
     top = run.setup.stock_block.upper[2]
-    np.testing.assert_allclose(run.conditions.a_p, np.maximum(top - run.path.p[:, 2], 0.0))
+    lower, p = run.setup.stock_block.lower, run.path.p
+    within = p[:, 0] + 0.004 > lower[0] + 1e-9  # the path begins with the mill of 8 mm just clear of the block
+    assert 0 < within.sum() < len(p)
+    np.testing.assert_allclose(run.conditions.a_p, np.where(within, np.maximum(top - p[:, 2], 0.0), 0.0))
 
 
 def test_a_step_of_no_length_goes_the_way_of_the_next_step():
