@@ -20,9 +20,9 @@ def resample(path: Toolpath, step: float | FloatArray) -> Toolpath:
     corners are kept.
 
     A feed move that begins a cut or turns by more than ``CORNER`` also gets a sample at its start (a step of
-    no length): there the force already has the new direction. One that draws the tool out along its axis does not,
-    but behind a dwell: what the tool is off where it leaves stays in the part, as it does before a rapid. Rapids stay
-    whole: no force acts on them.
+    no length): there the force already has the new direction. One that draws the tool straight back out of a plunge
+    does not, but behind a dwell: what the tool is off at the bottom stays in the part, as it does before a rapid.
+    Rapids stay whole: no force acts on them.
     The tool axis is interpolated on the great circle. Raises ToolpathError if the step is not positive or
     would give more points than the memory holds.
     """
@@ -84,8 +84,8 @@ def _begins(path: Toolpath) -> BoolArray:
     angle = np.zeros(len(path))
     angle[1:] = angle_between(move[:-1], move[1:])
     resumed = np.append(True, ~path.cutting[:-1] | ~moved[:-1])
-    out = np.sum(move * path.k, axis=1) > (1.0 - 1e-9) * path.step_length
-    begins = path.cutting & moved & (resumed | ((angle > CORNER) & ~(out & (path.dwell == 0.0))))
+    back = (angle > np.pi - CORNER) & (np.sum(move * path.k, axis=1) > np.cos(CORNER) * path.step_length)
+    begins = path.cutting & moved & (resumed | ((angle > CORNER) & ~(back & (path.dwell == 0.0))))
     begins[0] = False
     return np.asarray(begins)
 
