@@ -102,6 +102,9 @@ WORDS: dict[str, dict[str, str]] = {
         "cv_relative_error": "Error at tests left out of the fit, as a share of their size (cross-validation).",
         "cv_leaves_out": "What is left out together: a `pose`, or `neighbours`.",
         "outliers": "Rows that do not fit.",
+        "outlier_slips": "Of each of them: its row, how many times the usual error it misses by (`times`), and the "
+        "slips that would explain it (a sign, a unit, swapped columns ...).",
+        "suspects": "Causes that explain what the model misses, the likeliest first.",
         "unseen_joints": "Joints that no test moves.",
         "model": "What may give: joints, bending, tool.",
         "bending_joints": "Joints with bending springs.",
@@ -111,6 +114,8 @@ WORDS: dict[str, dict[str, str]] = {
         "points.*": "A fitted point (load or gauge): in the frame of the flange with its interval of 95 %, from "
         "the tool tip (`tool_mm`), and how far it is from the stated one (`shift_mm`, `off_mm`).",
         "offer": "A point that would pay to be fitted, where there is one.",
+        "bending_offer": "Bending that would pay, where it would: its joints, and the error at tests left out before "
+        "and with it.",
         "band": "Null where the tests give no displacements.",
         "band.made_of": "What the bands of predictions are made of.",
         "band.model_error_share": "The model's error as a share of the displacement.",

@@ -53,8 +53,8 @@ class GrooveSection(Tabled):
     floor_error    machined floor minus ideal floor at the tool axis, positive: material left
     wall_left, wall_right            positions w of the machined walls; NaN where none is left
     wall_left_ideal, wall_right_ideal    of the same walls as they were told to be
-    wall_left_error, wall_right_error    along the wall's normal in plan, at one height, to the left of the feed +;
-                                     normal to a wall that leans (a cone's) it is off by cos(lean) of that
+    wall_left_error, wall_right_error    across the wall, in plan, at one height, to the left of the feed +; normal
+    to a wall that leans (a cone's) it is off by the cosine of its lean of that
     wall_left_angle, wall_right_angle    from the floor's side of the horizontal: 90 degrees is upright, more opens up
     wall_left_straightness, wall_right_straightness   range about the best straight line over the wall's own height
     floor, floor_tilt                height at the tool axis; lean of the machined floor across, rising to the left +
