@@ -42,8 +42,7 @@ def steps_in_stock(setup: SimulationSetup, path: Toolpath) -> FloatArray:
     width, stock = tooling(setup, path).each("diameter"), setup.stock_block
     before = np.roll(path.p, 1, axis=0)
     low, high = np.minimum(path.p, before), np.maximum(path.p, before)
-    lean = np.linalg.norm(path.k[:, :2], axis=1) / np.maximum(path.k[:, 2], DISH)
-    reach = (width + np.maximum(stock.upper[2] - low[:, 2], 0.0) * lean)[:, None]
+    reach = (width + _aside(path, stock.upper[2] - low[:, 2]))[:, None]
     beside = (high[:, :2] + reach < stock.lower[:2]) | (low[:, :2] - reach > stock.upper[:2])
     near = ~beside.any(axis=1) & (low[:, 2] - width < stock.upper[2])
     return np.where(near, width / SEEN, np.inf)
@@ -53,10 +52,15 @@ def over_stock(setup: SimulationSetup, path: Toolpath) -> BoolArray:
     """(m,) samples where the cutter reaches into the block of the stock: what is further off cuts air."""
     block, p = setup.stock_block, path.p
     depth = block.upper[2] - p[:, 2]
-    lean = np.linalg.norm(path.k[:, :2], axis=1) / np.maximum(path.k[:, 2], DISH)
     beside = np.linalg.norm(np.maximum(np.maximum(block.lower - p, p - block.upper), 0.0)[:, :2], axis=1)
-    reach = tooling(setup, path).each("radius") + np.maximum(depth, 0.0) * lean
+    reach = tooling(setup, path).each("radius") + _aside(path, depth)
     return np.asarray((beside < reach - 1e-9) & (depth > 1e-9))
+
+
+def _aside(path: Toolpath, depth: FloatArray) -> FloatArray:
+    """(m,) m: how far beside its tip a tool that leans goes through the top of a block, ``depth`` (m,) m above it."""
+    lean = np.linalg.norm(path.k[:, :2], axis=1) / np.maximum(path.k[:, 2], DISH)
+    return np.asarray(np.maximum(depth, 0.0) * lean)
 
 
 def told_conditions(

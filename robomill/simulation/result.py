@@ -30,7 +30,7 @@ from robomill.simulation.origin.doubts import frame_notes, known_notes, rigid_to
 from robomill.simulation.posture import posture_notes
 from robomill.simulation.steadiness import steadiness
 from robomill.simulation.tools import feed_notes, tool_notes
-from robomill.simulation.uncoupled import coupling_notes, met_where_pushed
+from robomill.simulation.uncoupled import coupling_notes, met_where_pushed, moves_a_reading
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.sections.groove import GrooveSection, GrooveSections, groove_sections
 from robomill.surface.swept import CutPath
@@ -120,7 +120,10 @@ class SimulationResult(Run):
             return ()
         met, F = met_where_pushed(self)
         pushed = replace(self, conditions=met, F=F, delta=self.delta + displacement(self.C, F - self.F))
-        return coupling_notes(self, pushed, (self.verdict, pushed.verdict), pushed.decided.sample)
+        if not moves_a_reading(self, pushed):
+            return ()
+        place = f"{self.path.block_name} {self.path.block[pushed.decided.sample]}"
+        return coupling_notes(self.verdict, pushed.verdict, place)
 
     @cached_property
     def steadiness(self) -> tuple[Finding, ...]:

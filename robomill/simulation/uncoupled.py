@@ -25,17 +25,19 @@ def met_where_pushed(run: Run) -> tuple[CutConditions, FloatArray]:
     return met, force_on_tool(run.setup.force, met, run.R_MF)
 
 
-def coupling_notes(run: Run, pushed: Run, verdicts: tuple[Verdict, Verdict], sample: int) -> tuple[Finding, ...]:
-    """Whether the verdict of a run without coupling would be another, or a tenth of the tolerance worse, where what the
-    deflected tool meets ``pushed`` it: ``verdicts`` of both, the second decided at ``sample``."""
+def moves_a_reading(run: Run, pushed: Run) -> bool:
+    """Whether what the deflected tool meets has ``pushed`` it elsewhere by so much that a verdict may be another."""
     limits = np.array([run.setup.limits["wall"], run.setup.limits["floor"]])
     change = np.abs(pushed.delta_in_cut - run.delta_in_cut)[run.judged, 1:]
-    if not (change > FELT * limits).any():
+    return bool((change > FELT * limits).any())
+
+
+def coupling_notes(verdict: Verdict, pushed: Verdict, place: str) -> tuple[Finding, ...]:
+    """Whether the ``verdict`` of a run without coupling would be another, or a tenth of the tolerance worse, where what
+    the deflected tool meets has ``pushed`` it; that one is decided at ``place``."""
+    here, there = verdict.share, pushed.share
+    if not (there > here + MORE or (there > here and pushed.level != verdict.level)):
         return ()
-    here, there = (each.share for each in verdicts)
-    if not (there > here + MORE or (there > here and verdicts[0].level != verdicts[1].level)):
-        return ()
-    place = f"{run.path.block_name} {run.path.block[sample]}"
     text = (
         "Coupling is off, so the tool is taken to cut where it is told to. Where it is pushed to, and after earlier "
         f"passes that were pushed off, too, about {format_share(there)} of the tolerance would be used ({place}), not "
