@@ -34,7 +34,8 @@ def start() -> None:
         story.doors(take_file)
         st.stop()
 
-    ui.headline(f"Start · {setup.name}", ui.verdict_headline(result, unit), story.cause(result, unit))
+    lead = f"{ui.verdict_beside(result, unit)} {story.cause(result, unit)}".strip()
+    ui.headline(f"Start · {setup.name}", ui.verdict_headline(result, unit), lead)
     ui.open_question(result)
     other.tiles(ui.verdict_tiles(result, unit), tiles_of_b)
     mathematics(lambda: of_the_run(result, result.decided.sample), "start")

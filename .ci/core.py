@@ -45,6 +45,7 @@ def main() -> int:
     pip = [sys.executable, "-m", "pip", "--python", str(python), "install", "--quiet", "--disable-pip-version-check"]
     subprocess.run([*pip, "-e", str(ROOT), *wanted, *TOOLS], check=True)
     print("On " + ", ".join(wanted), flush=True)
+    subprocess.run([str(python), "-m", "robomill.compiled"], cwd=ROOT, check=True)
     parts = [str(ROOT / "tests" / part) for part in PARTS]
     marks = ["-m", "not slow and not benchmark", "--durations=5"]
     return subprocess.call([str(python), "-m", "pytest", *marks, *parts], cwd=ROOT)

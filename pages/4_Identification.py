@@ -29,7 +29,7 @@ def load_tests(kept: Bench, view: ui.View, dark: bool, top: Any) -> None:
         )
     if result is not None:
         ui.tiles(words.tiles(result, view.joint_unit, cut.cut_tile(kept, robot, result, view.length), view.length))
-    left, right = ui.split([1, 2.3], "steps")
+    left, right = ui.split([1, 2.3], "identified")
     with left:
         inputs.source(kept, robot)
         inputs.said(tests, refusal, inputs.findings(tests, result, robot))

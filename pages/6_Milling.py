@@ -10,9 +10,10 @@ setup, unit, dark = project.setup, project.view.length, ui.dark()
 result = ui.attempt(ui.result, setup)
 
 kicker = f"Milling · {setup.name}"
-ui.headline(kicker, "No result yet" if result is None else ui.verdict_headline(result, unit))
 if result is None:
+    ui.headline(kicker, "No result yet")
     panel.waiting(dark)
     st.stop()
+ui.headline(kicker, ui.verdict_headline(result, unit), ui.verdict_beside(result, unit))
 ui.open_question(result, on="Milling")
 panel.workbench(dark)

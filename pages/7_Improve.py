@@ -32,6 +32,7 @@ ui.headline(
 with st.container(border=True):
     remedies.table(found, now)
     remedies.once(result)
+    ui.open_question(result)
     asked, beside = pieces.split((1, 1), "judged")
     with asked:
         inputs.choice("Judged by", remedies.BY, remedies.JUDGED, by, partial(session.keep, remedies.BY))

@@ -93,10 +93,9 @@ def named(
         refuse_unknown(given, signature.parameters, who)
     hidden = order[:1] in (["self"], ["cls"])
     if len(args) > len(order) and not any(each.kind is each.VAR_POSITIONAL for each in every):
-        raise ArgumentError(
-            f"{who}: found {len(args) - hidden} values without a name, expected at most {len(order) - hidden} "
-            f"({', '.join(order[hidden:]) or 'none'}); give the others by name."
-        )
+        found, known = len(args) - hidden, order[hidden:]
+        most = f"at most {len(known)} ({', '.join(known)}); give the others" if known else "none; give everything"
+        raise ArgumentError(f"{who}: found {found} value{'s' * (found != 1)} without a name, expected {most} by name.")
     first = dict(zip(order, args))
     twice = [name for name in first if name in given]
     if twice:
@@ -104,7 +103,8 @@ def named(
     lacking = [each.name for each in every if each.default is each.empty and each.name not in {*first, *given}]
     lacking = [name for name in lacking if signature.parameters[name].kind.name[:3] != "VAR"]
     if whole and lacking:
-        raise ArgumentError(f"{who}: {' and '.join(lacking)} is missing.", where=lacking[0])
+        are = "are" if len(lacking) > 1 else "is"
+        raise ArgumentError(f"{who}: {' and '.join(lacking)} {are} missing.", where=lacking[0])
     return {name: value for name, value in (first | dict(given)).items() if name not in order[:hidden]}
 
 

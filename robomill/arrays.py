@@ -54,7 +54,7 @@ def as_floats(
     """
     try:
         found = np.asarray(value)
-        if value is None or found.dtype.kind == "c":
+        if value is None or found.dtype.kind == "c" or np.ma.is_masked(value):
             raise TypeError
         array = found.astype(np.float64, copy=False)
     except NO_NUMBERS as exc:
@@ -83,9 +83,9 @@ def stretches(which: BoolArray) -> IntArray:
 
 
 def is_unreal(value: Any) -> bool:
-    """Whether NumPy would take for numbers what is none: True and False alone or in lists, and complex ones."""
+    """Whether NumPy would take for numbers what is none: True and False alone or in lists, complex and masked ones."""
     if isinstance(value, np.ndarray):
-        return value.dtype.kind == "c"
+        return value.dtype.kind == "c" or bool(np.ma.is_masked(value))
     if isinstance(value, list | tuple):
         return any(map(is_unreal, value))
     return isinstance(value, bool | np.bool_ | complex | np.complexfloating)
@@ -93,6 +93,8 @@ def is_unreal(value: Any) -> bool:
 
 def no_number(value: Any) -> str:
     """What in ``value`` is no number: the first such thing, or rows that differ in length; "" where all are numbers."""
+    if np.ma.is_masked(value):
+        return "a masked entry, which is no number"
     if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes):
         lengths = {len(row) for row in value if isinstance(row, Sequence | np.ndarray) and not isinstance(row, str)}
         uneven = f"rows of {' and '.join(map(str, sorted(lengths)))}" if len(lengths) > 1 else ""
@@ -211,6 +213,8 @@ def _feed(state: Any, value: Any) -> None:
         for item in value:
             _feed(state, item)
         state.update(b")")
+    elif isinstance(value, frozenset):
+        _feed(state, sorted(value, key=repr))
     elif isinstance(value, bool | np.bool_):
         state.update(b"b1" if value else b"b0")
     elif isinstance(value, int | np.integer):

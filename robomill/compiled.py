@@ -28,10 +28,12 @@ import sys
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
+from concurrent import futures
 from contextlib import suppress
 from functools import cache, partial
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import compress
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, get_type_hints, overload
 
@@ -355,17 +357,25 @@ def build(*names: str) -> None:
             subprocess.run(command, check=False, capture_output=True, timeout=600, env=there)
 
 
-def compile_all(names: tuple[str, ...] = ()) -> None:
-    """Compile or load every kernel, or those of some modules, and note that they are there."""
-    folder, names = kept_in(), names or modules()
-    for name in names:
-        for entry in vars(import_module(name)).values():
-            if folder is None or not _kept:
-                return  # whoever needs it compiles it
-            if isinstance(entry, Kernel):
-                entry.code  # noqa: B018
+def compile_all(names: tuple[str, ...] = (), processes: int = 1) -> None:
+    """Compile or load every kernel, or those of some modules, by several processes, and note that they are there."""
+    folder, names, kept = kept_in(), names or modules(), None
+    if min(processes, len(names)) > 1:
+        with suppress(OSError, RuntimeError, ImportError), futures.ProcessPoolExecutor(processes) as pool:
+            kept = list(pool.map(_compiled, names))
+    kept = kept or [_compiled(name) for name in names]  # where no other process is needed, or can be had
     if folder is not None:
-        seals.finish(folder, sorted({*seals.finished(folder), *names}))
+        seals.finish(folder, sorted({*seals.finished(folder), *compress(names, kept)}))
+
+
+def _compiled(name: str) -> bool:
+    """Whether all kernels of a module are compiled or loaded, and kept; whoever needs one that is not compiles it."""
+    for entry in vars(import_module(name)).values():
+        if kept_in() is None or not _kept:
+            return False
+        if isinstance(entry, Kernel):
+            entry.code  # noqa: B018
+    return _kept
 
 
 def announce(say: Callable[[str], Any] | None) -> None:
@@ -387,4 +397,4 @@ def _say() -> None:
 
 if __name__ == "__main__":
     # This file by its own name: what it marks is known there.
-    import_module("robomill.compiled").compile_all(tuple(sys.argv[1:]))
+    import_module("robomill.compiled").compile_all(tuple(sys.argv[1:]), min(os.cpu_count() or 1, 2))

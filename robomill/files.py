@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from robomill.arrays import brief
 from robomill.errors import RobomillError
 from robomill.units import format_number
 
@@ -71,7 +72,7 @@ def read_file(
 def check_place(given: Any, expected: str, error: type[RobomillError]) -> None:
     """Refuse what is no file's name: a number, a table, a value that was given in its place."""
     if not isinstance(given, str | os.PathLike):
-        raise error(f"Expected the name of a file, found {given!r:.60}; expected {expected}.")
+        raise error(f"Expected the name of a file, found {brief(given)}; expected {expected}.")
 
 
 def name_of(path: str | Path) -> str:

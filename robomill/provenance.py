@@ -80,7 +80,7 @@ class Finding:
     """What was noticed. ``code`` says which kind it is, for code; ``message`` is for people and nothing branches on it.
 
     ``line`` is the 1-based source line (0: the whole), ``count`` how often it was noticed; ``place`` is what ``line``
-    counts, where the path is none of a program: "row", "shape" or "point".
+    counts, where the path is none of a program: "row", "shape" or "point"; "" where the message names it itself.
 
     Examples
     --------
@@ -103,8 +103,8 @@ class Finding:
 
     @property
     def sentence(self) -> str:
-        """The message, with its line before it where it has one."""
-        return f"{self.place.capitalize()} {self.line}: {self.message}" if self.line else self.message
+        """The message, with its line before it where it has one and does not name it."""
+        return f"{self.place.capitalize()} {self.line}: {self.message}" if self.line and self.place else self.message
 
     def record(self) -> dict[str, Any]:
         """As JSON carries it."""

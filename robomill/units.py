@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import SupportsFloat, TypeVar
 
 import numpy as np
@@ -149,6 +150,16 @@ def from_si(value: Number, unit: str) -> Number:
     return value / UNITS[unit].factor  # type: ignore[return-value]
 
 
+def decimal_to_si(value: Decimal, unit: str) -> float:
+    """``to_si`` of a number with more digits than a float holds, rounded once."""
+    return float(value * Decimal(UNITS[unit].factor))
+
+
+def decimal_from_si(value: float, unit: str, digits: int = 21) -> Decimal:
+    """The number whose ``decimal_to_si`` is the very same SI value: some have no float that is."""
+    return Decimal(f"{Decimal(value) / Decimal(UNITS[unit].factor):.{digits}g}")
+
+
 def si_unit(unit: str) -> str:
     """The unit in which a quantity of ``unit`` is inside: ``si_unit("um/N") == "m/N"``."""
     return unit if UNITS[unit].factor == 1.0 else SI_NAMES[unit]
@@ -206,7 +217,7 @@ def format_beside(value: SupportsFloat, limit: float, unit: str, digits: int | N
 
     def tells(n: int) -> bool:
         shown = round(size, n) - rounded(allowed)
-        return shown * (size - allowed) > 0.0 or size == allowed
+        return shown * (size - allowed) > 0.0 or math.isclose(size, allowed)
 
     more = range(digits, digits + 4)
     return format_si(value, unit, next((n for n in more if tells(n)), more[-1]), sign)

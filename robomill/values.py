@@ -95,7 +95,7 @@ class Value(ReadOnly):
 
 
 class Said:
-    """A small value (``repr=False``) that says in one line what it is; equality and fields are its class's own."""
+    """A small value (``repr=False``) that says in one line what it is; one that holds arrays is a ``Value``, too."""
 
     def _said(self) -> str:
         """What one wants to know of it at first sight."""

@@ -271,7 +271,7 @@ _LOAD_TESTS: tuple[tuple[str, Sequence[str], str], ...] = (
 )
 _FORCE = (
     ("time", ("t",), "from the first cut on, rapids and dwells included; rising, without gaps"),
-    ("path length", ("s",), "from the start of the path, in place of time"),
+    ("path length", ("s",), "of path at feed from its start, rapids left out; in place of time"),
     ("along the path", forces.COMPONENTS["path"], "feed, left of the feed, out of the part"),
     ("in axes", forces.COMPONENTS["M"], 'of the robot, or of the part with `force_axes = "part"`'),
 )

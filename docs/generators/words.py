@@ -15,7 +15,7 @@ WORDS: dict[str, dict[str, str]] = {
         "tools_unit": 'Unit of a LinuxCNC tool table named by `tools`, which does not say it: `"mm"` or `"in"`.',
         "spin": 'Turn about the tool axis of arms with six axes or more: `"least_motion"` of the joints (where it is '
         'left out), or `"least_deviation"`; one for the whole path.',
-        "spin_deg": "The same turn as an angle, in place of `spin`.",
+        "spin_deg": "The same turn as an angle, in place of `spin`: from R_x(A) R_y(B) in the axes of the part.",
         "spin_rad": "The same in radians; written where no number of degrees reads back to it.",
         "robot": "The arm: table `[robot]`.",
         "path": "Where the tool is told to go: table `[path]`.",

@@ -88,10 +88,10 @@ def _check_folder(folder: Path, arguments: Any) -> None:
 
 def _contents(result: Any, record: Mapping[str, Any]) -> dict[str, str | bytes]:
     """What there always is, by name."""
+    from robomill.csv_text import csv_text
     from robomill.io.results import json_text
     from robomill.io.setups.projects import setup_to_toml
     from robomill.report.records import jsonable
-    from robomill.report.tables import csv_text
 
     return {
         SETUP: setup_to_toml(result.setup),

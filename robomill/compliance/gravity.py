@@ -5,7 +5,7 @@ Parts are usually zeroed with the arm sagged, so this is shown and not added to 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +19,8 @@ from robomill.provenance import BY_HAND, Provenance
 from robomill.quantities import quantity, settle
 from robomill.robot.model import Robot
 from robomill.spelled import in_units
+from robomill.units import format_count, format_short
+from robomill.values import Said, Value
 
 #: Standard gravity in a {M} whose z axis points up, m/s^2.
 GRAVITY = (0.0, 0.0, -9.80665)
@@ -26,8 +28,8 @@ HEAVIEST = 2e4  # kg: no arm weighs as much: was it meant in g?
 
 
 @in_units(RobotError, "Weight of the arm")
-@dataclass(frozen=True, eq=False)
-class LinkMasses:
+@dataclass(frozen=True, eq=False, repr=False)
+class LinkMasses(Said, Value):
     """mass (n,) kg and centre (n, 3) m of what moves with each free joint, in the frame after it.
 
     That is the frame of the next joint, and {T} for the last; spindle and tool belong to the last entry.
@@ -56,6 +58,9 @@ class LinkMasses:
             centre_mm: ArrayLike = ...,
         ) -> None: ...
 
+    def _said(self) -> str:
+        return f"{format_short(float(self.mass.sum()), 'kg')} on {format_count(len(self.mass), 'joint')}"
+
     def __post_init__(self) -> None:
         settle(self, RobotError, "Weight of the arm")
         if len(self.mass) != len(self.centre):
@@ -64,6 +69,14 @@ class LinkMasses:
                 "expected one of each for every joint.",
                 where="centre",
             )
+
+    def behind(self, longer: float) -> LinkMasses:
+        """The same masses seen from the tip of a tool ``longer`` (m) along z_T: what the last joint carries stays."""
+        if longer == 0.0:
+            return self
+        centre = self.centre.copy()
+        centre[-1, 2] += longer
+        return replace(self, centre=centre)
 
 
 def gravity_torques(robot: Robot, theta: ArrayLike, links: LinkMasses, gravity: ArrayLike = GRAVITY) -> FloatArray:

@@ -6,6 +6,8 @@ from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.kinematics.extent import drawn
 from robomill.kinematics.numeric import solve_numerically
+from robomill.kinematics.spin import spin_matters
+from robomill.provenance import Finding
 from robomill.robot.model import Robot
 
 POSTURES = 96  # starts, drawn over the joint limits from a fixed seed
@@ -22,3 +24,17 @@ def over_posture(robot: Robot, T_MT: FloatArray) -> FloatArray:
     poses = np.array(np.broadcast_to(T_MT, (POSTURES, 4, 4)))
     theta, found = solve_numerically(robot, poses, drawn(robot, POSTURES), "axis")
     return cartesian_compliance(robot, theta[found])
+
+
+def posture_notes(robot: Robot) -> tuple[Finding, ...]:
+    """That a map of an arm holds for one way of many to stand in each place; none of arms that have no choice."""
+    if robot.n > 6:
+        text = f"This arm has {robot.n} axes and holds a place in many postures: a map shows one of them."
+    elif spin_matters(robot):
+        text = (
+            "The tool may be turned about its own axis, which changes how this arm stands and gives: a map shows the "
+            "turn that moves the joints least from home, in each place its own."
+        )
+    else:
+        return ()
+    return (Finding("info", text, code="map-posture"),)

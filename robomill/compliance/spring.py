@@ -32,6 +32,8 @@ class Spring(Said):
     kind        its name in files; a child that states one is found in ``kinds``
     title, hint what its switch on the page says, ``rank`` where it stands among the others
     follows_tooth  whether it is light enough to follow each tooth; the others see the mean force
+    at_tip      whether it is stated at the tip, of the first tool that cuts: a longer one leans on it more, by what
+                nobody has said
     each_joint  whether there is one a joint (then it has the field ``joint``, 1-based among the free joints)
     """
 
@@ -40,6 +42,7 @@ class Spring(Said):
     hint: ClassVar[str | None] = None
     rank: ClassVar[int] = 100
     follows_tooth: ClassVar[bool] = False
+    at_tip: ClassVar[bool] = False
     each_joint: ClassVar[bool] = False
     kinds: ClassVar[dict[str, type[Spring]]] = {}
 

@@ -106,6 +106,22 @@ class CutConditions:
                 where="phi_st",
             )
 
+    def at(self, i: int) -> CutConditions:
+        """(1,) those of step ``i`` alone, whose part is not known yet."""
+        arrays = {name: value[i : i + 1] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        tooling = None if self.tooling is None else Tooling(self.tooling.cutters, self.tooling.of_step[i : i + 1])
+        return self._with(**arrays, tooling=tooling, part=None)
+
+    def meeting(self, **found: Any) -> CutConditions:
+        """With what a march has ``found``: a_p, phi_st, phi_ex, reach, part."""
+        return self._with(**found)
+
+    def _with(self, **values: Any) -> CutConditions:
+        """With values that nobody gives and so need no check: a coupled march asks for them at every turn."""
+        made = object.__new__(type(self))
+        vars(made).update(vars(self), **values)
+        return made
+
     def place(self, i: int) -> str:
         """Where step ``i`` is for people: its source line, or its number where no line is stated."""
         return f"{self.block_name.capitalize()} {self.block[i]}" if self.block[i] > 0 else f"Step {i}"
@@ -153,7 +169,7 @@ class CutConditions:
             if bad.size:
                 word = "S and M3 before the cut" if name == "n_s" else "F before the cut"
                 if name == "n_s" and not self.n_s.any():
-                    word += ", or the program's source spindle_1_min"
+                    word += ", or a spindle speed (spindle_1_min of the set-up's source)"
                 if self.block_name != "line":
                     word = "the path spindle_1_min" if name == "n_s" else "it feed_mm_min"
                 where = f"{self.place(bad[0])}: {text} while the tool is in the material"

@@ -22,7 +22,7 @@ from robomill.errors import CuttingError
 from robomill.progress import gathered
 from robomill.provenance import BY_HAND, Finding, Provenance
 from robomill.quantities import described, settle
-from robomill.values import Said
+from robomill.values import Said, Value
 
 Frame = Literal["path", "M"]
 COMPONENTS = {"feed": "feed", "feed_normal": "feed-normal", "axial": "axial"}
@@ -49,7 +49,7 @@ class ForceSpread:
     at_peak: FloatArray
 
 
-class ForceModel(Said):
+class ForceModel(Said, Value):
     """Mean force on the tool at every step, in the ``frame`` it is known in. Each model is a file in ``forces``.
 
     A child is a frozen dataclass whose numbers are declared with ``quantity``; they are checked here, and files, the

@@ -179,7 +179,9 @@ class ProcessForce(ForceModel):
         nose = (tooling.each("nose_height") > 0.0) | (conditions.sinks > 0.0)
         needs = {"radial": mills, "axial": mills & (tooling.each("pull") != 0.0) & (self.axial | nose)}
         lacking = [part for part in self.row.unknown if (needs[part] & conditions.engaged).any()]
-        where = np.any([needs[part] for part in lacking], axis=0) if lacking else np.zeros_like(mills)
+        if not lacking:
+            return ()
+        where = np.any([needs[part] for part in lacking], axis=0)
         names = (name for name in self.row.missing if self.material.gives[name] in lacking)
         shares = " and ".join(quantities(type(self))[f"{part}_share"].label for part in lacking)
         why = (
@@ -271,7 +273,7 @@ def _mean_of(
         return conditions.part.at(index).force(terms, cutter, c)
     a_p, along = conditions.a_p[index], conditions.along[index]
     arc = (np.clip(phi[index], 0.0, np.pi) for phi in (conditions.phi_st, conditions.phi_ex))
-    force = mean_force(terms, cutter, c * conditions.across[index], a_p, *arc)
+    force = mean_force(terms, cutter, c, a_p, *arc)
     steep = np.flatnonzero(np.abs(along) > FACING)
     if steep.size:
         exponents = tuple(term.exponent for term in terms)

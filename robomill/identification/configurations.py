@@ -115,19 +115,29 @@ def _taken(robot: Robot, whole: bool, rows: IntArray) -> Finding:
             f"In {len(rows)} tests (row {rows[0]} is the first) the arm may also have stood with shoulder or elbow "
             "another way than at home, and its compliance depends on it: give joints where it did."
         )
-        return Finding("warning", text, int(rows[0]), count=len(rows), code="postures-open")
+        return Finding("warning", text, int(rows[0]), count=len(rows), code="postures-open", place="")
     names = "X, Y, Z, A, B, C" if whole else "X, Y, Z, A, B"
     text = f"Joints were solved from {names} with shoulder and elbow as at home; give joints if they stood otherwise."
     return Finding("info", text, code="joints-solved")
 
 
-def checked(robot: Robot, theta: FloatArray, row: IntArray) -> None:
-    """Raises LoadTestError naming row and joint where theta (m, n) is not one of the robot's configurations."""
+def sliding_joints(robot: Robot) -> tuple[int, ...]:
+    """Numbers, from 1 among the free joints, of those that slide."""
+    return tuple(int(i) + 1 for i in np.flatnonzero(robot.chain.prismatic))
+
+
+def checked(robot: Robot, theta: FloatArray, row: IntArray, sliding: tuple[int, ...] | None = None) -> None:
+    """Raises LoadTestError naming row and joint where theta (m, n) is not one of the robot's configurations, or where
+    the joints that were given as lengths (``sliding``) are not those that slide."""
     if theta.shape[1] != robot.n:
         raise LoadTestError(
             f"Load tests: {theta.shape[1]} joint columns for a robot of {robot.n} joints; give theta1_deg to "
             f"theta{robot.n}_deg, one column a free joint."
         )
+    odd = sorted(set(sliding_joints(robot)).symmetric_difference(sliding)) if sliding is not None else []
+    if odd:
+        does, unit = ("turns", "deg") if odd[0] in (sliding or ()) else ("slides", "mm")
+        raise LoadTestError(f"Load tests, column theta{odd[0]}: this joint {does}; give theta{odd[0]}_{unit}.")
     lower, upper = robot.limits[:, 0], robot.limits[:, 1]
     outside = (theta < lower - LIMIT_SLACK) | (theta > upper + LIMIT_SLACK)
     if not outside.any():

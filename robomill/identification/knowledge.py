@@ -16,12 +16,12 @@ from robomill.identification.fit.models import Model
 from robomill.identification.result import IdentificationResult
 from robomill.robot.model import Robot
 from robomill.units import format_count
-from robomill.values import Said
+from robomill.values import Said, Value
 
 
 @made_by("rm.SimulationSetup(..., knowledge=rm.identify(robot, tests))")
 @dataclass(frozen=True, eq=False, repr=False)
-class Knowledge(Said):
+class Knowledge(Said, Value):
     """Compliances of a model's springs, and what is not known exactly of them, of the force and of the arm.
 
     model        the springs

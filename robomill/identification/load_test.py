@@ -19,7 +19,7 @@ from robomill.arguments import asked, asking
 from robomill.arrays import BoolArray, FloatArray, IntArray, digest, frozen, made_array
 from robomill.errors import LoadTestError
 from robomill.frames import Columns
-from robomill.identification.configurations import checked, solved, ways
+from robomill.identification.configurations import checked, sliding_joints, solved, ways
 from robomill.kinematics.forward import tool_pose
 from robomill.lazy import cached_property
 from robomill.provenance import Finding, Provenance
@@ -87,7 +87,8 @@ class LoadTests(_Rows):
 
     wrench        (m, 6) N, N m     force and moment *differences* on the tool, at the force point, in {M}
     displacement  (m, 6) m, rad     what was measured at the measuring point, in {M}; NaN: not measured
-    theta         (m, n) rad        configurations, or None when the poses are given in the world
+    theta         (m, n) rad        configurations (m where a joint slides), or None when the poses are in the world
+    sliding       numbers, from 1, of the joints whose coordinate was given as a length; None: as the robot has it
     x_M           (m, 5 or 6) m, rad  world coordinates X, Y, Z, A, B and perhaps C (``configurations``), or None
     force_point, measuring_point    (m, 3) m, offsets from the tool tip, in {T}
     noise         (m,) m            standard deviation of one measured displacement, NaN: not stated
@@ -123,6 +124,7 @@ class LoadTests(_Rows):
     findings: tuple[Finding, ...] = ()
     provenance: Provenance = MEASURED
     protocol: str = "displacements"
+    sliding: tuple[int, ...] | None = None
 
     def __post_init__(self) -> None:
         wrench = _six(self.wrench, "wrench")
@@ -182,7 +184,9 @@ class LoadTests(_Rows):
 
     def _poses(self) -> Columns:
         if self.theta is not None:
-            return {f"theta{i}_deg": from_si(q, "deg") for i, q in enumerate(self.theta.T, 1)}
+            slides = self.sliding or ()
+            coordinates = ((i, "mm" if i in slides else "deg", q) for i, q in enumerate(self.theta.T, 1))
+            return {f"theta{i}_{unit}": from_si(q, unit) for i, unit, q in coordinates}
         assert self.x_M is not None
         units = ("mm",) * 3 + ("deg",) * 3
         return {f"{name}_{unit}": from_si(q, unit) for name, unit, q in zip("XYZABC", units, self.x_M.T, strict=False)}
@@ -225,11 +229,13 @@ class LoadTests(_Rows):
         """
         tests = self
         if self.theta is not None:
-            checked(robot, self.theta, self.row)
+            checked(robot, self.theta, self.row, self.sliding)
+            sliding = sliding_joints(robot)
+            tests = self if sliding == (self.sliding or ()) else replace(self, sliding=sliding)
         elif self.x_M is not None:
             theta, said = solved(robot, self.x_M, self.row)
-            tests = replace(self, theta=theta, x_M=None, findings=(*self.findings, said))
-        return tests.moved(robot, np.zeros(3)) if self.aimed.any() else tests
+            tests = replace(self, theta=theta, x_M=None, sliding=sliding_joints(robot), findings=(*self.findings, said))
+        return tests.moved(robot, np.zeros(3)) if tests.aimed.any() else tests
 
     @cached_property
     def aimed(self) -> BoolArray:

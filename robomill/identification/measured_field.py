@@ -137,6 +137,13 @@ class MeasuredField(Tabled):
         """(...) m to the nearest measured point."""
         return self._nearest(p)[0]
 
+    def beside(self, p: ArrayLike) -> FloatArray:
+        """(...) m from the plane (line, point) along the axes that all measured points lie in; 0 where they fill a
+        space. The map says nothing of what changes across it."""
+        p = as_floats(p, "points", (3,), error=LoadTestError, finite=False)
+        across = np.setdiff1d(np.arange(3), self._used)
+        return np.linalg.norm(p[..., across] - self.p[0, across], axis=-1)
+
     def _nearest(self, p: ArrayLike) -> tuple[FloatArray, IntArray]:
         p = as_floats(p, "points", (3,), error=LoadTestError, finite=False)
         far, index = self._tree.query(np.where(np.isfinite(p), p, 1e6))

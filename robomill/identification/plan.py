@@ -12,6 +12,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
+from robomill.identification.configurations import sliding_joints
 from robomill.identification.fit.confidence import half_width
 from robomill.identification.fit.models import Parameter
 from robomill.identification.fit.system import build_system
@@ -42,7 +43,8 @@ class Plan:
     """The tests to do next, best first: theta (k, n), x_M (k, 5), F (k, 3) N.
 
     before, after (p,): standard errors as they are and as they should become; half_before, half_after (p,): half
-    widths of the 95 % intervals; path_before, path_after: rms standard deviation (m) of the path's deviation.
+    widths of the 95 % intervals; path_before, path_after: rms standard deviation (m) of the path's deviation. sliding:
+    numbers of the joints that slide, whose coordinates are lengths.
     """
 
     theta: FloatArray
@@ -56,12 +58,12 @@ class Plan:
     goal: str
     path_before: float = float("nan")
     path_after: float = float("nan")
+    sliding: tuple[int, ...] | None = None
 
     def as_tests(self) -> LoadTests:
         """The plan as a measuring sheet: displacements zero, to be filled in."""
-        return LoadTests(
-            self.F, np.zeros_like(self.F), theta=self.theta, provenance=Provenance("computed", f"plan: {self.goal}")
-        )
+        made = Provenance("computed", f"plan: {self.goal}")
+        return LoadTests(self.F, np.zeros_like(self.F), theta=self.theta, sliding=self.sliding, provenance=made)
 
     def rows(self) -> list[dict[str, object]]:
         """One row a parameter: standard error and half 95 % interval before and after, SI, and the gain as a share."""
@@ -186,6 +188,7 @@ def next_best(
         goal=aim.words,
         path_before=path[0],
         path_after=path[1],
+        sliding=sliding_joints(robot),
     )
 
 

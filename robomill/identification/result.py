@@ -26,6 +26,7 @@ from robomill.robot.model import Robot
 from robomill.units import format_count, format_number, format_percent, format_value, from_si
 from robomill.values import Tabled
 
+FAR = 1000.0  # times the usual scatter: by how much farther off a test is, is nothing that anybody needs to know
 IDENTIFIED = "compliance.identified"  # the block of a robot's provenance
 
 
@@ -57,7 +58,8 @@ class Outlier:
     def sentence(self) -> str:
         """The row and what is wrong with it, "row 5 (18 times the usual scatter: the sign of dx is turned)"."""
         why = " or ".join(slip.says for slip in self.slips)
-        return f"row {self.row} ({format_number(self.times, 0)} times the usual scatter{': ' * bool(why)}{why})"
+        times = f"more than {format_number(FAR, 0)}" if self.times > FAR else format_number(self.times, 0)
+        return f"row {self.row} ({times} times the usual scatter{': ' * bool(why)}{why})"
 
 
 @dataclass(frozen=True)
@@ -217,7 +219,8 @@ class IdentificationResult(Tabled):
         values = ", ".join(f"{name} {format_value(value, unit, missing='not seen')}" for name, value, unit in told)
         missed = format_percent(self.cv_relative_error, 1)
         doubts = sum(each.level not in ("info", "ignored") for each in self.findings)
-        more = f"; {format_count(doubts, 'finding')} that puts it in doubt: see .findings" if doubts else ""
+        put = "puts" if doubts == 1 else "put"
+        more = f"; {format_count(doubts, 'finding')} that {put} it in doubt: see .findings" if doubts else ""
         return f"{values}; {format_count(len(self.row), 'test')}, error at poses left out {missed}{more}"
 
     @property
@@ -295,6 +298,10 @@ class IdentificationResult(Tabled):
             raise LoadTestError(
                 "No joint gives way by these tests: each came out rigid or is not seen, which no arm is; look at the "
                 "signs of forces and displacements."
+            )
+        if robot.n != self.n:
+            raise LoadTestError(
+                f"These are the compliances of {format_count(self.n, 'joint')}; {robot.name!r} has {robot.n}."
             )
         seen = np.isfinite(self.C_theta)
         kept = [str(robot.joint_numbers[i]) for i in np.flatnonzero(~seen)]

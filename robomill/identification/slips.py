@@ -159,4 +159,4 @@ def outlier_findings(found: tuple[Outlier, ...], tests: int) -> tuple[Finding, .
         text += " So many speak against the model rather than against the readings."
     else:
         text += " Such rows are used until you leave them out (exclude)."
-    return (Finding("warning", text, found[0].row, count=len(found), code="outliers"),)
+    return (Finding("warning", text, found[0].row, count=len(found), code="outliers", place=""),)

@@ -190,7 +190,7 @@ def _repeats(tests: LoadTests) -> list[Finding]:
         f"Row {again} repeats row {tests.row[original[copies[0]]]} to the last digit{others}; both are used: "
         "delete the copy unless it was measured twice."
     )
-    return [Finding("warning", text, again, count=len(copies), code="repeat")]
+    return [Finding("warning", text, again, count=len(copies), code="repeat", place="")]
 
 
 def _joint_suspicions(tests: JointTests, robot: Robot | None) -> tuple[Finding, ...]:

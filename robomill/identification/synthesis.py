@@ -5,6 +5,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import displacement
+from robomill.identification.configurations import sliding_joints
 from robomill.identification.load_test import LoadTests
 from robomill.provenance import Provenance
 from robomill.robot.model import Robot
@@ -35,4 +36,4 @@ def simulated_tests(
     moved = moved + noise * np.random.default_rng(seed).standard_normal(moved.shape)
     if resolution > 0.0:
         moved = np.round(moved / resolution) * resolution
-    return LoadTests(F, moved, theta=theta, provenance=SYNTHETIC)
+    return LoadTests(F, moved, theta=theta, sliding=sliding_joints(robot), provenance=SYNTHETIC)

@@ -222,5 +222,6 @@ def _reason(errors: Errors, points: FloatArray, x: FloatArray, setup: Simulation
     place = format_many(points[q], "mm")
     return (
         f"{format_si(float(np.linalg.norm(left)), 'mm')} of {format_limit(setup.tolerance, 'mm')} are left at "
-        f"({place}) with the joints as stiff as they may be, {format_si(float(along[most]), 'mm')} of it by {whose}"
+        f"({place}) however stiff the joints are within their bounds, {format_si(float(along[most]), 'mm')} of it by "
+        f"{whose}"
     )

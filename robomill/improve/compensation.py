@@ -14,7 +14,7 @@ from robomill.frames import Columns
 from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.correction import COMPONENTS, Correction, correct
-from robomill.improve.errors import Errors, errors_of, graver, level_of, measured
+from robomill.improve.errors import MEASURED, Errors, errors_of, graver, level_of, measured
 from robomill.improve.finer import closer
 from robomill.improve.judged import check_improvable
 from robomill.improve.springs import Springs, springs
@@ -321,7 +321,7 @@ def _met(after: Errors, softer: Errors, stronger: Errors, led: SimulationResult)
         return ()
     text = (
         f"the tolerance is kept only if the numbers are right: if compliances or force are 20 % wrong, "
-        f"{format_percent(wrong.share(setup))} of it is used ({format_si(wrong.max, 'mm')})."
+        f"{format_percent(wrong.share(setup))} of it is used ({format_si(wrong.decides(setup)[1], 'mm')})."
     )
     return (Finding("warning", text, code="met-if-right"),)
 
@@ -341,6 +341,8 @@ def _findings(
     told += [each.finding for each in sprung]
     known = {(each.code, each.line) for each in wanted.steadiness}
     told += [each for each in led.steadiness if (each.code, each.line) not in known]
+    if int(led.judged.sum()) <= MEASURED:
+        told += led.uncoupled
     before, after = reversals(wanted), reversals(led)
     if after > before:
         text = (

@@ -172,40 +172,42 @@ def corrected_run(wanted: SimulationResult, p: FloatArray, **wrong: float) -> Si
 @dataclass(frozen=True, eq=False)
 class Places:
     """Where samples of a ``path`` stand: ``place`` (m,) counts the points on it; ``then`` (m,) is, for samples on the
-    way down, the first one of the level cut that goes on from there, else -1; ``steep`` (m,) bool are plunges."""
+    way down, the first one of the level cut that goes on from there, else -1; ``steep`` (m,) bool are plunges, and ways
+    ``out``, along the tool."""
 
     path: Toolpath
     place: IntArray
     then: IntArray
     steep: BoolArray
+    out: BoolArray
 
     @classmethod
     def along(cls, run: SimulationResult) -> "Places":
         path = run.path
         place = np.cumsum(np.append(False, (np.diff(path.p, axis=0) != 0.0).any(axis=1)))
-        return cls(path, place, *plunges(path, run.conditions))
+        then, steep = plunges(path, run.conditions)
+        return cls(path, place, then, steep, path.cutting & steep & (run.conditions.along > 0.0))
 
     def one_each(self, P: FloatArray, d: FloatArray, known: BoolArray) -> FloatArray:
         """c (m, 3): what undoes deflections d (m, 3) m in directions P; at one place one for all that are ``known``
         there, unless that would leave more than ``LINK`` of them beside the path: then each has its own, and a short
         link leads from one to the next.
 
-        Along the axis a place has that of its highest cut: what is left standing at one spot the tool takes away as it
-        goes on. On the way down to a level cut nothing is sent deeper than that cut: the push ends with the plunge.
+        Along the axis a place has that of its highest cut, or none where one meets nothing there: what is left standing
+        at one spot the tool takes away as it goes on. A plunge is not sent deeper than the level cut that goes on from
+        there: the push ends with it. A ramp is, since its floor stays; a link leads from it to the level cut.
         """
         own = -np.einsum("mij,mj->mi", P, d)
         c, k, m = self._shared(P, d, known), self.path.k, len(own)
-        pushed = known & (d != 0.0).any(axis=1) & (self.then < 0)
-        axial = pushed & (np.einsum("mij,mi,mj->m", P, k, k) > 0.5) & (np.bincount(self.place, known)[self.place] > 1)
+        several = np.bincount(self.place, known)[self.place] > 1
+        axial = known & several & (self.then < 0) & (np.einsum("mij,mi,mj->m", P, k, k) > 0.5)
         highest = np.full(m, -np.inf)
         np.maximum.at(highest, self.place[axial], np.einsum("mi,mi->m", own, k)[axial])
         highest = highest[self.place]
         up = np.einsum("mi,mi->m", c, k)
         lifted = np.where(np.isfinite(highest), highest, up)
         i = np.flatnonzero(self.then >= 0)
-        low, p = self.then[i], self.path.p
-        deepest = np.einsum("mi,mi->m", p[low] - p[i], k[i]) + lifted[low]
-        lifted[i] = np.where(self.steep[i], lifted[low], np.maximum(up[i], deepest))
+        lifted[i] = np.where(self.steep[i], lifted[self.then[i]], up[i])
         c = c + (lifted - up)[:, None] * k
         return self._arriving(c)
 
@@ -219,14 +221,14 @@ class Places:
     def held_outside(self, c: FloatArray, pushed: BoolArray, outside: BoolArray) -> FloatArray:
         """c (m, 3) m with that of the next sample of the cut that is ``pushed`` (m,), else of the last one, where the
         tool is ``outside`` (m,) the stock: where it first touches the force is there at once, and so has to be what
-        undoes it."""
+        undoes it. Not on a way out: that is behind its cut."""
         path, every = self.path, np.arange(len(pushed))
         cut = np.cumsum(~path.cutting & (path.step_length > 0.0))
         after = next_true(pushed, len(every) - 1)
         before = np.maximum.accumulate(np.where(pushed, every, 0))
         of = every.copy()
         for near in (before, after):
-            some = path.cutting & outside & ~pushed & pushed[near] & (cut[near] == cut)
+            some = path.cutting & outside & ~pushed & ~self.out & pushed[near] & (cut[near] == cut)
             of[some] = near[some]
         return self._arriving(c[of])
 
@@ -234,7 +236,7 @@ class Places:
         """c (m, 3) m with one correction beside for all of a plunge whose own differ by no more than ``UPRIGHT``: along
         a wall that is not upright a tool cuts on its side, too."""
         path = self.path
-        for begin, past in stretches(self.steep & path.cutting):
+        for begin, past in stretches(self.steep & path.cutting & ~self.out):
             some = slice(begin, past)
             aside = c[some] - np.einsum("mi,mi->m", c[some], path.k[some])[:, None] * path.k[some]
             if np.abs(aside - aside[-1]).max() <= UPRIGHT:

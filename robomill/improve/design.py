@@ -359,4 +359,4 @@ def _reason(result: SimulationResult, found: Judged, x: FloatArray, ratios: Floa
         left = format_si(each[most], "mm")
         return f"joint {number} alone leaves {left} of {limit} though {stiff} times as stiff ({where})"
     left = format_si(float(np.linalg.norm(error)), "mm")
-    return f"{left} of {limit} are left though the joints are as stiff as they may be ({where})"
+    return f"{left} of {limit} are left however stiff the joints are within their bounds ({where})"

@@ -76,7 +76,7 @@ class Uncertainty(Tabled):
     share      (N,) of the tolerance that is used; NaN where the path is not reached
     wall, floor, tip   (N,) m: the largest error of walls and of floors, NaN where there are none, and of the tip
     tornado    what each input does alone
-    checked    how many draws were run in full, too, and by how much of the tolerance an error of wall, floor or tip
+    checked    how many draws were run in full, too, and by how much of its tolerance an error of wall, floor or tip
                differed at most; 0 and 0 where every draw is such a run
     findings   what a reader of the numbers must know
 

@@ -21,7 +21,8 @@ MEASURED = 6000  # samples: of longer programs no more are measured, and those t
 @dataclass(frozen=True, eq=False, repr=False)
 class Errors(Value):
     """What a gauge finds on the part, m: largest and root mean square of ``wall`` and ``floor`` errors and of the
-    ``vector`` by which the tip is off, each (2,). NaN where the cut leaves none.
+    ``vector`` by which the tip is off, each (2,); ``feed`` is the largest along the feed, ends of cuts among it. NaN
+    where the cut leaves none.
 
     Examples
     --------
@@ -34,6 +35,7 @@ class Errors(Value):
     wall: FloatArray
     floor: FloatArray
     vector: FloatArray
+    feed: float = float("nan")
 
     @property
     def max(self) -> float:
@@ -41,20 +43,18 @@ class Errors(Value):
         return self._larger(0)
 
     @property
-    def largest(self) -> tuple[str, float]:
-        """The name of what is largest, and m."""
-        return largest(self.wall[0], self.floor[0], self.vector[0])
-
-    @property
     def rms(self) -> float:
         """m: the same of the root mean squares over the length."""
         return self._larger(1)
 
+    def decides(self, setup: SimulationSetup) -> tuple[str, float]:
+        """The name of what uses most of its tolerance, and m."""
+        return deciding(setup, self.wall[0], self.floor[0], self.feed, self.vector[0])
+
     def share(self, setup: SimulationSetup) -> float:
-        """The largest of the tolerance, each surface by its own; the tip's by that of walls where none is left."""
-        limits = setup.limits
-        used = np.array([self.wall[0] / limits["wall"], self.floor[0] / limits["floor"]])
-        return float(np.nanmax(used) if np.isfinite(used).any() else self.vector[0] / limits["tip"])
+        """The largest of the tolerance, as the verdict has it."""
+        name, size = self.decides(setup)
+        return float(size / setup.limits[name])
 
     def _larger(self, which: int) -> float:
         surfaces = np.array([self.wall[which], self.floor[which]])
@@ -64,11 +64,15 @@ class Errors(Value):
         return f"{format_si(self.max, 'mm', 4)} at most, {format_si(self.rms, 'mm', 4)} root mean square"
 
 
-def largest(wall: float, floor: float, tip: float) -> tuple[str, float]:
-    """The larger of a wall's and a floor's error, by name and size, m; that of the tip where there is neither."""
-    sizes = [(abs(value), name) for name, value in (("wall", wall), ("floor", floor)) if np.isfinite(value)]
-    size, name = max(sizes, default=(tip, "tip"))
-    return name, size
+def deciding(setup: SimulationSetup, wall: float, floor: float, feed: float, tip: float) -> tuple[str, float]:
+    """Which error, m, uses most of its own tolerance, by name and size: a wall's, a floor's, and along the feed where
+    that has one; the tip's where there is no wall and no floor, and nothing is known of the feed that has one."""
+    found = {"wall": abs(wall), "floor": abs(floor)}
+    if setup.feed_tolerance is not None:
+        found["feed"] = abs(feed)
+    known = {name: float(size) for name, size in found.items() if np.isfinite(size)}
+    name = max(known, key=lambda each: known[each] / setup.limits[each], default="tip")
+    return name, known.get(name, float(tip))
 
 
 def graver(one: Errors, other: Errors, setup: SimulationSetup) -> Errors:
@@ -89,7 +93,10 @@ def level_of(run: SimulationResult) -> Level:
 def errors_of(run: SimulationResult, gauge: Gauge | None = None) -> Errors:
     """What a run leaves, against the path that it is of; ``gauge`` is what was ``measured`` on it, if it was."""
     gauge = measured(run) if gauge is None else gauge
-    return Errors(_size(gauge.walls), _size(gauge.floors), np.array([run.max_deviation, run.rms_deviation]))
+    vector = np.array([run.max_deviation, run.rms_deviation])
+    along = np.concatenate([run.delta_in_cut[run.judged, 0], gauge.ends.error])
+    feed = float(np.abs(along).max()) if len(along) else float("nan")
+    return Errors(_size(gauge.walls), _size(gauge.floors), vector, feed)
 
 
 def _size(found: Readings) -> FloatArray:

@@ -46,7 +46,7 @@ class At:
     def configurations(self, setup: SimulationSetup) -> IKResult:
         """How the arm stands, (1, s, n)."""
         poses = (setup.T_MW @ self.looking.T_WT)[None]
-        return configurations(setup, poses, self.looking.near, self.spin)
+        return configurations(setup, poses, self.spin)
 
     def of(self, change: FloatArray) -> tuple[FloatArray, FloatArray]:
         """(1 + forces, s, 3) m by all that gives, and (springs, 1 + forces, s, 3) m per change of each compliance."""

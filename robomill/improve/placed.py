@@ -225,7 +225,10 @@ def findings(found: Placement, where: Area, result: SimulationResult) -> tuple[F
         )
         said.append(Finding("info", text, code=TIP))
     if setup.force.frame == "M" and not setup.force.turns_with_part and free[3]:
-        text = "The force is fixed in the robot's axes and does not turn with the part: no yaw changes it."
+        text = (
+            "The force is fixed in the robot's axes: at every yaw it is the same, and only the walls turn against it; "
+            "a force that the cut makes would turn with the part."
+        )
         said.append(Finding("warning", text, code=IN_ROBOT))
     if setup.coupling:
         text = "The map is without the coupling of force and deflection; now, best, median and worst are with it."

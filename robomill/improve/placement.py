@@ -196,12 +196,11 @@ class _Search:
         path = sampled(setup.toolpath, setup.step)
         few = np.unique(np.linspace(0, len(path) - 1, 48).astype(np.int64))
         T_WT = tool_frames(path.p[few], path.k[few], farther(setup, path)[few])
-        near = np.broadcast_to(setup.robot.home, (len(few), setup.robot.n))
         stands = []
         for begin in range(0, len(places), 64):
             checkpoint(begin / len(places), "Places that are reached")
             some = self.area.T_MW(places[begin : begin + 64])
-            stands.append(standing(configurations(setup, some[:, None] @ T_WT, near)))
+            stands.append(standing(configurations(setup, some[:, None] @ T_WT)))
         every = Standing(*(np.concatenate(parts) for parts in zip(*stands, strict=True)))
         order = np.lexsort((-np.nan_to_num(every.room, nan=-1.0), every.missed))
         for i in order[:8]:

@@ -16,7 +16,7 @@ from robomill.toolpath.fitting import Piece, along_piece, arc_pieces, straight_p
 from robomill.toolpath.gcode.chords import point_counts
 from robomill.toolpath.gcode.program import ARC, Program
 from robomill.toolpath.path import Toolpath
-from robomill.toolpath.sampling import divided
+from robomill.toolpath.sampling import CORNER, divided
 
 SAME = 1e-8  # m: corrections that differ by less need no link
 CLOSEST = 0.1e-3  # m: samples are no closer where a deflection changes quickly
@@ -92,25 +92,38 @@ class Moves:
             if a == b:  # it stands still
                 pieces[j] = [Piece(0.0, 1.0, self.end[j] + c[a - 1] if a else self.end[j])]
             else:
-                pieces[j] = self._pieces(j, max(a, 1), b, q, bound)
+                links, pieces[j] = self._pieces(j, max(a, 1), b, q, bound)
+                if links and self.wanted.dwell[a] > 0.0 and self._leads_out(j, a):  # where it waits nothing pushes
+                    pieces[j - 1].append(Piece(1.0, 1.0, links[0].end))
+                    ends[j - 1] = links[0].end
+                else:
+                    pieces[j] = links + pieces[j]
             ends[j] = pieces[j][-1].end
         return pieces, ends
 
-    def _pieces(self, j: int, a: int, b: int, q: FloatArray, bound: float) -> list[Piece]:
-        """Of move ``j``, whose samples are ``a`` to ``b``."""
-        links: list[Piece] = []
-        begin = a - 1
+    def _leads_out(self, j: int, a: int) -> bool:
+        """Whether a move at feed, whose first sample is ``a``, draws the tool out of a cut along its axis."""
+        if j == 0 or not self.at_feed[j - 1]:
+            return False
+        way = self.end[j] - self.end[j - 1]
+        return bool(way @ self.wanted.k[a] > np.cos(CORNER) * np.linalg.norm(way))
+
+    def _pieces(self, j: int, a: int, b: int, q: FloatArray, bound: float) -> tuple[list[Piece], list[Piece]]:
+        """Of move ``j``, whose samples are ``a`` to ``b``: the link to where it begins, if one is needed, and its own.
+        One that draws the tool out of a hole begins at its bottom, where nothing but that can push as it lets go."""
+        before = start = q[a - 1]
+        if self._leads_out(j, a):
+            start = self.end[j - 1] + q[a] - self.wanted.p[a]
         if self.share[a] <= 0.0 and b - a > 1:
-            if np.abs(q[a] - q[a - 1]).max() > SAME:
-                links.append(Piece(0.0, 0.0, q[a]))
-            begin = a
-        f = np.append(0.0, self.share[begin + 1 : b])
-        nodes = q[begin:b]
+            start, a = q[a], a + 1
+        links = [Piece(0.0, 0.0, start)] if np.abs(start - before).max() > SAME else []
+        f = np.append(0.0, self.share[a:b])
+        nodes = np.vstack([start, q[a:b]])
         if self.sweep[j] != 0.0 and len(f) > 2:
-            return links + arc_pieces(f, nodes, int(self.plane[j]), float(self.sweep[j]), bound)
+            return links, arc_pieces(f, nodes, int(self.plane[j]), float(self.sweep[j]), bound)
         if len(f) == 2:
-            return [*links, Piece(0.0, 1.0, nodes[1])]
-        return links + straight_pieces(f, nodes, bound)
+            return links, [Piece(0.0, 1.0, nodes[1])]
+        return links, straight_pieces(f, nodes, bound)
 
     def _led(self, c: FloatArray, first: list[int], past: list[int]) -> FloatArray:
         """(m, 3) m: how far the ends of rapids are moved: where a cut begins as that is, and what goes straight up or

@@ -10,7 +10,7 @@ from robomill.errors import SetupError
 from robomill.improve.advice import Advice
 from robomill.improve.compensation import Compensation
 from robomill.improve.design import Design, design
-from robomill.improve.errors import largest
+from robomill.improve.errors import deciding
 from robomill.improve.judged import judged
 from robomill.improve.placed import Place, Placement
 from robomill.improve.turning import Turning
@@ -74,7 +74,8 @@ def stiffened(setup: SimulationSetup, run: Simulate) -> Stiffened:
         return Stiffened(found, found.after)
     if share < LEAST:
         raise SetupError("No error to reduce: the cut is as it was told to be.")
-    halved = design(setup, 0.5 * share * setup.tolerance)
+    half = {name: 0.5 * share * each for name, each in setup.tolerances.items() if each is not None}
+    halved = design(setup.replace(**half, provenance=setup.provenance))
     return Stiffened(halved, run(setup.replace(robot=halved.setup.robot)), half=True)
 
 
@@ -96,9 +97,9 @@ def decides(result: SimulationResult) -> tuple[str, float]:
     return kind.code, size
 
 
-def error_at(place: Place) -> tuple[str, float]:
-    """What is largest at a place, by name and m."""
-    return largest(place.wall, place.floor, place.max_deviation)
+def error_at(place: Place, setup: SimulationSetup) -> tuple[str, float]:
+    """What decides at a place, by name and m."""
+    return deciding(setup, place.wall, place.floor, place.feed, place.max_deviation)
 
 
 def _of_run(run: SimulationResult, now: float) -> Left:
@@ -106,12 +107,12 @@ def _of_run(run: SimulationResult, now: float) -> Left:
 
 
 def _of_place(place: Place, then: SimulationSetup, now: float) -> Left:
-    return Left(place.share, place.level, error_at(place), then, saves(place.share, now))
+    return Left(place.share, place.level, error_at(place, then), then, saves(place.share, now))
 
 
 def _of_program(found: Compensation, setup: SimulationSetup, now: float) -> Left:
     then = setup.replace(source=found.source)
-    return Left(found.share, found.level, found.doubted.largest, then, saves(found.share, now))
+    return Left(found.share, found.level, found.doubted.decides(setup), then, saves(found.share, now))
 
 
 def _of_both(found: Both, now: SimulationResult) -> Left:

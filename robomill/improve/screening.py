@@ -93,7 +93,7 @@ class Screen:
     setup     as it is; its T_MW is not used          path (s samples), at: their numbers on the whole path
     T_WT      (s, 4, 4) the tool in {W}                R_WF (s, 3, 3) the axes of the cut in {W}
     F         (s, 3) N in {W} where the force ``turns`` with the part, else in {M}
-    judged    (s,) samples that count        near (s, n) where arms begin that are solved numerically
+    judged    (s,) samples that count
     reference the run that it was made from
     """
 
@@ -105,7 +105,6 @@ class Screen:
     F: FloatArray
     turns: bool
     judged: BoolArray
-    near: FloatArray
     reference: SimulationResult
 
     @cached_property
@@ -138,7 +137,7 @@ class Screen:
         return Screened(stands, {n: np.array([e.errors[n] for e in every])[best, k] for n in every[0].errors})
 
     def _with(self, T_MW: FloatArray, spin: Spin) -> Screened:
-        ik = configurations(self.setup, T_MW[:, None] @ self.T_WT, self.near, spin)
+        ik = configurations(self.setup, T_MW[:, None] @ self.T_WT, spin)
         return Screened(standing(ik), self.errors(self.in_cut(T_MW, ik.theta)))
 
     def in_cut(self, T_MW: FloatArray, theta: FloatArray) -> FloatArray:
@@ -176,12 +175,9 @@ class Screen:
         return np.where(np.isnan(d).any(axis=-1), np.nan, share_of(measure, self.setup, found))
 
 
-def configurations(setup: SimulationSetup, T_MT: FloatArray, near: FloatArray, spin: Spin = LEAST_MOTION) -> IKResult:
-    """How the arm stands along paths T_MT (k, s, 4, 4); where it is found numerically, ``near`` (s, n)."""
-    robot = setup.robot
-    if decoupled(robot) is None:
-        return inverse_kinematics(robot, T_MT, near=near, spin=spin)
-    return inverse_kinematics(robot, T_MT, near="path", spin=spin)
+def configurations(setup: SimulationSetup, T_MT: FloatArray, spin: Spin = LEAST_MOTION) -> IKResult:
+    """How the arm stands along paths T_MT (k, s, 4, 4), as in runs along them."""
+    return inverse_kinematics(setup.robot, T_MT, near="path", spin=spin)
 
 
 def screen(result: SimulationResult, also: IntArray | None = None, most: int | None = None) -> Screen:
@@ -195,7 +191,6 @@ def screen(result: SimulationResult, also: IntArray | None = None, most: int | N
     keep = np.zeros(len(path), dtype=bool)
     keep[at] = True
     turns = setup.force.frame == "path" or setup.force.turns_with_part
-    home = np.where(np.isnan(result.theta), setup.robot.home, result.theta)
     return Screen(
         setup=uncoupled(setup),
         path=chosen(path, keep),
@@ -205,7 +200,6 @@ def screen(result: SimulationResult, also: IntArray | None = None, most: int | N
         F=setup.to_part(result.F[at]) if turns else result.F[at],
         turns=turns,
         judged=result.judged[at],
-        near=home[at],
         reference=result,
     )
 

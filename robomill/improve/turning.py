@@ -30,15 +30,16 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, simulate
 from robomill.simulation.setup import SimulationSetup
 from robomill.spelled import one_of
-from robomill.units import format_si, from_si, to_si
+from robomill.units import format_percent, format_si, from_si, to_si
 from robomill.values import Tabled
 
 WHO = "Spindle"
 ANGLES = 72
 RATE = to_si(1.0, "deg/mm")  # how fast the spin may change along the path
+SAME = 1e-6  # of a share: what differs by no more is the same
 TRIED = 3  # constant spins that are simulated in full
 RATE_ASKED = Quantity("rate", "deg/mm", name="rate", key="rate_deg_mm", above=0.0)
-ONE_SPIN, HASTE = "spin-course", "spin-haste"
+ONE_SPIN, NOT_TAKEN, HASTE = "spin-course", "spin-not-taken", "spin-haste"
 
 
 @made_by("rm.turn(setup)")
@@ -124,8 +125,9 @@ def turn(
     Notes
     -----
     The course is found by dynamic programming over 72 angles and both sides of the wrist, of which none is left on the
-    way; shoulder and elbow stand as in a run. Its largest share is the least there is at this rate. It is checked by
-    inverse kinematics and a full simulation along the interpolated course; without the coupling of force and
+    way; shoulder and elbow stand as in a run. By the map its largest share is the least there is at this rate. It is
+    checked by inverse kinematics and a full simulation along the interpolated course, and not taken where that shows it
+    to be no better than one spin (at a corner the map knows one spin for both cuts); without the coupling of force and
     deflection.
 
     Examples
@@ -181,7 +183,7 @@ class _Turned:
                 course = found
             else:
                 turned = None
-                said.append(Finding("info", "No course of the spin is better than one spin for all.", code=ONE_SPIN))
+                said.append(_no_better(found, constant))
         turned = np.full(len(way), spin) if turned is None else turned
         known = np.isfinite(share)
         return Turning(
@@ -238,7 +240,7 @@ class _Turned:
         elbow as a run has them, and both sides of the wrist."""
         robot, arm = self.setup.robot, decoupled(self.setup.robot)
         if arm is None:
-            ik = inverse_kinematics(robot, T_MT, near=looking.near, spin="fixed")
+            ik = inverse_kinematics(robot, T_MT, near="path", spin="fixed")
             return ik.theta[None], ik.reached[None]
         theta, sound = every(robot, arm, T_MT)
         theta = within(robot, theta, robot.home)
@@ -276,3 +278,18 @@ class _Turned:
             return None
         whole = np.unwrap(angle[chosen])
         return np.interp(way, (numbers + 0.5) * apart, whole)
+
+
+def _no_better(course: Place, constant: Place) -> Finding:
+    """That one spin stays: since the best course is none better, or since it only looked so on the map."""
+    used = [format_percent(each.share) for each in (course, constant)]
+    if not course.known:
+        why = f"does not hold in a full simulation: {course.reason}"
+    elif course.share > constant.share * (1.0 + SAME):
+        why = f"uses {used[0]} of the tolerance in a full simulation, one spin for all {used[1]}"
+    elif course.share < constant.share * (1.0 - SAME):
+        why = f"uses {used[0]} of the tolerance instead of {used[1]}, and asks too much of a joint"
+    else:
+        return Finding("info", "No course of the spin is better than one spin for all.", code=ONE_SPIN)
+    text = f"The course of the spin that looks best on the map {why}: one spin stays. Another course may be better."
+    return Finding("info", text, code=NOT_TAKEN)

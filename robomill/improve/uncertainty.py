@@ -183,7 +183,7 @@ class _Work:
             return nothing
 
     def checked(self, change: FloatArray, errors: Errors, share: FloatArray) -> tuple[int, float]:
-        """Draws run in full, and by how much of the tolerance an error differs at most from what was said of it."""
+        """Draws run in full, and by how much of its tolerance an error differs at most from what was said of it."""
         if self.expansion is None:
             return 0, 0.0
         names = ("wall", "floor", "tip") if self.measure == "verdict" else (self.measure,)
@@ -196,10 +196,13 @@ class _Work:
         for i, each in enumerate(told):
             with step(i, len(told), "Draws in full"):
                 found.append(self._in_full(each))
+        limits = self.unsure.setup.limits
         differ = [
-            np.abs([each[name] for each in found] - said[name]) for name in names if np.isfinite(said[name]).all()
+            np.abs([each[name] for each in found] - said[name]) / limits[name]
+            for name in names
+            if np.isfinite(said[name]).all()
         ]
-        return len(told), float(np.nan_to_num(differ, nan=np.inf).max() / self.unsure.setup.tolerance)
+        return len(told), float(np.nan_to_num(differ, nan=np.inf).max())
 
     def tornado(self, variance: float) -> Tornado:
         """Each input alone at the ends of its 95 % interval; its part of the variance by three points."""
@@ -230,7 +233,7 @@ def _findings(
     if checked[1] > AGREES:
         how = format_percent(checked[1]) if np.isfinite(checked[1]) else "all"
         text = (
-            f"Of {checked[0]} draws that were run in full, too, an error of wall, floor or tip differs by {how} of the "
+            f"Of {checked[0]} draws that were run in full, too, an error of wall, floor or tip differs by {how} of its "
             "tolerance: the spread is too wide to be expanded, or what a gauge reads does not go with the tip there."
         )
         said.append(Finding("warning", text, code=DIFFERS))

@@ -24,7 +24,9 @@ def fed(path: Toolpath, factor: float) -> Toolpath:
 
 def turned_round(path: Toolpath, top: float) -> Toolpath:
     """From its end to its beginning, so that up milling becomes down milling; what was a rapid out of the material
-    (below ``top``, m) goes in with the lowest feed of the program, at most ``PLUNGE_FEED``."""
+    (below ``top``, m) goes in, from ``CLEAR`` above that on, with the lowest feed of the program, at most
+    ``PLUNGE_FEED``."""
+    path = _stopped_above(path, top + CLEAR)
     m = len(path)
     moves = np.concatenate([[0], np.arange(m - 1, 0, -1)])  # the move to a point was the one from it
     each = {name: np.array(getattr(path, name))[moves] for name in PER_MOVE}
@@ -37,6 +39,19 @@ def turned_round(path: Toolpath, top: float) -> Toolpath:
     each["cutting"] = each["cutting"] | into
     each["v_f"] = np.where(into, slow, each["v_f"])
     return replace(path, p=p, k=path.k[::-1], **each, counts=None)
+
+
+def _stopped_above(path: Toolpath, height: float) -> Toolpath:
+    """The same path with a stop at ``height`` (m) on rapids that rise through it."""
+    i = np.flatnonzero(~path.cutting[1:] & (path.p[1:, 2] > height) & (path.p[:-1, 2] < height)) + 1
+    if not len(i):
+        return path
+    low, high = path.p[i - 1], path.p[i]
+    share = ((height - low[:, 2]) / (high[:, 2] - low[:, 2]))[:, None]
+    each = {name: np.insert(getattr(path, name), i, getattr(path, name)[i], axis=0) for name in PER_MOVE}
+    each["dwell"][i + np.arange(len(i)) + 1] = 0.0
+    p, k = np.insert(path.p, i, low + share * (high - low), axis=0), np.insert(path.k, i, path.k[i - 1], axis=0)
+    return replace(path, p=p, k=k, **each, counts=None)
 
 
 def in_levels(path: Toolpath, raised: FloatArray, top: float) -> Toolpath:

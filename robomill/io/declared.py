@@ -138,8 +138,8 @@ def write_quantity(declared: Quantity, value: Any) -> Any:
     if declared.kind == "number":
         return shown(value, declared.unit)
     if declared.kind == "array":
-        flat = [shown(number, declared.unit) for number in np.ravel(value)]
-        return np.reshape(flat, np.shape(value)).tolist()
+        flat = np.array([shown(number, declared.unit) for number in np.ravel(value)], dtype=object)
+        return flat.reshape(np.shape(value)).tolist()
     return value
 
 

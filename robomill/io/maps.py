@@ -7,6 +7,7 @@ import numpy as np
 
 from robomill.arguments import asked
 from robomill.arrays import FloatArray, of_kind
+from robomill.csv_text import csv_text
 from robomill.errors import WorkspaceError
 from robomill.extras import needed
 from robomill.files import check_no_folder, check_place, shown_place, written
@@ -83,11 +84,7 @@ def map_place(path: str | Path) -> Path:
 
 def map_csv(fields: Sequence[Field]) -> str:
     """The CSV text of ``write_map``."""
-    columns = map_columns(fields)
-    rows = [",".join(columns)]
-    table = np.column_stack(list(columns.values()))
-    rows += [",".join("NaN" if np.isnan(value) else f"{value:.10g}" for value in row) for row in table]
-    return "\n".join(rows) + "\n"
+    return csv_text(map_columns(fields), 10, "NaN")
 
 
 def _write_parquet(path: Path, columns: Mapping[str, FloatArray]) -> None:

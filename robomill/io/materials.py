@@ -77,7 +77,7 @@ def load_material(name_or_path: str | Path) -> Material:
 
 def material_from_toml(text: str, where: str = "material") -> Material:
     """A row from TOML text: name, title, alloy, [coefficients], [provenance]. ``where`` starts every sentence."""
-    top = Table(parse_toml(text, where, CuttingError), where, CuttingError)
+    top = Table(parse_toml(text, where, CuttingError, exact=True), where, CuttingError)
     given: dict[str, Any] = {key: top.text(key) for key in WORDS}
     coefficients = top.table("coefficients")
     law = _law(coefficients)

@@ -7,6 +7,7 @@ import math
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -14,22 +15,26 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.errors import ProjectError, RobomillError
 from robomill.provenance import KINDS, Provenance
-from robomill.units import from_si, to_si
+from robomill.units import decimal_from_si, decimal_to_si, from_si, to_si
 
 MISSING: Any = object()  # a key without a default has to be there
 # Of a path of Windows in double quotes, whose \U begins a character.
 PATHS = "A path is written with / or in single quotes, as 'C:\\Users\\...'."
 DEEPEST = 12  # tables and lists within one another; what is written here has six
 LARGEST = 2**63  # TOML's own bound of whole numbers
+FLOATS = 17  # digits that any float is told by
 _DOTTED = re.compile(r"""(?<![\w-])(?>(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){64}""")
 
 
-def parse_toml(text: str, where: str, error: type[RobomillError] = ProjectError) -> dict[str, Any]:
-    """The document, or a refusal naming the line that is not TOML, or the key that is too deep or too large."""
+def parse_toml(text: str, where: str, error: type[RobomillError] = ProjectError, exact: bool = False) -> dict[str, Any]:
+    """The document, or a refusal naming the line that is not TOML, or the key that is too deep or too large.
+
+    ``exact``: a number with more digits than a float holds keeps them, as a Decimal, until a Table has it in SI.
+    """
     try:
         if _DOTTED.search(text):  # reading one takes as long as the square of its parts
             raise ValueError
-        data = tomllib.loads(text)
+        data = tomllib.loads(text, parse_float=_number if exact else float)
     except tomllib.TOMLDecodeError as exc:
         path = f" {PATHS}" if "hex value" in str(exc) or "\\" in str(exc) else ""
         raise error(f"{where}: this is not a readable TOML file: {exc}.{path}", where=where) from None
@@ -40,6 +45,11 @@ def parse_toml(text: str, where: str, error: type[RobomillError] = ProjectError)
         ) from None
     _check_values(data, where, error)
     return data
+
+
+def _number(text: str) -> float | Decimal:
+    digits = "".join(filter(str.isdigit, text.lower().partition("e")[0])).lstrip("0")
+    return Decimal(text) if len(digits) > FLOATS else float(text)
 
 
 def _check_values(data: dict[str, Any], where: str, error: type[RobomillError]) -> None:
@@ -67,14 +77,20 @@ def exactly(value: float, unit: str) -> float | None:
     return None
 
 
-def shown(value: float, unit: str) -> float:
-    """The value in ``unit`` with as few digits as possible; nearly always ``exactly``."""
+def shown(value: float, unit: str) -> float | Decimal:
+    """The value in ``unit`` with as few digits as read back to the very same SI number."""
     found = exactly(value, unit)
-    return float(from_si(float(value), unit)) if found is None else found
+    if found is None and math.isfinite(value):
+        return decimal_from_si(float(value), unit)
+    return float(value) if found is None else found
 
 
 def toml_value(value: Any) -> str:
     """A text, a number or a list of numbers as TOML on one line."""
+    if isinstance(value, Decimal):
+        return str(value)
+    if isinstance(value, list):
+        return f"[{', '.join(map(toml_value, value))}]"
     # JSON writes these as TOML does, but for one character that TOML wants escaped.
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
 
@@ -153,7 +169,7 @@ class Table:
     def number(self, key: str, unit: str, default: Any = MISSING) -> Any:
         """The value in SI (``default`` is returned as it is)."""
         value = self._get(key, default)
-        return value if value is default else self._si(key, value, unit)
+        return value if value is default else self.si(key, value, unit)
 
     def numbers(self, key: str, count: int | None, unit: str, default: Any = MISSING, expected: str = "") -> Any:
         """``count`` (None: any) values in SI as a list (``default`` as it is); a refusal says ``expected``."""
@@ -164,7 +180,7 @@ class Table:
             found = f"{len(value)}: {value!r:.60}" if isinstance(value, list) else f"{value!r:.60}"
             many = "" if count is None else f"{count} "
             raise self.refuse(key, f"expected {expected or f'a list of {many}numbers'}, found {found}.")
-        return [self._si(key, item, unit) for item in value]
+        return [self.si(key, item, unit) for item in value]
 
     def rows(self, key: str, count: int, unit: str, many: int | None = None) -> FloatArray:
         """A list of ``many`` (None: any) lists of ``count`` numbers, in SI, as (r, count)."""
@@ -176,7 +192,7 @@ class Table:
                 raise self.refuse(key, f"row {i + 1}: expected {count} numbers, found {row!r:.60}.")
         if many is not None and len(value) != many:
             raise self.refuse(key, f"expected {many} rows of {count} numbers, found {len(value)} rows.")
-        return np.array([[self._si(key, item, unit) for item in row] for row in value])
+        return np.array([[self.si(key, item, unit) for item in row] for row in value])
 
     def measure(self, stem: str, suffixes: Mapping[str, str], default: Any = MISSING) -> Any:
         """A number in SI written as ``stem_<suffix>``; ``suffixes`` maps what may stand in the key to its unit."""
@@ -221,13 +237,18 @@ class Table:
         entry.finish()
         return Provenance(kind, source, carried_from)  # type: ignore[arg-type]
 
-    def _si(self, key: str, value: Any, unit: str) -> float:
+    def si(self, key: str, value: Any, unit: str) -> float:
+        """A ``value`` that stands under ``key``, in SI."""
         label = "" if unit == "1" else f" in {unit}"
-        if isinstance(value, bool) or not isinstance(value, int | float):
+        if isinstance(value, bool) or not isinstance(value, int | float | Decimal):
             raise self.refuse(key, f"expected a number{label}, found {value!r:.40}.")
-        if not abs(value) < math.inf or (isinstance(value, int) and abs(value) > LARGEST):
+        plain = float(value) if isinstance(value, Decimal) else value
+        if not abs(plain) < math.inf or (isinstance(plain, int) and abs(plain) > LARGEST):
             raise self.refuse(key, f"expected a finite number{label}, found {value!r:.40}.")
-        converted = float(to_si(float(value), unit))
+        try:
+            converted = decimal_to_si(value, unit) if isinstance(value, Decimal) else float(to_si(float(value), unit))
+        except ArithmeticError:
+            converted = math.inf
         if not math.isfinite(converted):
             raise self.refuse(key, f"expected a number{label} of ordinary size, found {value}.")
         return converted

@@ -63,12 +63,14 @@ def spun(T_MT: FloatArray, angle: float) -> FloatArray:
 
 
 def turn(robot: Robot, theta: FloatArray, near: FloatArray) -> FloatArray:
-    """Angles (..., n) moved by whole turns: to the turn nearest ``near`` (n,) within limits, else nearest mid-range."""
+    """Angles (..., n) moved by whole turns: nearest ``near`` (n,) or (..., n) within limits; where no turn is within
+    them, nearest mid-range. What slides has no turns."""
     from robomill.kinematics import inverse_kernels
 
     result = np.empty(theta.shape)
-    inverse_kernels.turned_of(rows(theta), robot.limits, near, result.reshape(-1, robot.n))
-    return result
+    goals = near[None] if near.ndim == 1 else rows(np.broadcast_to(near, theta.shape))
+    inverse_kernels.turned_of(rows(theta), robot.limits, goals, result.reshape(-1, robot.n))
+    return np.where(robot.chain.prismatic, theta, result)
 
 
 def overshoot(robot: Robot, theta: FloatArray) -> FloatArray:

@@ -117,12 +117,10 @@ def decoupled(robot: Robot) -> Decoupled | None:
 
 
 def _crossing(p: FloatArray, k: FloatArray, q: FloatArray, m: FloatArray) -> FloatArray | None:
-    """The point where two lines cross, or None."""
-    normal = np.cross(k, m)
-    size = normal @ normal
-    if size < SQUARE or abs((q - p) @ normal) > CROSSING * np.sqrt(size):
+    """The point where two lines through p and q that are square to each other cross, or None; k, m are unit."""
+    if abs((q - p) @ np.cross(k, m)) > CROSSING:
         return None
-    return p + k * (np.cross(q - p, m) @ normal) / size
+    return p + k * (k @ (q - p))
 
 
 def _constants(
@@ -139,7 +137,7 @@ def _constants(
     S = np.array([np.cross(y, z), y, z])
     origin = p[0] + z * (z @ (p[1] - p[0]))
     shoulder, elbow, wrist = S @ (p[1] - origin), S @ (p[2] - origin), S @ (centre - origin)
-    l_2 = complex(elbow[0] - shoulder[0], -(elbow[2] - shoulder[2]))
+    l_2 = complex(elbow[0] - shoulder[0], -elbow[2])  # axis 2 is as high as the origin
     l_3 = complex(wrist[0] - elbow[0], -(wrist[2] - elbow[2]))
     if abs(l_2) < CROSSING or abs(l_3) < CROSSING:
         return None
@@ -152,8 +150,7 @@ def _constants(
     if np.hypot(u[0], u[2]) < SQUARE:
         return None
     across = np.eye(3)[np.argmin(np.abs(u))]
-    g = np.cross(u, across)
-    g /= np.linalg.norm(g)
+    g = np.cross(u, across)  # of any length: it tells an angle
     sign = robot.chain.sign
     axis_sign = np.array([k[0] @ z, k[1] @ y, k[2] @ y, 1.0, flip, 1.0])[: robot.n]
     return Decoupled(

@@ -12,6 +12,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray, as_floats
 from robomill.errors import KinematicsError
 from robomill.kinematics.choice import every, nearest, rules, spins, spun
 from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled
+from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.joining import Joined, join
 from robomill.kinematics.numeric import bent_home, solve_numerically
 from robomill.kinematics.result import IKResult, Mode, misfit, task_mode, within_residual
@@ -207,17 +208,48 @@ def _along_path(robot: Robot, arm: Decoupled, wish: Wish, wanted: BoolArray) -> 
 
 
 def _numerical(robot: Robot, wish: Wish) -> Chosen:
-    """Pose by pose from the goal, or along each run from the pose before."""
+    """Pose by pose from the goal, or along each run from the pose before, with one spin a run where that is free and
+    the spin of its beginning reaches all of it."""
+    turned: FloatArray | None = None
     if wish.goal is not None:
         start = bent_home(robot)[None] if wish.at_home else wish.goal
         theta, found = solve_numerically(robot, wish.T_MT, start, wish.mode, nearest=not wish.at_home)
     else:
         theta, found = np.empty((len(wish.T_MT), robot.n)), np.empty(len(wish.T_MT), dtype=bool)
-        for i in range(len(wish.T_MT)):
-            checkpoint(i / len(wish.T_MT))
-            if i % wish.length == 0:
-                near = bent_home(robot)[None]
-            theta[i : i + 1], found[i : i + 1] = solve_numerically(robot, wish.T_MT[i : i + 1], near, wish.mode)
-            near = theta[i : i + 1] if found[i] else near
+        turn = np.full(len(wish.T_MT), np.nan)
+        for first in range(0, len(wish.T_MT), wish.length):
+            run = slice(first, first + wish.length)
+            held = _held(robot, wish.T_MT[run]) if wish.free_spin else None
+            if held is not None:
+                theta[run], found[run], turn[run] = held[0], True, held[1]
+            else:
+                theta[run], found[run] = _walked(robot, wish.T_MT[run], wish.mode, bent_home(robot)[None])
+        turned = None if np.isnan(turn).any() else turn
     index = np.where(found, 0, -1)
-    return Chosen(theta, index, *misfit(robot, theta, wish.T_MT, wish.mode), None)
+    return Chosen(theta, index, *misfit(robot, theta, wish.T_MT, wish.mode), turned)
+
+
+def _held(robot: Robot, T_MT: FloatArray) -> tuple[FloatArray, float] | None:
+    """(theta (m, n), rad): a run of poses all followed at the turn about the tool axis with which the first is reached
+    from home; None where that leads past a pose."""
+    start, found = solve_numerically(robot, T_MT[:1], bent_home(robot)[None], "axis")
+    if not found[0]:
+        return None
+    x = T_MT[0, :3, :3].T @ tool_pose(robot, start[0])[:3, 0]
+    angle = float(np.arctan2(x[1], x[0]))
+    theta, reached = _walked(robot, spun(T_MT, angle), task_mode(robot), start, whole=True)
+    return (theta, angle) if reached.all() else None
+
+
+def _walked(
+    robot: Robot, T_MT: FloatArray, mode: Mode, near: FloatArray, whole: bool = False
+) -> tuple[FloatArray, BoolArray]:
+    """(theta (m, n), found (m,)) of a run of poses, each from the one before; ``whole`` ends at the first not found."""
+    theta, found = np.empty((len(T_MT), robot.n)), np.zeros(len(T_MT), dtype=bool)
+    for i in range(len(T_MT)):
+        checkpoint(i / len(T_MT))
+        theta[i : i + 1], found[i : i + 1] = solve_numerically(robot, T_MT[i : i + 1], near, mode)
+        near = theta[i : i + 1] if found[i] else near
+        if whole and not found[i]:
+            break
+    return theta, found

@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from robomill.compiled import FEW, In1, In2, In3, Out2, Out3, OutBool2, kernel, part
+from robomill.compiled import FEW, In2, In3, Out2, Out3, OutBool2, kernel, part
 from robomill.kinematics.decoupled import LIMIT_SLACK, RESIDUAL, ROUNDING, Answer, Decoupled, Rules
-from robomill.kinematics.kernels import forward, forward_side_by_side, gap, misfit, upper
+from robomill.kinematics.kernels import forward_side_by_side, gap, misfit, upper
 from robomill.kinematics.trig_kernels import arc_tangent, sin_cos
 from robomill.robot.dh import Chain
 
@@ -146,24 +146,29 @@ def put(e, room, k):
 
 @part
 def turned(theta, low, high, near):
-    """An angle moved by whole turns: to the turn nearest ``near`` if that is within limits, else nearest mid-range."""
+    """An angle moved by whole turns: to the one nearest ``near`` within limits, nearest mid-range where none is."""
     close = theta + TURN * np.rint((near - theta) / TURN)
     if low - LIMIT_SLACK <= close <= high + LIMIT_SLACK:
         return close
-    return theta + TURN * np.rint((0.5 * (low + high) - theta) / TURN)
+    least, most = np.ceil((low - LIMIT_SLACK - theta) / TURN), np.floor((high + LIMIT_SLACK - theta) / TURN)
+    if least > most:
+        return theta + TURN * np.rint((0.5 * (low + high) - theta) / TURN)
+    return theta + TURN * (most if close > high else least)
 
 
 @part
-def put_within(theta, limits, goal):
+def put_within(theta, limits, goal, least):
     """theta (n,) turned towards goal and put inside limits it is past by rounding; its squared motion from there.
 
-    Infinite where it is outside the limits.
+    Infinite where it is outside the limits; left off where it comes to ``least``.
     """
     motion = 0.0
     for j in range(len(theta)):
         near = turned(theta[j], limits[j, 0], limits[j, 1], goal[j])
         theta[j] = min(max(near, limits[j, 0]), limits[j, 1])
         motion += (near - goal[j]) ** 2 if abs(near - theta[j]) <= LIMIT_SLACK else np.inf
+        if motion >= least:
+            break
     return motion
 
 
@@ -182,7 +187,7 @@ def take_nearest(target, arm, rules, goal, least, room, best):
         theta = room[ANGLE, k : 8 * len(best) : 8]
         if rules.held:
             theta[5] = goal[5]
-        cost = order + put_within(theta, rules.limits, goal)
+        cost = order + put_within(theta, rules.limits, goal, least - order)
         if cost < least:
             least, branch = cost, k
             for j in range(len(best)):
@@ -220,16 +225,19 @@ def choose(T, arm, rules, goal, room, best):
 
 @kernel(few=FEW)
 def nearest_of(T_MT: In3, arm: Decoupled, chain: Chain, rules: Rules, goals: In2, answer: Answer) -> None:
-    """The answer for poses T_MT (m, 4, 4), nearest to goals (1 or m, n)."""
-    n = len(chain.sign)
-    room, best, turns, frames = np.empty((4, 8 * AXES)), np.empty(n), np.empty((n, 3)), np.empty((n + 1, 4, 4))
-    for i in range(len(T_MT)):
-        goal = goals[i if len(goals) > 1 else 0]
-        answer.branch[i], answer.fit[i, 0] = choose(T_MT[i], arm, rules, goal, room, best)
-        forward(best, chain, turns, frames)
-        answer.fit[i, 1], answer.fit[i, 2] = misfit(frames[n], T_MT[i], rules.whole)
-        for j in range(n):
-            answer.theta[i, j] = best[j]
+    """The answer for poses T_MT (m, 4, 4), nearest to goals (1 or m, n); eight at a time are checked side by side."""
+    n, m = len(chain.sign), len(T_MT)
+    room, best = np.empty((4, 8 * AXES)), np.empty(n)
+    found, turns, tips = np.zeros(8 * n), np.empty((2, 8 * n)), np.empty((3, 4, 8))
+    for start in range(0, m, 8):
+        for i in range(start, min(start + 8, m)):
+            goal = goals[i if len(goals) > 1 else 0]
+            answer.branch[i], answer.fit[i, 0] = choose(T_MT[i], arm, rules, goal, room, best)
+            for j in range(n):
+                answer.theta[i, j] = found[8 * j + i - start] = best[j]
+        forward_side_by_side(found, chain, turns, tips)
+        for i in range(start, min(start + 8, m)):
+            answer.fit[i, 1], answer.fit[i, 2] = misfit(tips[:, :, i - start], T_MT[i], rules.whole)
 
 
 @kernel(few=FEW)
@@ -251,8 +259,9 @@ def every_of(T_MT: In3, arm: Decoupled, chain: Chain, theta: Out3, sound: OutBoo
 
 
 @kernel(few=FEW)
-def turned_of(theta: In2, limits: In2, near: In1, result: Out2) -> None:
-    """theta (m, n) turned by whole turns towards near (n,)."""
+def turned_of(theta: In2, limits: In2, goals: In2, result: Out2) -> None:
+    """theta (m, n) turned by whole turns towards goals (1 or m, n)."""
     for i in range(len(theta)):
+        near = goals[i if len(goals) > 1 else 0]
         for j in range(len(near)):
             result[i, j] = turned(theta[i, j], limits[j, 0], limits[j, 1], near[j])

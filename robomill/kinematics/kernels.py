@@ -183,6 +183,27 @@ def misfit(T, wanted, whole):
     return shift, 2.0 * np.arcsin(min(0.5 * chord, 1.0))
 
 
+@part
+def off_rigid(T):
+    """How far T (4, 4) is from a rigid transform: R^T R from 1, det(R) from 1, the last row from 0 0 0 1, at most."""
+    most = max(abs(T[3, 0]), abs(T[3, 1]), abs(T[3, 2]), abs(T[3, 3] - 1.0))
+    for a in range(3):
+        for b in range(a, 3):
+            product = T[0, a] * T[0, b] + T[1, a] * T[1, b] + T[2, a] * T[2, b]
+            most = max(most, abs(product - (1.0 if a == b else 0.0)))
+    x = T[1, 1] * T[2, 2] - T[1, 2] * T[2, 1]
+    y = T[1, 2] * T[2, 0] - T[1, 0] * T[2, 2]
+    z = T[1, 0] * T[2, 1] - T[1, 1] * T[2, 0]
+    return max(most, abs(T[0, 0] * x + T[0, 1] * y + T[0, 2] * z - 1.0))
+
+
+@kernel(few=FEW)
+def off_rigid_of(T: In3, off: Out1) -> None:
+    """off (m,) of transforms T (m, 4, 4)."""
+    for i in range(len(T)):
+        off[i] = off_rigid(T[i])
+
+
 @kernel(few=FEW)
 def frames_of(theta: In2, chain: Chain, frames: Out4) -> None:
     """frames (m, n + 1, 4, 4) of theta (m, n)."""

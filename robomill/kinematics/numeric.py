@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray
+from robomill.kinematics.choice import turn
 from robomill.kinematics.decoupled import RESIDUAL
 from robomill.kinematics.extent import drawn, stretch
 from robomill.kinematics.forward import BLOCK, tool_pose
@@ -22,7 +23,6 @@ STARTS = 64  # starts a pose is given before it counts as not found
 LIBRARY = 8192  # random configurations from which the nearest serve as starts
 COMPARED = 8  # starts of which small arms take the solution nearest to the reference
 NEAREST = 32  # starts of which any arm takes it where the nearest solution is asked for
-TURN = 2.0 * np.pi
 STEPS = 40
 TIGHT = 1e-11  # m and rad: where iteration stops, well inside the residual that counts
 PATIENCE = 6  # steps in which the error must have halved
@@ -64,7 +64,7 @@ def _solve_block(
     m = len(T_MT)
     reference = np.array(np.broadcast_to(near, (m, robot.n)))
     theta, error = descend(robot, T_MT, reference, mode)
-    theta = _turned(robot, theta, reference) if nearest else theta
+    theta = turn(robot, theta, reference) if nearest else theta
     compared = NEAREST if nearest else COMPARED if mode == "position" else 0
     remote = _motion if nearest else _remoteness
     starts: FloatArray | None = None
@@ -80,7 +80,7 @@ def _solve_block(
                 starts = _in_order(robot, starts, reference[open_])
         rows = np.searchsorted(first, open_)
         trial, remains = descend(robot, T_MT[open_], starts[rows, attempt], mode)
-        trial = _turned(robot, trial, reference[open_]) if nearest else trial
+        trial = turn(robot, trial, reference[open_]) if nearest else trial
         better = np.where(error[open_] > TIGHT, remains < error[open_], False)
         if compare:
             nearer = remote(trial, reference[open_]) < remote(theta[open_], reference[open_])
@@ -89,20 +89,9 @@ def _solve_block(
     return theta, error <= TIGHT
 
 
-def _turned(robot: Robot, theta: FloatArray, reference: FloatArray) -> FloatArray:
-    """theta (..., n) with turning joints moved by whole turns to where they are nearest the reference within limits."""
-    low, high, found = robot.limits[:, 0], robot.limits[:, 1], theta
-    turns = np.rint((reference - theta) / TURN)
-    for more in (0.0, -1.0, 1.0):
-        other = theta + TURN * (turns + more)
-        nearer = np.abs(other - reference) < np.abs(found - reference)
-        found = np.where(nearer & (low <= other) & (other <= high) & ~robot.chain.prismatic, other, found)
-    return found
-
-
 def _in_order(robot: Robot, starts: FloatArray, reference: FloatArray) -> FloatArray:
     """Starts (m, STARTS, n) with those first from which the joints have the least way to the reference (m, n)."""
-    order = np.argsort(_motion(_turned(robot, starts, reference[:, None]), reference[:, None]), axis=1)
+    order = np.argsort(_motion(turn(robot, starts, reference[:, None]), reference[:, None]), axis=1)
     return np.take_along_axis(starts, order[..., None], axis=1)
 
 

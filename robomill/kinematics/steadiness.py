@@ -8,6 +8,7 @@ from robomill.arrays import IntArray, stretches
 from robomill.kinematics import dexterity
 from robomill.kinematics.inverse import IKResult
 from robomill.kinematics.joining import easy_turn
+from robomill.kinematics.result import task_mode
 from robomill.units import format_si
 
 SLACK = 1e-6  # rad: rounding of inverse kinematics near a singular configuration
@@ -62,7 +63,7 @@ def hasty_turns(ik: IKResult) -> list[Haste]:
     """
     robot = ik.robot
     T_MT = ik.T_MT.reshape(-1, 4, 4)
-    easy = easy_turn(T_MT, whole=robot.n == 6 and not ik.free_spin)[1:]
+    easy = easy_turn(T_MT, whole=task_mode(robot) == "pose" and not ik.free_spin)[1:]
     way = np.linalg.norm(np.diff(T_MT[:, :3, 3], axis=0), axis=1)
     turn = np.abs(np.diff(ik.theta.reshape(-1, robot.n), axis=0))  # NaN beside what is not reached
     found = []

@@ -175,27 +175,18 @@ def world_from_pose(T_MT: ArrayLike) -> FloatArray:
 
 def poses(T_MT: ArrayLike) -> FloatArray:
     """Poses (..., 4, 4) as a person gives them. Raises KinematicsError for what is none: no rotation, or no shift."""
+    from robomill.kinematics import kernels
+
     T = as_floats(T_MT, "T_MT", (4, 4), error=KinematicsError)
-    if _off(T[..., :3, :3]) > UNIT or np.abs(T[..., 3, :] - [0.0, 0.0, 0.0, 1.0]).max(initial=0.0) > UNIT:
+    flat = np.ascontiguousarray(T.reshape(-1, 4, 4))
+    off = np.empty(len(flat))
+    kernels.off_rigid_of(flat, off)
+    if off.max(initial=0.0) > UNIT:
         raise KinematicsError(
             "T_MT: this is no pose; expected three unit axes that are square and right-handed, beside them the place, "
             "and 0 0 0 1 as the last row."
         )
     return T
-
-
-def _off(R: FloatArray) -> float:
-    """How far axes, the columns of R (..., 3, 3), are from unit, square and right-handed at most.
-
-    They are where x . x = y . y = 1, x . y = 0 and z = x x y, which one component after another takes an eighth of the
-    time that R^T R and det(R) take.
-    """
-    within = [np.einsum("...i,...i", R[..., a], R[..., b]) - float(a == b) for a, b in ((0, 0), (0, 1), (1, 1))]
-    across = [
-        R[..., i, 0] * R[..., j, 1] - R[..., j, 0] * R[..., i, 1] - R[..., k, 2]
-        for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-    ]
-    return max(float(np.abs(gap).max(initial=0.0)) for gap in within + across)
 
 
 def tilt_from_axis(k: ArrayLike) -> FloatArray:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from robomill.units import unit_label
+from robomill.values import Value
 
 
 @dataclass(frozen=True)
@@ -23,8 +24,8 @@ class Slip:
     value: float
 
 
-@dataclass(frozen=True, eq=False)
-class Exercise:
+@dataclass(frozen=True, eq=False, repr=False)
+class Exercise(Value):
     """An exercise with one student's numbers.
 
     ``answer`` is in SI, asked for in ``unit`` (a key of ``robomill.units.UNITS``); right is what lies within
@@ -48,9 +49,15 @@ class Exercise:
     hints: tuple[str, ...]
     equation: str
     number: str
-    answer: float = field(repr=False)
-    slips: tuple[Slip, ...] = field(repr=False)
-    data: Mapping[str, tuple[float, ...]] = field(default_factory=dict, repr=False)
+    answer: float
+    slips: tuple[Slip, ...]
+    data: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+
+    def _said(self) -> str:
+        return f"{self.id}: {self.title}, {self.asked}"
+
+    def _facts(self) -> Sequence[tuple[str, str]]:
+        return [("asked", self.text), ("in", self.asked)]
 
     @property
     def asked(self) -> str:

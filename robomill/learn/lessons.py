@@ -203,10 +203,8 @@ def _milling(pose: PoseReport) -> Lesson:
     words = {True: "too much is cut away", False: "material is left"}
     combos = [(a, b) for a in (True, False) for b in (True, False)]
     right = combos.index((up > 0.0, down > 0.0))
-    told = (
-        f"Up milling moves the tip by {format_si(up, 'um', 1, sign=True)} into its wall, down milling by "
-        f"{format_si(down, 'um', 1, sign=True)} into its: minus is away from it."
-    )
+    far = [f"{format_si(abs(way), 'um', 1)} {'into' if way > 0.0 else 'away from'} its wall" for way in (up, down)]
+    told = f"Up milling moves the tip {far[0]}, down milling {far[1]}."
     return Lesson(
         5,
         "A right-hand cutter mills a wall along +X, once up, once down. Which wall is off, and how?",

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from robomill.arguments import asked
-from robomill.errors import NumberError
+from robomill.arrays import brief
+from robomill.errors import ArgumentError, NumberError
 from robomill.learn.exercise import Exercise
 from robomill.typed_numbers import read_number
 from robomill.units import format_percent, to_si
@@ -19,6 +20,7 @@ MOST = 2.0
 # Factors by which a unit goes wrong, and how that is told.
 THOUSANDS = {1e3: "a thousand times too large", 1e-3: "a thousand times too small"}
 THOUSANDS |= {1e6: "a million times too large", 1e-6: "a million times too small"}
+SHARES = {1e2: "a hundred times too large", 1e-2: "a hundred times too small"}  # of what is asked for in per cent
 TURN = math.pi / 180.0
 
 
@@ -26,8 +28,8 @@ TURN = math.pi / 180.0
 class Judgement:
     """What an answer is: its ``kind``, one whole sentence for the student, the ``value`` read (SI, NaN where none).
 
-    kind: right; sign (right but for its sign); unit (by 1000 or a million, or degrees for radians); slip (what a named
-    mistake gives); wrong; unread (no number); missing (no answer).
+    kind: right; sign (right but for its sign); unit (by 1000 or a million, a share for per cent, or degrees for
+    radians); slip (what a named mistake gives); wrong; unread (no number); missing (no answer).
 
     Examples
     --------
@@ -60,7 +62,8 @@ def check(exercise: Exercise, answer: str | float | None) -> Judgement:
     exercise : Exercise
         As ``robomill.learn.exercise`` gives it.
     answer : str, float or None
-        As typed, with decimal comma or point and a unit if one likes; a number is in the exercise's unit.
+        As typed, with decimal comma or point and a unit if one likes; a number (of NumPy, too) is in the exercise's
+        unit, while ``exercise.answer`` is in SI.
 
     Returns
     -------
@@ -79,10 +82,12 @@ def check(exercise: Exercise, answer: str | float | None) -> Judgement:
     >>> learn.check(given, "1e999").sentence
     "This is no number: found '1e999', expected a number that is finite."
     """
+    if getattr(answer, "shape", None) == ():  # a number of NumPy, or an array of one
+        answer = answer.item()  # type: ignore[union-attr]
     if answer is None or (isinstance(answer, str) and not answer.strip()):
         return Judgement("missing", "There is no answer.")
     if isinstance(answer, bool) or not isinstance(answer, str | float | int):
-        raise TypeError(answer)
+        raise ArgumentError(f"check: answer: expected a text or a number, or None, found {brief(answer)}.")
     try:
         typed = read_number(answer if isinstance(answer, str) else repr(float(answer)), exercise.unit)
     except NumberError as refusal:
@@ -105,7 +110,8 @@ def _judged(exercise: Exercise, value: float) -> Judgement:
         return Judgement(
             "sign", "The size is right, the sign is wrong: check which way the force and the axis point.", value
         )
-    for factor, words in THOUSANDS.items():
+    factors = THOUSANDS | (SHARES if exercise.unit == "%" else {})
+    for factor, words in factors.items():
         for sign, also in ((1.0, ""), (-1.0, ", and its sign is wrong")):
             if exercise.holds(sign * value / factor):
                 return Judgement(
@@ -125,7 +131,7 @@ def _judged(exercise: Exercise, value: float) -> Judgement:
 def _off(exercise: Exercise, value: float) -> str:
     share = value / exercise.answer - 1.0
     if value == 0.0:
-        return "It is not zero: every joint that the force turns lets the tip move."
+        return "It is not zero: take the next hint."
     if abs(share) < 0.5:
         more = "large" if share > 0.0 else "small"
         return f"Not right: the size is {format_percent(abs(share), 1)} too {more}, which no usual slip explains."

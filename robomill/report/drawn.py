@@ -45,7 +45,8 @@ class Axes:
             look = "z" if value == 0.0 else "g"
             parts.append(tag("line", x1=_n(self.left), x2=_n(self.right), y1=_n(y), y2=_n(y), class_=look))
             parts.append(tag("text", words, x=_n(self.left - 5), y=_n(float(y) + 3.5), class_="e"))
-        for value, words in ticks(*self.x, max(2, int(self.width // 80))) if x_ticks else ():
+        low, high = sorted(self.x)
+        for value, words in ticks(low, high, max(2, int(self.width // 80))) if x_ticks else ():
             x, _ = self.at(value, self.y[0])
             parts.append(tag("line", x1=_n(x), x2=_n(x), y1=_n(self.top), y2=_n(self.bottom), class_="g"))
             parts.append(tag("text", words, x=_n(x), y=_n(self.bottom + 13), class_="m"))

@@ -16,7 +16,7 @@ from robomill.errors import ProjectError
 from robomill.files import check_folder_there, check_no_folder, shown_place, write_whole
 from robomill.report import sections_told
 from robomill.report.pictures import joints_picture, path_picture, section_picture
-from robomill.report.remedies_told import Made, Told, told
+from robomill.report.remedies_told import Made, Told, told_of
 from robomill.report.simulation_record import simulation_record
 from robomill.report.tags import Html, escaped, joined, tag
 from robomill.simulation.result import SimulationResult
@@ -41,15 +41,16 @@ KEY_OF_PATH = (
 
 
 @asked
-def report_html(run: SimulationSetup | SimulationResult, remedies: Sequence[Made] = ()) -> str:
+def report_html(run: SimulationSetup | SimulationResult, remedies: Made | Sequence[Made] = ()) -> str:
     """A report of a run as the text of one HTML page, to hand over, print or keep.
 
     Parameters
     ----------
     run : SimulationSetup or SimulationResult
         A set-up is run first.
-    remedies : sequence
-        What ``rm.advise``, ``rm.compensate``, ``rm.design``, ``rm.place`` or ``rm.turn`` returned for the same set-up.
+    remedies : one or a sequence
+        What ``rm.advise``, ``rm.compensate``, ``rm.design``, ``rm.place`` or ``rm.turn`` returned for the same set-up;
+        ``rm.design`` may have been asked about another tolerance.
 
     Returns
     -------
@@ -59,7 +60,7 @@ def report_html(run: SimulationSetup | SimulationResult, remedies: Sequence[Made
     Raises
     ------
     RobomillError
-        Where the set-up is refused, or a remedy is none.
+        Where the set-up is refused, or a remedy is none or is that of another set-up.
 
     Examples
     --------
@@ -69,11 +70,13 @@ def report_html(run: SimulationSetup | SimulationResult, remedies: Sequence[Made
     True
     """
     result = run if isinstance(run, SimulationResult) else simulate(run)
-    return page(result, simulation_record(result), [row for each in remedies for row in told(each)])
+    return page(result, simulation_record(result), told_of(result.setup, remedies))
 
 
 @asked
-def write_report(path: str | Path, run: SimulationSetup | SimulationResult, remedies: Sequence[Made] = ()) -> Path:
+def write_report(
+    path: str | Path, run: SimulationSetup | SimulationResult, remedies: Made | Sequence[Made] = ()
+) -> Path:
     """A report of a run as an HTML file; see ``report_html``.
 
     Parameters
@@ -82,7 +85,7 @@ def write_report(path: str | Path, run: SimulationSetup | SimulationResult, reme
         Where it shall stand.
     run : SimulationSetup or SimulationResult
         A set-up is run first.
-    remedies : sequence
+    remedies : one or a sequence
         What was computed to mend the cut.
 
     Returns

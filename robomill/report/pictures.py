@@ -24,12 +24,12 @@ def section_picture(section: GrooveSection, result: SimulationResult) -> Html:
     w, ideal, left = (from_si(each, "mm") for each in (section.w, section.z_ideal, section.z_machined))
     lowest, top = min(ideal.min(), left.min()), max(ideal.max(), left.max())
     shown = _about_the_cut(w, ideal)
-    w, ideal, left = w[shown], ideal[shown], left[shown]
+    w, ideal, left = (each[shown][::-1] for each in (w, ideal, left))  # + is left of the feed, and stands to the left
     width, height = HALF - 50, 190
-    tall = max(1.25 * (top - lowest), (w[-1] - w[0]) * height / width)
+    tall = max(1.25 * (top - lowest), (w[0] - w[-1]) * height / width)
     wide = tall * width / height
     middle, base = 0.5 * (w[0] + w[-1]), lowest - 0.45 * (tall - (top - lowest))
-    axes = Axes(40, 18, width, height, (middle - 0.5 * wide, middle + 0.5 * wide), (base, base + tall))
+    axes = Axes(40, 18, width, height, (middle + 0.5 * wide, middle - 0.5 * wide), (base, base + tall))
     edge = np.concatenate([[axes.x[0]], w, [axes.x[1]]])
     outlines = [np.concatenate([z[:1], z, z[-1:]]) for z in (ideal, left)]
     across, up = axes.at(edge, outlines[1])
@@ -46,7 +46,7 @@ def section_picture(section: GrooveSection, result: SimulationResult) -> Html:
         240,
         said,
         tag("clipPath", box, id="cut"),
-        axes.frame("across the feed, mm (looking along it)", "height, mm"),
+        axes.frame("across the feed, mm (+ is left of it)", "height, mm"),
         tag(
             "g",
             tag("polygon", points=metal, class_="metal"),
@@ -72,7 +72,7 @@ def _allowed(axes: Axes, w: FloatArray, z: FloatArray, tolerances: tuple[float, 
     """All that is within the tolerances of walls (across) and floors (up) of an outline: a line as thick as they are,
     in a picture that is stretched by each."""
     (x_0, x_1), (y_0, y_1) = axes.x, axes.y
-    across = from_si(tolerances[0], "mm") * axes.width / (x_1 - x_0)
+    across = from_si(tolerances[0], "mm") * axes.width / abs(x_1 - x_0)
     up = from_si(tolerances[1], "mm") * axes.height / (y_1 - y_0)
     x, y = axes.at(w, z)
     points = " ".join(f"{a:.3f},{b:.3f}" for a, b in zip(x / across, y / up, strict=True))

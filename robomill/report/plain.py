@@ -217,7 +217,7 @@ def map_lines(record: dict[str, Any]) -> list[str]:
     for quantity in record["quantities"]:
         low, high = (format_value(quantity[end], quantity["unit"]) for end in ("min", "max"))
         lines.append(f"{quantity['name']:18} {low} to {high}   {quantity['title']}")
-    return lines
+    return lines + finding_lines(record["findings"])
 
 
 def _held(point: dict[str, Any]) -> list[tuple[float, tuple[float, float]]]:

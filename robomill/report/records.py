@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,10 @@ from numpy.typing import ArrayLike
 
 from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
+from robomill.compliance.posture import posture_notes
+from robomill.csv_text import settled
 from robomill.kinematics.inverse import IKResult
 from robomill.kinematics.result import beyond_limits
-from robomill.report.settled import settled
 from robomill.robot.model import Robot
 from robomill.robot.sources import block_in_force
 from robomill.simulation.origin.assumptions import assumed_of_program, assumed_of_robot, assumed_of_setup
@@ -31,8 +33,8 @@ def jsonable(value: Any) -> Any:
         return [jsonable(v) for v in value]
     if isinstance(value, np.generic):
         return jsonable(value.item())
-    if isinstance(value, float):
-        return rounded(value) if math.isfinite(value) else None
+    if isinstance(value, float | Decimal):
+        return rounded(float(value)) if math.isfinite(value) else None
     return value
 
 
@@ -138,6 +140,7 @@ def map_record(fields: Sequence[Field]) -> dict[str, Any]:
             }
             for field in fields
         ],
+        "findings": [note.record() for note in posture_notes(robot)],
         "provenance": said_of(robot),
         "assumed": [each.record() for each in assumed_of_robot(robot)],
     }

@@ -1,6 +1,6 @@
 """What remedies were tried for a cut and what each leaves, as rows that a report shows."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,7 +13,17 @@ from robomill.improve.remedies import Both, Remedy, Stiffened, remedy_of
 from robomill.improve.turning import Turning
 from robomill.provenance import Finding
 from robomill.simulation.judging.verdict_words import TITLES
-from robomill.units import format_count, format_duration, format_many, format_number, format_si
+from robomill.simulation.run import simulate
+from robomill.simulation.setup import SimulationSetup
+from robomill.units import (
+    format_count,
+    format_duration,
+    format_many,
+    format_number,
+    format_plain,
+    format_si,
+    from_si,
+)
 
 Made = Advice | Both | Compensation | Design | Placement | Stiffened | Turning
 NOTED = 1.005  # times as stiff: what is less is not told with two decimals
@@ -53,6 +63,8 @@ def _stiffened(found: Stiffened, title: str) -> list[Told]:
     stiffer = [f"joint {number} × {format_number(ratio, 2)}" for number, ratio in ratios if ratio > NOTED]
     what = ", ".join(stiffer) or "no joint need be stiffer"
     what += ", which halves what is used of the tolerance" if found.half and made.feasible else ""
+    if not found.half and made.after.setup.tolerance != found.run.setup.tolerance:
+        what += f", to keep {format_plain(from_si(made.after.setup.tolerance, 'mm'), 4)} mm"
     return [Told(title, what, verdict.sentence if made.feasible else made.sentence, TITLES[verdict.level])]
 
 
@@ -108,3 +120,28 @@ def told(found: Made) -> list[Told]:
             "rm.turn return."
         )
     return ROWS[remedy.code](made, remedy.title)
+
+
+def told_of(setup: SimulationSetup, found: Made | Sequence[Made]) -> list[Told]:
+    """The rows of what was computed for a cut, one remedy or several. Raises RobomillError for what is none, and for
+    one of another cut; stiffer joints may have been sought for another tolerance, and are judged by that of the cut."""
+    rows: list[Told] = []
+    for each in found if isinstance(found, Sequence) else (found,):
+        own, design = _sought_for(each), each.design if isinstance(each, Stiffened) else each
+        if own is not None and (own.replace(**setup.tolerances) if isinstance(design, Design) else own) != setup:
+            raise RobomillError(
+                f"remedies: this {type(each).__name__} was computed for another set-up than the one that is reported; "
+                "compute it for that one."
+            )
+        if isinstance(each, Design) and own != setup:
+            rows += told(Stiffened(each, simulate(setup.replace(robot=each.setup.robot))))
+        else:
+            rows += told(each)
+    return rows
+
+
+def _sought_for(found: Made) -> SimulationSetup | None:
+    """The cut that a remedy was sought for; None of what is no remedy."""
+    made = found.place if isinstance(found, Both) else found.design if isinstance(found, Stiffened) else found
+    before = made.before if isinstance(made, Design) else made
+    return getattr(before, "setup", None) if remedy_of(found) or isinstance(found, Design) else None

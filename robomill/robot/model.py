@@ -266,12 +266,12 @@ class Robot(Arm):
                     refuse_printed(quantities(Robot)[full], changes[short], self.name)
                 if short in changes:
                     changes[full] = self._filled(changes.pop(short), getattr(self, full))
-            if "C_theta_all" in changes and "compliance_set" not in changes:
-                changes["compliance_set"] = USER_SET
-            elif "C_theta_all" not in changes and {"compliance_set", "compliance_sets"} & changes.keys():
+            if "C_theta_all" not in changes:
                 sets = changes.get("compliance_sets", self.compliance_sets)
                 name = changes.get("compliance_set", self.compliance_set)
                 changes |= {"C_theta_all": sets[name]} if name in sets else {}
+            elif "compliance_set" not in changes:
+                changes["compliance_set"] = USER_SET
             other = Robot(**{**{key: getattr(self, key) for key in known}, **changes, "provenance": self.provenance})
         found = {**other.provenance, **changed_sources(self, other), **said}
         if other.compliance_set != USER_SET:
@@ -282,10 +282,10 @@ class Robot(Arm):
     def _filled(self, value: Any, current: FloatArray) -> Any:
         if no_number(value):
             return value  # which is refused with the rest
-        if np.ndim(value) == 0 and value is not None:
+        if np.ndim(value) == 0:
             return np.where(self.free, value, current) if current.ndim == 1 else value  # one for all
-        if self.n == self.rows or np.ndim(value) == 0 or len(value) != self.n:
-            return value
+        if np.shape(value) != (self.n, *current.shape[1:]):
+            return value  # of all rows, or refused
         full = np.array(current)
         full[self.free] = value
         return full

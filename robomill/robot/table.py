@@ -129,8 +129,10 @@ def refuse_printed(declared: Quantity, C_theta: Any, name: str) -> None:
 
 
 def _rows_of(robot: Arm, value: Any) -> Any:
-    """The rows of the table that the entries of ``value`` are of: the free ones where there are as many."""
-    return np.flatnonzero(robot.free) if hasattr(value, "__len__") and len(value) == robot.n else np.arange(robot.rows)
+    """The rows of the table that ``value`` is of: all where it has an entry for each, else the free ones."""
+    return (
+        np.arange(robot.rows) if hasattr(value, "__len__") and len(value) == robot.rows else np.flatnonzero(robot.free)
+    )
 
 
 def _column(given: Mapping[str, Any], declared: Quantity, who: str) -> FloatArray | None:
@@ -148,7 +150,7 @@ def _check_twists(alpha: FloatArray, who: str) -> None:
     """Refuse twists in degrees whose largest is a right angle, or two, in radians: no arm is twisted by 1.57 degrees
     and nowhere more."""
     turns = float(np.abs(alpha).max(initial=0.0)) / (0.5 * math.pi)
-    if 0.5 < turns < 2.5 and abs(turns - round(turns)) < ALIKE * round(turns):
+    if turns < 2.5 and abs(turns - round(turns)) < ALIKE * round(turns):
         largest = f"{turns * 0.5 * math.pi:.6g}"
         raise RobotError(
             f"{who}: alpha_deg: the largest twist is {largest}°, in radians that is {90 * round(turns)}°: alpha_deg is "

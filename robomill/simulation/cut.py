@@ -91,19 +91,25 @@ def cut_conditions(setup: SimulationSetup, path: Toolpath, told: CutConditions) 
     return met_conditions(told, engage(through_stock(setup, path, told)))
 
 
-def through_stock(setup: SimulationSetup, path: Toolpath, told: CutConditions, led: Led | None = None) -> March:
-    """The path through its stock, ready to be marched."""
+def through_stock(
+    setup: SimulationSetup,
+    path: Toolpath,
+    told: CutConditions,
+    led: Led | None = None,
+    looked: FloatArray | None = None,
+) -> March:
+    """The path through its stock, ready to be marched; ``looked`` as in ``March``."""
     assert told.tooling is not None
     exponents = setup.force.exponents or (0.0,)
     p, way, tips = (path.p, ways(path), None) if led is None else (led.meant, led.way, led.tips)
     block, cell = setup.stock_block, setup.cell
-    return March(block, cell, told.tooling, p, path.k, told.cutting, exponents, tips, way, told.sinks)
+    return March(block, cell, told.tooling, p, path.k, told.cutting, exponents, tips, way, told.sinks, looked)
 
 
 def met_conditions(told: CutConditions, found: Engagement) -> CutConditions:
     """What was told, with what each step really meets."""
     arc: dict[str, Any] = {name: getattr(found, name) for name in ("a_p", "phi_st", "phi_ex", "reach", "part")}
-    return replace(told, **arc)
+    return told.meeting(**arc)
 
 
 def unknown_material(conditions: CutConditions) -> tuple[Unjudged, ...]:
@@ -121,7 +127,7 @@ def rotary_asked(path: Toolpath, conditions: CutConditions) -> tuple[Unjudged, .
     """All cuts of a program that turns far, while nobody has said whether its table or its tool does."""
     if not any(each.code == ROTARY_ASKED for each in path.findings):
         return ()
-    why = "the program turns an axis through more than a quarter: say whether it turns the part or leans the tool"
+    why = "the program turns an axis far, or C beside a lean: say whether it turns the part or leans the tool"
     return (Unjudged(ROTARY_ASKED, conditions.cutting.copy(), why),)
 
 

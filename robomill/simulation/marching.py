@@ -1,7 +1,6 @@
 """A coupled run: each step is solved for its deflection, cut where it stands, and the next meets what is left."""
 
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,7 +8,6 @@ from robomill.arrays import FloatArray
 from robomill.compliance.deflection import displacement
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import force_on_tool
-from robomill.cutting.tooling import Tooling
 from robomill.cutting.unjudged import Unjudged
 from robomill.progress import checkpoint
 from robomill.simulation.coupling import Coupling, Settled, settle
@@ -101,37 +99,32 @@ class _Walk:
     def _step(self, i: int) -> tuple[Settled, FloatArray, FloatArray]:
         """Solve step i and cut it: how it was settled, and what it meets, row and sectors."""
         bent, p, to_part = self.bent, self.bent.path.p, self.bent.setup.to_part
-        told = _only(bent.told, i)
-
-        def meets(delta: FloatArray) -> tuple[FloatArray, FloatArray]:
-            shift = to_part(np.nan_to_num(delta))
-            return self.march.meet(i, p[i - 1] + shift, p[i] + shift)
+        told = bent.told.at(i)
 
         def pushed(row: FloatArray, sectors: FloatArray) -> FloatArray:
             met = met_conditions(told, engagement(self.march.exponents, row[None], sectors[None]))
             return bent.force(met, bent.R_MF[i : i + 1])[0]
 
+        seen: dict[bytes, tuple[FloatArray, FloatArray, FloatArray]] = {}
+
+        def meets(delta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+            if (key := delta.tobytes()) not in seen:
+                shift = to_part(np.nan_to_num(delta))
+                row, sectors = self.march.meet(i, p[i - 1] + shift, p[i] + shift)
+                seen[key] = row, sectors, pushed(row, sectors)
+            return seen[key]
+
         def bends(delta: FloatArray) -> FloatArray:
-            return np.asarray(bent.C[i] @ pushed(*meets(delta)) + bent.offset[i])
+            return np.asarray(bent.C[i] @ meets(delta)[2] + bent.offset[i])
 
         found = settle(bends, self.moved[i - 1], np.nan_to_num(bent.offset[i]))
         met = [meets(place) for place, _ in found.mix]
-        row = sum((weight * row for (_, weight), (row, _) in zip(found.mix, met)), start=np.zeros(len(met[0][0])))
-        self.moved[i] = np.nan_to_num(displacement(bent.C[i], pushed(row, met[0][1])) + bent.offset[i])
+        row, sectors, F = met[0]
+        if len(met) > 1:
+            row = sum((weight * row for (_, weight), (row, *_) in zip(found.mix, met)), start=np.zeros(len(row)))
+            F = pushed(row, sectors)
+        self.moved[i] = np.nan_to_num(displacement(bent.C[i], F) + bent.offset[i])
         if not bent.path.cutting[i - 1]:  # a rapid arrives where the cut begins
             self.moved[i - 1] = self.moved[i]
         self.march.cut(i, p[i - 1] + to_part(self.moved[i - 1]), p[i] + to_part(self.moved[i]))
-        return found, row, met[0][1]
-
-
-def _only(conditions: CutConditions, i: int) -> CutConditions:
-    """The conditions of one step."""
-    values: dict[str, Any] = {}
-    for each in fields(conditions):
-        value = getattr(conditions, each.name)
-        if isinstance(value, np.ndarray):
-            values[each.name] = value[i : i + 1]
-    tooling = conditions.tooling
-    if tooling is not None:
-        values["tooling"] = Tooling(tooling.cutters, tooling.of_step[i : i + 1])
-    return replace(conditions, part=None, **values)
+        return found, row, sectors

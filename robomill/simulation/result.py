@@ -101,7 +101,7 @@ class SimulationResult(Run):
         found += rigid_tool_notes(self.setup, self.tooling, self.force_components)
         if self.coupling is not None:
             found.append(self.coupling.finding)
-        found += self._uncoupled
+        found += self.uncoupled
         if self.setup.add_sag:
             text = (
                 "the sag under the arm's own weight is in the deviation; a part that is zeroed on the arm has lost it."
@@ -113,10 +113,10 @@ class SimulationResult(Run):
         return self._placed([*found, *self.turned])
 
     @cached_property
-    def _uncoupled(self) -> tuple[Finding, ...]:
+    def uncoupled(self) -> tuple[Finding, ...]:
         """Whether a green verdict rests on taking the tool to cut where it is told to."""
         follows = self.setup.engagement and self.setup.force.follows_cut and self.coupling is None
-        if not follows or self.ahead is not None or self.verdict.level not in ("ok", "tight"):
+        if not follows or self.verdict.level not in ("ok", "tight"):
             return ()
         met, F = met_where_pushed(self)
         pushed = replace(self, conditions=met, F=F, delta=self.delta + displacement(self.C, F - self.F))

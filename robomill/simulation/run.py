@@ -24,9 +24,18 @@ from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins, spin
 from robomill.kinematics.transforms import pose_from_world, rotation_z, tilt_from_axis, transform
 from robomill.progress import checkpoint, gathered, slices
 from robomill.simulation.coupling import Coupling
-from robomill.simulation.cut import Led, cut_conditions, rotary_asked, steps_in_stock, told_conditions, unknown_material
+from robomill.simulation.cut import (
+    Led,
+    cut_conditions,
+    met_conditions,
+    rotary_asked,
+    steps_in_stock,
+    through_stock,
+    told_conditions,
+    unknown_material,
+)
 from robomill.simulation.judging.leaning import leaning, lying
-from robomill.simulation.judging.sinking import clear, pressing, sinking, told_to_sink
+from robomill.simulation.judging.sinking import clear, fallen, pressing, sinking, told_to_sink
 from robomill.simulation.led import against, led_beside, led_conditions, plunges
 from robomill.simulation.mapped import beyond_map, total_compliance
 from robomill.simulation.marching import Bent, march_coupled
@@ -37,6 +46,7 @@ from robomill.simulation.setup import SimulationSetup, check_setup
 from robomill.simulation.threads import threads_in_cut
 from robomill.simulation.tools import farther, held
 from robomill.simulation.turning import turns_in_cut
+from robomill.surface.contact.engagement import engage
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sampling import check_samples
 
@@ -236,9 +246,10 @@ def sags(setup: SimulationSetup, path: Toolpath, theta: FloatArray, links: LinkM
     """(..., m, n, 3) m: shares of the joints in the sag of the tip, of configurations theta (..., m, n)."""
     sag = np.empty((*theta.shape, 3))
     for tool in held(setup, path):
+        carried = links.behind(tool.longer)
         steps = np.flatnonzero(tool.steps)
         for some in slices(len(steps), "Sag"):
-            sag[..., steps[some], :, :] = gravity_sag(tool.robot, theta[..., steps[some], :], links)
+            sag[..., steps[some], :, :] = gravity_sag(tool.robot, theta[..., steps[some], :], carried)
     return sag
 
 
@@ -246,7 +257,7 @@ def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...],
     """Conditions, force F (m, 3) N in {M}, what it has no model for, and how a coupled run was solved."""
     setup, path = bent.setup, bent.path
     if setup.force.follows_cut and told_to_sink(bent.told).any():
-        bent = replace(bent, told=sinking(bent.told, path, _tips(bent), partial(_lift, bent)))
+        bent = replace(bent, told=sinking(bent.told, path, *_tips(bent), partial(_lift, bent)))
     conditions, F = _once(bent)
     if not setup.coupling:
         return conditions, F, _reasons(bent, conditions), None
@@ -270,12 +281,24 @@ def _once(bent: Bent) -> tuple[CutConditions, FloatArray]:
     return conditions, bent.force(conditions, bent.R_MF)
 
 
-def _tips(bent: Bent) -> FloatArray:
-    """(m, 3) m in {W}: where the tips go if no end of a tool met anything; where they were meant to, if led."""
+def _tips(bent: Bent) -> tuple[FloatArray, Callable[[], FloatArray] | None]:
+    """(m, 3) m in {W}: where the tips go if no end of a tool met anything; where they were meant to, if led. And what
+    says of each step how far (m,) m its own fall lifts the tip; None where nothing does."""
     if bent.led is not None:
-        return bent.led.meant
-    delta = bent.delta(_once(replace(bent, told=clear(bent.told)))[1])
-    return np.asarray(bent.path.p + bent.setup.to_part(np.nan_to_num(delta)))
+        return bent.led.meant, None
+    free = replace(bent, told=clear(bent.told))
+    tips = np.asarray(bent.path.p + bent.setup.to_part(np.nan_to_num(free.delta(_once(free)[1]))))
+    return tips, partial(_own_lift, free, tips) if bent.setup.engagement else None
+
+
+def _own_lift(free: Bent, tips: FloatArray) -> FloatArray:
+    """(m,) m: how much less the ``tips`` (m, 3) m of a run would be lifted at the end of each step that goes down, were
+    it not deeper there than where it began."""
+    path = free.path
+    raised = np.maximum(fallen(path, path.p), 0.0)[:, None] * path.k
+    found = engage(through_stock(free.setup, path, free.told, looked=raised))
+    delta = free.delta(free.force(met_conditions(free.told, found), free.R_MF))
+    return np.einsum("mi,mi->m", tips - path.p - free.setup.to_part(np.nan_to_num(delta)), path.k)
 
 
 def _lift(bent: Bent) -> FloatArray:

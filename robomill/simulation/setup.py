@@ -39,6 +39,7 @@ FINEST = 1e-6  # m: no robot mills as precisely: was it meant in m?
 COARSEST = 0.05  # m: what is off by more is no part: was it meant in um, or in mm as m?
 NO_TOOLS = ToolTable()
 TOLERANCES = ("wall", "floor", "feed")
+ALLOWED = ("tolerance", "floor_tolerance", "feed_tolerance")  # the fields that hold them
 
 
 def _own_tolerance(label: str, hint: str) -> Any:
@@ -56,8 +57,8 @@ class SimulationSetup(Replaceable, Value):
     T_MW        (4, 4) where the part zero {W} lies in {M}; instead of it ``part_zero`` (3,) m or ``part_zero_mm``, and
                 ``part_rotation_z`` or ``part_rotation_z_deg``, the part's turn about z_M
     cutter, force, stock   stock None: the path's bounds with a margin
-    spin        of arms with six axes or more, about the tool axis: an angle in rad by which R_x(A) R_y(B) is turned, or
-                "least_motion" of the joints, or "least_deviation"; one for the whole path
+    spin        of arms with six axes or more, about the tool axis: an angle in rad by which R_x(A) R_y(B) in the axes
+                of the part is turned, or "least_motion" of the joints, or "least_deviation"; one for the whole path
     tools       the tools of the program by number; empty: ``cutter`` for all (and where the program names none)
     tolerance   m, largest accepted deviation of walls, and of floors where ``floor_tolerance`` is None; or three
                 numbers (wall, floor, feed), as a sequence or as a mapping by these names
@@ -247,7 +248,7 @@ class SimulationSetup(Replaceable, Value):
                 f"Tolerance: found {given!r:.60}; expected one number, or three for {', '.join(TOLERANCES)}.",
                 where="tolerance",
             )
-        for name, value in zip(("tolerance", "floor_tolerance", "feed_tolerance"), given, strict=True):
+        for name, value in zip(ALLOWED, given, strict=True):
             object.__setattr__(self, name, value)
 
     @cached_property
@@ -270,6 +271,11 @@ class SimulationSetup(Replaceable, Value):
         used = [self.tools.cutter(int(n)) for n in np.unique(path.tool[path.cutting]) if int(n) in self.tools]
         widest = max(used or [self.cutter], key=lambda cutter: cutter.diameter)
         return Stock.around(path, widest)
+
+    @property
+    def tolerances(self) -> dict[str, float | None]:
+        """m, by field, as they are given: None where floors or the feed have none of their own."""
+        return {name: getattr(self, name) for name in ALLOWED}
 
     @property
     def limits(self) -> dict[str, float]:

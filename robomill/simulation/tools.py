@@ -26,8 +26,10 @@ FASTEST = 1.0  # m/s, of a feed
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """What a tool changes: the robot with its tip, its springs, and the steps (m,) bool that it makes."""
+    """What a tool changes: how much ``longer`` (m) it is than the first that cuts, the robot with its tip, its springs,
+    and the steps (m,) bool that it makes."""
 
+    longer: float
     robot: Robot
     springs: tuple[Spring, ...]
     steps: BoolArray
@@ -85,7 +87,7 @@ def held(setup: SimulationSetup, path: Toolpath) -> Iterator[Held]:
         springs = setup.springs
         if len(kinds) > 1 and (n > 0 or longer):
             springs = tuple(spring.of_tool(made.cutters[int(n)], float(longer)) for spring in springs)
-        yield Held(reaching(setup.robot, float(longer)), springs, steps)
+        yield Held(float(longer), reaching(setup.robot, float(longer)), springs, steps)
 
 
 def reaching(robot: Robot, farther: float) -> Robot:
@@ -101,13 +103,22 @@ def tool_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
         return _holders(setup, path)
     numbers = [int(n) for n in cutting_numbers(path)]
     found = [*setup.tools.findings, *setup.tools.notes(numbers)]
-    if farther(setup, path).any():
+    beyond = farther(setup, path)[path.cutting]
+    if beyond.any():
         length = format_si(setup.tools[numbers[0]].length, "mm", 2)
         text = (
             f"The robot's tool frame is taken as that of tool {numbers[0]} ({length} long), the first that cuts; the "
             "tips of the others stand as much farther as they are longer."
         )
         found.append(Finding("info", text, code="tool-frame"))
+        other = float(beyond[np.argmax(np.abs(beyond))])
+        than = f"{format_si(abs(other), 'mm', 1)} {'longer gives more' if other > 0 else 'shorter gives less'}"
+        for spring in filter(lambda each: each.at_tip, setup.springs):
+            text = (
+                f"{spring.name.capitalize()}: its stiffness is that at the tip of tool {numbers[0]}; the tip of a tool "
+                f"{than} across, by how much is not known, and the same is used."
+            )
+            found.append(Finding("warning", text, code="spring-at-tip"))
     return (*found, *_holders(setup, path))
 
 

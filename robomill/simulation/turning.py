@@ -1,10 +1,12 @@
 """Where the tool's axis turns while it cuts: rim and flanks then move otherwise than the tip.
 
-The laws of the force take the feed of the tip for that of every tooth. A point at r from the tip moves by w x r beside
-it, where the axis turns by w (rad per m of the tip's way). On the rim or at the highest place that cuts this share of
-the feed is a change of its direction; below that at which hollow end teeth begin to cut it changes forces by less than
-5 % (by brute force, slots and shoulders, flat, ball and bull-nose cutters), above it by up to as much again.
+A point at r from the tip moves by w x r beside it, where the axis turns by w (rad per m of the tip's way); the chip is
+that of its own way. Where rim and highest place go up to 2 degrees otherwise than the tip, the force of a run is
+within 5 % of brute force (slots and shoulders, flat, ball and bull-nose cutters, turning ahead and aside). Beyond, it
+has not been looked at, and is not judged; nor is a full slot that is only stated, from where hollow end teeth cut.
 """
+
+import math
 
 import numpy as np
 
@@ -13,9 +15,11 @@ from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tool import DISH
 from robomill.cutting.unjudged import Unjudged
 from robomill.toolpath.path import Toolpath
+from robomill.units import to_si
 from robomill.vectors import angle_between
 
 AXIS_TURNS = "axis-turns"
+MOST = math.sin(to_si(2.05, "deg"))  # of a feed: a change of its direction that is judged
 
 
 def turn_rate(path: Toolpath) -> FloatArray:
@@ -34,6 +38,6 @@ def turns_in_cut(path: Toolpath, conditions: CutConditions) -> tuple[Unjudged, .
     """Steps in the material at which the axis turns too fast for a force from the material."""
     assert conditions.tooling is not None
     share = turn_rate(path) * np.maximum(conditions.tooling.each("radius"), conditions.highest)
-    where = conditions.engaged & (share > DISH)
-    why = "the tool's axis turns while it cuts, and its teeth do not move as its tip does: no force is known there."
+    where = conditions.engaged & (share > (DISH if conditions.part is None else MOST))
+    why = "the tool's axis turns so fast while it cuts that its teeth go otherwise than its tip: no force is known."
     return Unjudged.at(AXIS_TURNS, where, why)

@@ -9,6 +9,7 @@ from robomill.provenance import Finding
 from robomill.simulation.cut import Led, met_conditions, through_stock
 from robomill.simulation.judging.seen import Run
 from robomill.simulation.judging.verdict_words import Verdict
+from robomill.simulation.meant import LINK
 from robomill.simulation.samples import ways
 from robomill.surface.contact.engagement import engage
 from robomill.units import format_share
@@ -19,10 +20,22 @@ MORE = 0.1  # of the tolerance: so much more than was read is told
 
 def met_where_pushed(run: Run) -> tuple[CutConditions, FloatArray]:
     """Conditions and force F (m, 3) N in {M} of what the deflected tool meets: where it really goes, in the stock that
-    its earlier passes really left. This is the first step of the way to a coupled run: its size, not its number."""
+    its earlier passes really left. This is the first step of the way to a coupled run: its size, not its number. Of
+    a corrected program the force is as it was where the tool just touches or sinks, whose push is there or not and
+    hardly more in deeper cuts, and where it goes from one correction to the next: that is told apart."""
     led = Led(run.path.p, ways(run.path), run.p_machined)
     met = met_conditions(run.conditions, engage(through_stock(run.setup, run.path, run.conditions, led)))
-    return met, force_on_tool(run.setup.force, met, run.R_MF)
+    F = force_on_tool(run.setup.force, met, run.R_MF)
+    if run.ahead is not None:
+        jumps = np.linalg.norm(np.diff(run.ahead, axis=0), axis=1) > LINK
+        jumps = (
+            np.append(jumps, False)
+            | np.append(False, jumps)
+            | (met.engaged != run.conditions.engaged)
+            | (met.sinks > 0.0)
+        )
+        F = np.where(jumps[:, None], run.F, F)
+    return met, F
 
 
 def moves_a_reading(run: Run, pushed: Run) -> bool:

@@ -54,7 +54,7 @@ def parts_of(key: str) -> list[str | int]:
 def tables_of(setup: SimulationSetup, keys: list[str]) -> Data:
     """The set-up as the tables of its file, complete in themselves; the robot's and the material's own where one of
     ``keys`` is in them."""
-    data = parse_toml(setup_to_toml(setup), "set-up")
+    data = parse_toml(setup_to_toml(setup), "set-up", exact=True)
     data.pop("uncertainty", None)  # of the compliances as they are, which a parameter may change
     split = [parts_of(key) for key in keys]
     if any(parts[0] == "robot" and parts[1:2] and parts[1] not in NAMES for parts in split):
@@ -65,7 +65,7 @@ def tables_of(setup: SimulationSetup, keys: list[str]) -> Data:
         if material is None:
             raise StudyError("Parameter force.material: the force of this set-up is not computed from a material.")
         force = {key: value for key, value in data["force"].items() if key != "material"}
-        data["force"] = {**force, MATERIAL: parse_toml(material_to_toml(material), "material")}
+        data["force"] = {**force, MATERIAL: parse_toml(material_to_toml(material), "material", exact=True)}
     return data
 
 

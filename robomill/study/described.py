@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -128,7 +129,7 @@ def load_study(study: str | Path | Mapping[str, Any], allow_outside: bool = Fals
 
 def study_from_toml(text: str, where: str, beside: Beside) -> Study:
     """A study from TOML text; its set-up lies where ``beside`` allows, or is a sample."""
-    return _read(Table(parse_toml(text, where, StudyError), where, StudyError), beside)
+    return _read(Table(parse_toml(text, where, StudyError, exact=True), where, StudyError), beside)
 
 
 def _read(top: Table, beside: Beside) -> Study:
@@ -199,6 +200,8 @@ def _parameter(table: Table, key: str, kind: Kind) -> Parameter:
     elif forms == ["values"]:
         values = table.data["values"]
         table.asked.add("values")
+        if isinstance(values, list):
+            values = [float(v) if isinstance(v, Decimal) else v for v in values]
         if (
             not isinstance(values, list)
             or not values

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import Decimal
 
 import numpy as np
 
@@ -91,9 +92,9 @@ def _force(setup: SimulationSetup) -> list[Usual]:
     beneath = "force.material.coefficients"
     table = value_at(tables_of(setup, [f"{beneath}.any"]), beneath)
     for key, number in table.items():
-        if key.endswith(COEFFICIENT) and isinstance(number, int | float) and number > 0.0:
+        if key.endswith(COEFFICIENT) and isinstance(number, int | float | Decimal) and number > 0.0:
             label = f"Coefficient {key.removesuffix(COEFFICIENT)}"
-            found.append(_around(f"{beneath}.{key}", label, "N/mm2", float(to_si(number, "N/mm2"))))
+            found.append(_around(f"{beneath}.{key}", label, "N/mm2", float(to_si(float(number), "N/mm2"))))
     return found
 
 

@@ -26,7 +26,7 @@ def study_to_toml(study: Study) -> str:
         "responses": list(study.responses),
         "design": design,
         "parameters": {each.key: _table(each, study.kind == "grid") for each in study.parameters},
-        "setup": parse_toml(setup_to_toml(study.setup), "set-up"),
+        "setup": parse_toml(setup_to_toml(study.setup), "set-up", exact=True),
     }
     return tomli_w.dumps(data, multiline_strings="\r" not in getattr(study.setup.source, "text", ""))
 

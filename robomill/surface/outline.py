@@ -65,14 +65,22 @@ class Outline:
         of those left, comes by in one of the two only. What that changes by no more than ``slack`` (q,) m (a slope that
         has moved along itself) is one floor.
         """
+        told, left, told_both, left_both, upright = self._floors(places, offset)
+        with np.errstate(invalid="ignore"):
+            one = (told_both - told <= SAME + slack) & (left_both - left <= SAME + slack)
+            return told, (left - told) * upright, np.asarray(np.isfinite(told_both) & one)
+
+    def left_over(self, places: FloatArray) -> FloatArray:
+        """(q,) m: how high above c along k the floor that is left lies; inf where nothing is cut."""
+        return self._floors(places, np.zeros(len(places)))[1]
+
+    def _floors(self, places: FloatArray, offset: FloatArray) -> FloatArray:
+        """(5, q): what is known of the floors at c + offset u (see ``floors_left``)."""
         asked = np.ascontiguousarray(np.column_stack([places, offset]))
         result = np.empty((len(asked), 5))
         for some in slices(len(asked), "Floors"):
             floors_left(*self._tracks, self._blocks, asked[some], result[some])
-        told, left, told_both, left_both, upright = result.T
-        with np.errstate(invalid="ignore"):
-            one = (told_both - told <= SAME + slack) & (left_both - left <= SAME + slack)
-            return told, (left - told) * upright, np.asarray(np.isfinite(told_both) & one)
+        return result.T
 
     @cached_property
     def _tracks(self) -> tuple[Tracks, Tracks]:

@@ -7,13 +7,13 @@ import numpy as np
 from robomill.arrays import FloatArray, frozen
 from robomill.toolpath.sketch import Shape, outline
 from robomill.units import format_many, format_si
-from robomill.values import Said
+from robomill.values import Said, Value
 
 CLOSED: tuple[Shape, ...] = ("polygon", "rectangle", "circle")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Contour(Said):
+class Contour(Said, Value):
     """A line of a drawing: its ``layer``, and ``shape`` and ``points`` (r, 2) m in {W} as an Element has them."""
 
     layer: str

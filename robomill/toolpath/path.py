@@ -21,7 +21,7 @@ from robomill.values import Tabled
 
 SAME_WAY = 1e-6  # sine of the angle between two directions that count as one
 NO_SPINDLE = "no-spindle"  # the finding of a program that never turns its spindle
-ROTARY_ASKED = "rotary-asked"  # the finding of a program that turns through more than a quarter, by table or by tool
+ROTARY_ASKED = "rotary-asked"  # the finding of a program that turns an axis far, or C beside a lean
 TABLES = ("", "A", "-A", "B", "-B", "C", "-C")
 """Rotary axes that turn the part: none, or one, whose positive sense turns the tool about the part (-: or the part)."""
 UNIT = 4.0 * float(np.finfo(np.float64).eps)  # rounding of a length that is 1

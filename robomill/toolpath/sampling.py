@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from robomill import budgets
-from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray, stretches
 from robomill.errors import ToolpathError
 from robomill.progress import checkpoint
 from robomill.toolpath.path import PER_MOVE, Toolpath
@@ -79,15 +79,36 @@ def check_samples(path: Toolpath, step: float, total: float, most: int) -> None:
 
 def _begins(path: Toolpath) -> BoolArray:
     """(m,) feed moves that begin a cut or turn sharply."""
-    move = np.diff(path.p, axis=0, prepend=path.p[:1])
     moved = path.step_length > 0
-    angle = np.zeros(len(path))
-    angle[1:] = angle_between(move[:-1], move[1:])
+    angle, _ = _turns(path)
     resumed = np.append(True, ~path.cutting[:-1] | ~moved[:-1])
-    back = (angle > np.pi - CORNER) & (np.sum(move * path.k, axis=1) > np.cos(CORNER) * path.step_length)
-    begins = path.cutting & moved & (resumed | ((angle > CORNER) & ~(back & (path.dwell == 0.0))))
+    back = _turns_back(path) & (path.dwell == 0.0)
+    begins = path.cutting & moved & (resumed | ((angle > CORNER) & ~back))
     begins[0] = False
     return np.asarray(begins)
+
+
+def drawn_back(path: Toolpath) -> BoolArray:
+    """(m,) steps at feed on the way straight back out of a plunge that has not waited at its bottom."""
+    found = np.zeros(len(path), dtype=bool)
+    begins = _turns_back(path)
+    for begin, past in stretches(path.cutting & _turns(path)[1]):
+        found[begin:past] = begins[begin] and path.cutting[begin - 1]
+    return found
+
+
+def _turns(path: Toolpath) -> tuple[FloatArray, BoolArray]:
+    """(m,) rad by which moves turn against those before, and (m,) those that lead up along the tool."""
+    move = np.diff(path.p, axis=0, prepend=path.p[:1])
+    angle = np.zeros(len(path))
+    angle[1:] = angle_between(move[:-1], move[1:])
+    up = np.sum(move * path.k, axis=1) > np.cos(CORNER) * path.step_length
+    return angle, np.asarray(up)
+
+
+def _turns_back(path: Toolpath) -> BoolArray:
+    angle, up = _turns(path)
+    return up & (angle > np.pi - CORNER)
 
 
 def _slerp(k_a: FloatArray, k_b: FloatArray, fraction: FloatArray) -> FloatArray:

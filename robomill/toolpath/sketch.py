@@ -22,7 +22,7 @@ from robomill.toolpath import arcs
 from robomill.toolpath.path import MOST_FEED, SLOWEST, SPINDLE, Toolpath
 from robomill.toolpath.plane import doubled_area, swept, through
 from robomill.units import format_count, format_short, format_si, from_si, to_si
-from robomill.values import Said
+from robomill.values import Said, Value
 
 Shape = Literal["line", "polyline", "polygon", "rectangle", "arc", "circle"]
 SHAPES: tuple[Shape, ...] = get_args(Shape)
@@ -48,7 +48,7 @@ SHALLOWEST = 5e-6  # m: nothing as shallow is milled
 
 @in_units(ToolpathError, "Sketch")
 @dataclass(frozen=True, eq=False, repr=False)
-class Element(Replaceable, Said):
+class Element(Replaceable, Said, Value):
     """One shape: ``points`` (r, 2) m in {W}, cut ``depth`` m below the top face at ``v_f`` m/s.
 
     line        start, end                      rectangle   two opposite corners
@@ -109,7 +109,7 @@ class Element(Replaceable, Said):
 
 @in_units(ToolpathError, "Sketch")
 @dataclass(frozen=True, eq=False, repr=False)
-class Sketch(Replaceable, Said):
+class Sketch(Replaceable, Said, Value):
     """Shapes in the order in which they are cut, and what they share; SI units, {W}.
 
     v_plunge    m/s  feed of plunges            n_s    1/s  spindle speed

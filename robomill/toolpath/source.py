@@ -36,7 +36,7 @@ from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.text import is_apt, split_lines
 from robomill.toolpath.tools import Tools
 from robomill.units import format_count, format_si, format_significant, from_si
-from robomill.values import Said
+from robomill.values import Said, Value
 
 MAX_KEPT = 4
 LEANS = "tool"
@@ -176,7 +176,7 @@ def _keep(key: tuple[GCodeSource, str], found: Toolpath | GCodeError) -> None:
 
 @in_units(ToolpathError, "Lines")
 @dataclass(frozen=True, eq=False, repr=False)
-class LinesSource(Said):
+class LinesSource(Said, Value):
     """A table of straight cuts: start, end (r, 3) m in {W}; v_f (r,) m/s; n_s spindle 1/s for the whole table.
 
     Examples

@@ -42,6 +42,7 @@ Rules of the house:
 
 from robomill.ui.entry.inputs import number
 from robomill.ui.judged.verdict import (
+    beside as verdict_beside,
     headline as verdict_headline,
     open_question,
     tip_tile,
@@ -72,6 +73,7 @@ __all__ = [
     "thirds",
     "tiles",
     "tip_tile",
+    "verdict_beside",
     "verdict_headline",
     "verdict_sentence",
     "verdict_tiles",

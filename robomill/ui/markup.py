@@ -15,16 +15,18 @@ def as_html(*parts: str) -> Html:
     return Html(" ".join(map(escaped, parts)))
 
 
-# A number and what follows it as its unit, how many times, which line or joint: a line never ends between the two.
+# A number and what follows it as its unit, along which axis, how many times, which line or joint: a line never ends
+# between the two, nor within a point.
 _UNIT = re.compile(
-    r"(?<=\d) (?=(?:%|mm|µm|in|thou|N|m|s)(?!\w))|(?<=\bN) (?=m\b)|"
-    r"(?<=[×±]) (?=\d)|(?<=\bline) (?=\d)|(?<=\bjoint) (?=\d)"
+    r"(?<=[\d)]) (?=(?:%|mm|µm|in|thou|N|m|s)(?!\w))|(?<=\bN) (?=m\b)|"
+    r"(?<=[×±]) (?=\d)|(?<=\balong) (?=[XYZ]\b)|(?<=\b[XYZ]) (?=[+−]?\d)|(?<=\bline) (?=\d)|(?<=\bjoint) (?=\d)"
 )
+_POINT = re.compile(r"\([+−]?[\d.]+(?:, [+−]?[\d.]+){1,2}\)")
 
 
 def unparted(text: str) -> str:
-    """``text`` with every number held together with its unit; HTML stays HTML."""
-    held = _UNIT.sub("\u00a0", text)
+    """``text`` with every number held together with its unit, and every point with itself; HTML stays HTML."""
+    held = _POINT.sub(lambda m: m[0].replace(" ", "\u00a0"), _UNIT.sub("\u00a0", text))
     return Html(held) if isinstance(text, Html) else held
 
 

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import streamlit as st
 
+from robomill.csv_text import csv_text
 from robomill.errors import RobomillError
-from robomill.progress import slices
 from robomill.provenance import Provenance
-from robomill.report.settled import settled
 from robomill.report.tags import Html
 from robomill.ui import session
 from robomill.ui.markup import as_html, as_markdown, quiet, unparted
@@ -23,14 +22,12 @@ from robomill.ui.work.job import Underway
 from robomill.units import split_unit
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
-
     from robomill.viz.chart import Chart
 
 Value = TypeVar("Value")
 SHOWN_ROWS = 1500
 ROW = 36  # pixels of a row of a table
-DIGITS = "%.12g"  # of a number in a file: what comes after is rounding
+DIGITS = 12  # of a number in a file: what comes after is rounding
 AT_HAND = 2_000_000  # letters of a text: 2 ms to look through
 CELL_S = 1e-6  # s that a cell of a table takes to be written
 # What a file holds that is taken away, by the end of its name.
@@ -142,10 +139,10 @@ def table(rows: Sequence[Sequence[str]], kinds: str, head: Sequence[str] = (), s
         over = len(kinds) - len(cells) + 1
         whole = zip(kinds, titles, cells[:-1] if over > 1 else cells, strict=over == 1)
         inner = "".join(
-            f'<{tag if cell else "td"} class="{kind}"{title}>{as_html(cell)}</{tag if cell else "td"}>'
+            f'<{tag if cell else "td"} class="{kind}"{title}>{unparted(as_html(cell))}</{tag if cell else "td"}>'
             for kind, title, cell in whole
         )
-        inner += f'<td class="w" colspan="{over}">{as_html(cells[-1])}</td>' if over > 1 else ""
+        inner += f'<td class="w" colspan="{over}">{unparted(as_html(cells[-1]))}</td>' if over > 1 else ""
         return f"<tr{style}>{inner}</tr>"
 
     body = "".join(row("td", cells, named, ' class="rm-strong"' if i == strong else "") for i, cells in enumerate(rows))
@@ -193,7 +190,7 @@ def said(level: Literal["error", "warning", "info"], words: str, icon: str = "")
 
 def strong(words: str) -> None:
     """A bold line, shown as it is."""
-    st.markdown(f"**{as_markdown(words)}**")
+    st.markdown(f"**{unparted(as_markdown(words))}**")
 
 
 def thirds() -> tuple[Any, Any]:
@@ -307,15 +304,8 @@ def table_twin(table: Callable[[], Mapping[str, Any]], name: str, key: str = "")
             return tuple(frame.columns), pd.util.hash_pandas_object(frame).to_numpy()
 
         making = Making(CELL_S * frame.size, about)
-        download("CSV", partial(_csv, frame), named(f"{name}.csv"), f"csv:{name}", making)
-
-
-def _csv(frame: DataFrame) -> str:
-    """The whole table, some rows at a time."""
-    frame = frame.assign(**{name: settled(column) for name, column in frame.items() if column.dtype.kind == "f"})
-    how: dict[str, Any] = {"index": False, "float_format": DIGITS}
-    parts = [frame[some].to_csv(header=not some.start, **how) for some in slices(len(frame), "Rows")]
-    return "".join(parts) or frame.to_csv(**how)
+        columns = {str(column): values.to_numpy() for column, values in frame.items()}
+        download("CSV", partial(csv_text, columns, DIGITS), named(f"{name}.csv"), f"csv:{name}", making)
 
 
 def named(file: str) -> str:

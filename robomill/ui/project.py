@@ -246,7 +246,7 @@ def project_from_toml(
 
     Raises ProjectError with the reason.
     """
-    data = parse_toml(text, WHERE)
+    data = parse_toml(text, WHERE, exact=True)
     own = {name: Table(data.pop(name), f"{WHERE}, [{name}]") for name in (*OF_THE_APP, "uncertainty") if name in data}
     setup = open_project(data, WHERE)
     known = None

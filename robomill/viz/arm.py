@@ -10,6 +10,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.units import format_many, format_significant, from_si, to_si, unit_label
 from robomill.viz import solids
 from robomill.viz.chart import Chart, Trace, drawn, xyz
+from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.rendered import framing
 from robomill.viz.theme import axis3d, axis_colours, figure, palette
 
@@ -26,6 +27,7 @@ class ArmScene:
     frames (n+1, 4, 4): the frame before each joint (the joint turns about its z), then {T}.
     offset (n,): travel along each joint's z before the link goes across (the D-H d).
     joints (n,): the joints' numbers, 1 to n where they are not given.
+    C (3, 3) m/N: the compliance at the tip, drawn as a body with its longest half axis at 0.16 of the arm's yardstick.
     aspect: width over height of the frame that the arm fills, seen from ``eye`` and without axes; None: in its axes.
     part (lower (3,), upper (3,)) in {W}; path (m, 3) with reached (m,); force, displacement (3,) at the tip.
     """
@@ -39,6 +41,7 @@ class ArmScene:
     displacement: FloatArray | None = None
     force_label: str = ""
     displacement_label: str = ""
+    C: FloatArray | None = None
     cutter_radius: float = 0.004
     ghost: FloatArray | None = None
     joints: tuple[int, ...] = ()
@@ -76,6 +79,11 @@ def arm_figure(scene: ArmScene, *, dark: bool, height: int = 460, revision: str 
         vector = scene.displacement * displacement_scale(scene.displacement, scene.frames)
         opaque += solids.arrow(tip, vector, p.warm, width)
         said.append((tip + far[1] * vector, scene.displacement_label, p.warm))
+    if scene.C is not None:
+        grown = ellipsoid_scale(scene.C, 0.16 * reach)
+        body, words = ellipsoid_traces(scene.C, tip, grown, dark=dark, width=width, away=scene.displacement)
+        fig.add_traces(body)
+        said += words
     if scene.aspect is not None:
         fig.add_traces([solids.painted(opaque), _joint_hover(scene, p.text), *_part_traces(scene, reach, dark)])
         across = [i for i in (0, 1) if abs(scene.eye[i]) < 0.9 * np.linalg.norm(scene.eye)]

@@ -34,25 +34,25 @@ def ellipsoid_traces(
     dark: bool,
     width: float,
     away: FloatArray | None = None,
-) -> list[Any]:
-    """The ellipsoid, half transparent, and its soft direction as a line through the tip with a word.
+) -> tuple[list[Any], list[solids.Said]]:
+    """The ellipsoid, half transparent, and its soft direction as a line through the tip; and the word beside that.
 
     The word stands at the end that points away from ``away`` (3,), so that it does not cover an arrow there.
     """
     p = palette(dark)
     values, axes = soft_direction(C)
     if values[-1] <= 0:
-        return []
+        return [], []
     soft = axes[:, -1] * times * values[-1]
     if away is not None and soft @ away > 0:
         soft = -soft
-    end = np.asarray(centre) + 1.15 * soft
-    return [
+    traces = [
         solids.trace([ellipsoid_mesh(C, centre, times)], p.caution, "compliance ellipsoid", opacity=0.32),
         solids.trace(
             [solids.tube(centre - 1.12 * soft, centre + 1.12 * soft, 0.55 * width, sides=12)],
             p.caution,
             "soft direction",
         ),
-        solids.words([(end, "softest", p.caution)], textposition=f"{'bottom' if soft[2] < 0.0 else 'top'} center"),
     ]
+    over = np.array([0.0, 0.0, 0.35 * float(np.hypot(soft[0], soft[1]))])  # of an arrow that points the same way
+    return traces, [(centre + 1.25 * soft + over, "softest", p.caution)]

@@ -12,7 +12,18 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.units import format_number
 from robomill.viz.chart import QUIET, Chart
-from robomill.viz.theme import axis, axis_colours, colour_bar, diverging, figure, joint_colours, palette, rgba, say
+from robomill.viz.theme import (
+    axis,
+    axis_colours,
+    colour_bar,
+    diverging,
+    figure,
+    joint_colours,
+    palette,
+    rgba,
+    say,
+    words_on,
+)
 
 MAX_TESTS = 3000
 REFERENCE_SYMBOLS = ("diamond-open", "square-open", "triangle-up-open", "circle-open")
@@ -135,12 +146,22 @@ def correlation_figure(names: Sequence[str], correlation: FloatArray, *, dark: b
         xgap=2,
         ygap=2,
         text=text,
-        texttemplate="%{text}" if written else None,
-        textfont={"size": 12},
         showscale=not written,
         colorbar=colour_bar("correlation", dark=dark, tickvals=[-1, -0.5, 0, 0.5, 1]),
         hovertemplate="%{y} with %{x}: %{z:+.2f}<extra></extra>",
     )
+    if written:
+        row, column = np.nonzero(np.isfinite(correlation))
+        fig.add(
+            "scatter",
+            x=[names[j] for j in column.tolist()],
+            y=[names[i] for i in row.tolist()],
+            mode="text",
+            text=[text[i][j] for i, j in zip(row, column, strict=True)],
+            textfont={"size": 12, "color": words_on(diverging(dark), 0.5 + 0.5 * correlation[row, column])},
+            hoverinfo="skip",
+            showlegend=False,
+        )
     fig.lay_out(
         plot_bgcolor=rgba(p.muted, 0.10),
         xaxis=axis("", dark=dark, showgrid=False, ticks="", showline=False),

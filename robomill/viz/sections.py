@@ -189,7 +189,8 @@ def _floor(fig: Chart, d: SectionDrawing, dark: bool) -> None:
         words.append(f"flat within {d.number('flatness')}")
     for row, each in enumerate(words):
         at = _middle(d)
-        _text(fig, at, d.floor, each, dark, yshift=-(row + 1) * ROW + 4, xanchor=_anchor(d, at))
+        under = d.floor if d.kind == "groove" else float(np.min(d.machined))  # beside a step the cut may be deeper
+        _text(fig, at, under, each, dark, yshift=-(row + 1) * ROW + 4, xanchor=_anchor(d, at))
 
 
 def _centre(fig: Chart, d: SectionDrawing, dark: bool) -> None:

@@ -12,6 +12,9 @@ from dataclasses import dataclass
 from itertools import cycle
 from typing import Any
 
+import numpy as np
+
+from robomill.arrays import FloatArray
 from robomill.viz.chart import Chart
 
 HOVERED = 4  # decimals, in mm as in inches, where one points at a curve of errors
@@ -103,6 +106,15 @@ def diverging(dark: bool) -> list[list[Any]]:
     return DIVERGING_DARK if dark else DIVERGING
 
 
+def words_on(scale: list[list[Any]], at: FloatArray) -> list[str]:
+    """The colour, dark or white, in which words can be read on a colour scale at shares ``at`` (k,) of its length."""
+    colours = np.array([[int(colour[i : i + 2], 16) / 255.0 for i in (1, 3, 5)] for _, colour in scale])
+    shown = np.stack([np.interp(at, [share for share, _ in scale], channel) for channel in colours.T], axis=-1)
+    linear = np.where(shown <= 0.04045, shown / 12.92, ((shown + 0.055) / 1.055) ** 2.4)
+    luminance = linear @ np.array([0.2126, 0.7152, 0.0722])  # as WCAG 2 has it: at 0.179 both have the same contrast
+    return ["#FFFFFF" if each < 0.179 else "#000000" for each in luminance]
+
+
 def rgba(colour: str, alpha: float) -> str:
     """A hex colour with opacity, as plotly reads it."""
     red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
@@ -163,6 +175,10 @@ def arrow(fig: Chart, tail: Point, head: Point, colour: str, width: float = 1.2,
     fig.annotate(x=head[0], y=head[1], ax=tail[0], ay=tail[1], **axes, **drawn)
 
 
+# Small and large numbers as they are, not "200µ" of the unit beside it.
+PLAIN = {"exponentformat": "power", "minexponent": 5}
+
+
 def axis(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
     """A plane axis with its title (quantity and unit) and quiet grid lines."""
     p = palette(dark)
@@ -177,6 +193,7 @@ def axis(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
         "tickcolor": p.line,
         "tickfont": {"size": 12, "color": p.muted},
         "automargin": True,
+        **PLAIN,
         **more,
     }
 
@@ -192,6 +209,7 @@ def axis3d(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
         "showbackground": False,
         "tickfont": {"size": 11, "color": p.muted},
         "nticks": 5,
+        **PLAIN,
         **more,
     }
 
@@ -208,5 +226,6 @@ def colour_bar(title: str, *, dark: bool, **more: Any) -> dict[str, Any]:
         "tickcolor": p.line,
         "x": 1.01,
         "xpad": 4,
+        **PLAIN,
         **more,
     }

@@ -26,12 +26,15 @@ def distribution(used: FloatArray, now: float, sure: float, *, dark: bool) -> Ch
     hover = "%{x:.0f} % of the tolerance: %{y:.1f} % of the draws<extra></extra>"
     centres = 0.5 * (edges[1:] + edges[:-1])
     fig.add("bar", x=centres, y=share, marker={"color": rgba(p.accent, 0.75)}, hovertemplate=hover)
-    for k, (name, at, dash) in enumerate((("predicted", now, "dot"), ("95 %", sure, "solid"), ("all", WHOLE, "dash"))):
-        if not np.isfinite(at) or (name == "all" and at > 1.5 * edges[-1]):
+    marks = [(now, "predicted", "dot", p.text), (sure, "95 %", "solid", p.text), (WHOLE, "tolerance", "dash", p.warm)]
+    first, last = edges[0], max(edges[-1], *(at for at, *_ in marks if at <= 1.5 * edges[-1]))
+    for k, (at, name, dash, colour) in enumerate(marks):
+        if not np.isfinite(at) or (at == WHOLE and at > 1.5 * edges[-1]):
             continue
-        colour = p.warm if name == "all" else p.text
         fig.lines([at, at], [0.0, top], {"color": colour, "width": 2, "dash": dash}, hoverinfo="skip")
-        say(fig, f"<b>{name}</b>", at, (0.96 - 0.09 * k) * top, colour, size=13, xanchor="left", xshift=5)
+        side, shift = ("right", -5) if at - first > 0.7 * (last - first) else ("left", 5)  # within the picture
+        ground = {"bgcolor": rgba(p.background, 0.8), "borderpad": 1}
+        say(fig, f"<b>{name}</b>", at, (0.96 - 0.09 * k) * top, colour, size=13, xanchor=side, xshift=shift, **ground)
     fig.layout["xaxis"] = axis("% of the tolerance used", dark=dark, automargin=False)
     fig.layout["yaxis"] = axis("% of the draws", dark=dark, range=[0.0, top], automargin=False)
     return fig

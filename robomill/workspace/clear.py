@@ -117,5 +117,5 @@ def _cell_of(cells: IntArray, fine: Grid, grid: Grid) -> IntArray:
     found = []
     for i, (small, large) in enumerate(zip((fine.x, fine.y, fine.z), (grid.x, grid.y, grid.z), strict=True)):
         middle = 0.5 * (small[:-1] + small[1:]) if len(small) > 1 else small
-        found.append(np.clip(np.searchsorted(large, middle[cells[:, i]]) - 1, 0, max(len(large) - 2, 0)))
+        found.append(np.maximum(np.searchsorted(large, middle[cells[:, i]]) - 1, 0))
     return np.column_stack(found)

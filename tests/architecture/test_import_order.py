@@ -33,6 +33,7 @@ STOREYS = [
         "files",
         "compiled",
         "console",
+        "csv_text",
         "interrupts",
         "provenance",
         "quantities",

@@ -1,16 +1,22 @@
-"""The app in a real browser: one server and one Chromium for the folder."""
+"""The app in a real browser: one server for the folder, one Chromium for each file (while Playwright runs, its thread
+has a running event loop, and other folders start their own)."""
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import pytest
 from screenshots import ARGUMENTS, CHROMIUM, served
 
 from robomill.compiled import prepare
+
+WIDE = {"width": 1440, "height": 1000}
+KEPT = "cookies,local_storage,indexeddb,cache_storage"
 
 
 @pytest.fixture(scope="session")
@@ -21,6 +27,35 @@ def url() -> Iterator[str]:
         yield address
 
 
+@pytest.fixture(scope="module")
+def started() -> Iterator[Callable[[str], Any]]:
+    """The browser of a language, "" for its own: it stays until another is asked for, and so does what it has read of
+    Streamlit, which takes a fresh one seconds."""
+    sync_api = pytest.importorskip("playwright.sync_api")
+    if not Path(CHROMIUM).exists():
+        pytest.skip("no Chromium: apt-get install -y chromium")
+    with sync_api.sync_playwright() as playwright, ExitStack() as held:
+        running: dict[str, Any] = {}
+
+        def browser(language: str = "") -> Any:
+            if language not in running:
+                held.close()
+                running.clear()
+                running[language] = playwright.chromium.launch_persistent_context(
+                    held.enter_context(tempfile.TemporaryDirectory(ignore_cleanup_errors=True)),
+                    executable_path=CHROMIUM,
+                    args=[*ARGUMENTS, f"--lang={language}"] if language else ARGUMENTS,
+                    locale=language or None,
+                    viewport=WIDE,
+                    accept_downloads=True,
+                )
+                held.callback(running[language].close)
+                running[language].set_default_timeout(60_000)
+            return running[language]
+
+        yield browser
+
+
 @pytest.fixture
 def language() -> str:
     """The browser's language, "" for its own."""
@@ -28,24 +63,27 @@ def language() -> str:
 
 
 @pytest.fixture
-def page(url: str, language: str) -> Iterator[Any]:
+def browser(started: Callable[[str], Any], language: str) -> Iterator[Any]:
+    """A browser that remembers nobody's work, for several pages; they are closed behind it."""
+    context = started(language)
+    yield context
+    seen = [urlsplit(page.url) for page in context.pages]
+    last = context.new_page()
+    for page in context.pages:
+        if page != last:
+            page.close()
+    forgets = context.new_cdp_session(last)
+    for origin in {f"{at.scheme}://{at.netloc}" for at in seen if at.netloc}:
+        forgets.send("Storage.clearDataForOrigin", {"origin": origin, "storageTypes": KEPT})
+    context.clear_cookies()
+
+
+@pytest.fixture
+def page(url: str, browser: Any) -> Iterator[Any]:
     """A fresh page in a wide window; errors of the page's own scripts fail the test."""
-    sync_api = pytest.importorskip("playwright.sync_api")
-    if not Path(CHROMIUM).exists():
-        pytest.skip("no Chromium: apt-get install -y chromium")
-    with sync_api.sync_playwright() as playwright, tempfile.TemporaryDirectory() as home:
-        context = playwright.chromium.launch_persistent_context(
-            home,
-            executable_path=CHROMIUM,
-            args=[*ARGUMENTS, f"--lang={language}"] if language else ARGUMENTS,
-            locale=language or None,
-            viewport={"width": 1440, "height": 1000},
-            accept_downloads=True,
-        )
-        made = context.new_page()
-        broken: list[str] = []
-        made.on("pageerror", lambda error: broken.append(str(error)))
-        made.goto(url)
-        yield made
-        context.close()
-        assert broken == []
+    made = browser.new_page()
+    broken: list[str] = []
+    made.on("pageerror", lambda error: broken.append(str(error)))
+    made.goto(url)
+    yield made
+    assert broken == []

@@ -85,3 +85,16 @@ def test_a_refused_file_is_named_by_row_and_column_and_mended_in_place(page: Any
     page.keyboard.press("Control+Enter")
     page.get_by_text("200 tests").wait_for()
     assert page.get_by_test_id("stAlert").filter(has_text="soft").count() == 0
+
+
+def test_a_second_file_takes_the_place_of_the_first(page: Any, tmp_path: Path) -> None:
+    """The browser says the entry of one's own file by the name that it had: nobody chose the file before."""
+    open_identification(page)
+    first, second = own_tests(tmp_path), tmp_path / "mended.csv"
+    second.write_text(first.read_text())
+    for path in (first, second):
+        upload(page, path)
+        page.wait_for_selector(f".rm-kicker:has-text('{path.name}')")
+        idle(page)
+    assert page.get_by_role("combobox", name="Load tests").input_value() == second.name
+    assert page.get_by_test_id("stAlertContentError").count() == 0

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import signal
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from screenshots import ARGUMENTS, CHROMIUM, idle
+from screenshots import idle
 from server import Server
 
 pytestmark = pytest.mark.browser
 NOTICE = ".st-key-autosave-notice"
-TABLE_2, TABLE_3 = "text=by +0.230 mm in Y", "text=by +0.264 mm in Y"
+TABLE_2, TABLE_3 = "text=by +0.230 mm along Y", "text=by +0.264 mm along Y"
 
 
 @pytest.fixture
@@ -23,21 +22,6 @@ def server(tmp_path: Path) -> Iterator[Server]:
     made.start()
     yield made
     made.stop()
-
-
-@pytest.fixture
-def browser() -> Iterator[Any]:
-    """One browser with its cookies, of several pages."""
-    sync_api = pytest.importorskip("playwright.sync_api")
-    if not Path(CHROMIUM).exists():
-        pytest.skip("no Chromium: apt-get install -y chromium")
-    with sync_api.sync_playwright() as playwright, tempfile.TemporaryDirectory() as home:
-        context = playwright.chromium.launch_persistent_context(
-            home, executable_path=CHROMIUM, args=ARGUMENTS, viewport={"width": 1440, "height": 1000}
-        )
-        context.set_default_timeout(60_000)
-        yield context
-        context.close()
 
 
 def robot_page(browser: Any, server: Server) -> Any:

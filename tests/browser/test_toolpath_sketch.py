@@ -108,7 +108,7 @@ def test_a_slot_is_sketched_seen_in_the_table_and_simulated(toolpath: Any, board
 
     page.get_by_test_id("stSidebarNavLink").filter(has_text="Milling").click()
     # A force stated along the path says nothing of the plunge at the start of the slot.
-    page.wait_for_selector(".rm-title:has-text('are not judged')", timeout=30_000)
+    page.wait_for_selector(".rm-lead:has-text('are not judged')", timeout=30_000)
     page.get_by_test_id("stSidebarNavLink").filter(has_text="Toolpath").click()
     page.wait_for_selector(f"{PAD} .line", state="attached", timeout=30_000)
     idle(page)

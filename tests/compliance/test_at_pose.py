@@ -124,3 +124,18 @@ def test_one_joint_that_is_not_known_leaves_nothing_known(unknown):
         here.delta([1, 2, 3]),
     ):
         assert np.isnan(value).all()
+
+
+def test_a_report_of_a_pose_shows_the_tip_and_what_it_gives_where_it_is_reached():
+    """Its facts are the numbers found by products of matrices, in mm and um/N; none where nothing is known."""
+    robot = rm.load_robot("slavkovic_5r")
+    theta = np.array([0.2, -0.3, 0.4, 0.1, 0.5])
+    facts = dict(at_pose(robot, theta)._facts())
+    tip, C = rm.tool_pose(robot, theta)[:3, 3], rm.cartesian_compliance(robot, theta)
+    assert next(iter(facts)) == "Robot"
+    shown = [float(part.replace("\u2212", "-").split()[0]) for part in facts["Tip in {M}"].split(",")]
+    np.testing.assert_allclose(shown, tip * 1e3, atol=0.0051)
+    for i, c in enumerate("xyz"):
+        assert float(facts[f"C_{c}{c}"].split()[0]) == pytest.approx(C[i, i] * 1e6, abs=5.1e-4)
+    assert len(facts) == 5
+    assert [name for name, _ in at_pose(robot, theta * np.nan)._facts()] == ["Robot"]

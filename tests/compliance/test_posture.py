@@ -5,7 +5,7 @@ import pytest
 from random_arms import seven
 
 import robomill as rm
-from robomill.compliance.posture import over_posture
+from robomill.compliance.posture import over_posture, posture_notes
 
 
 def walked(robot, theta, steps=4000):
@@ -47,3 +47,21 @@ def test_the_range_over_postures_covers_a_walk_through_them():
 def test_arms_without_a_free_posture_have_no_range(name):
     robot = rm.load_robot(name)
     assert over_posture(robot, rm.tool_pose(robot, robot.limits.mean(axis=1) + 0.2)).shape == (0, 3, 3)
+
+
+@pytest.mark.parametrize(("name", "free"), [("fanuc_r2000ic", True), ("kuka_kr270", False), ("slavkovic_5r", False)])
+def test_a_map_says_where_it_shows_one_turn_about_the_tool_of_many(name, free):
+    """C_yy at one place with the tool turned all round, each configuration by its own inverse kinematics: where it
+    changes, the cell of a map is one of its values, and that is said."""
+    robot = rm.load_robot(name)
+    p = [0.0, -1.3, 0.0] if robot.n == 5 else [1.4, 0.4, 0.8]
+    shown = rm.compliance_map(robot, rm.Grid(x=p[0], y=p[1], z=p[2])).values("C_yy").item()
+    turns = np.radians(np.arange(0.0, 360.0, 15.0))
+    upright = rm.pose_from_world([*p, 0.0, 0.0])
+    found = [rm.inverse_kinematics(robot, upright, spin=float(turn)) for turn in turns]
+    C_yy = [rm.cartesian_compliance(robot, each.theta)[1, 1] for each in found if each.reached]
+    assert len(C_yy) > 5
+    assert (np.ptp(C_yy) > 0.1 * shown) == free
+    assert min(C_yy) * 0.999 <= shown <= max(C_yy) * 1.001
+    assert bool(posture_notes(robot)) == free
+    assert posture_notes(seven())

@@ -173,3 +173,36 @@ def test_thrusts_of_mills_and_drills_are_said_once_each_where_they_are_computed(
     only = cut_warnings(MILL, conditions, np.array([True, False, False, True, False, False]))
     assert [(each.line, each.code) for each in only] == [(4, "thrust-end-teeth"), heel]
     assert cut_warnings(MILL, conditions, False) == ()
+
+
+@pytest.mark.parametrize(
+    ("n_s", "name", "asked"),
+    [
+        ([0.0, 0.0], "line", ["S and M3", "spindle_1_min"]),  # a program that nowhere says a speed may be given one
+        ([200.0, 0.0], "line", ["S and M3"]),
+        ([0.0, 0.0], "point", ["the path spindle_1_min"]),
+        ([200.0, 0.0], "point", ["the path spindle_1_min"]),
+    ],
+)
+def test_a_spindle_that_stands_is_asked_for_where_it_can_be_given(n_s, name, asked):
+    conditions = CutConditions.steady(0.03, n_s, 2e-3, block=[7, 8], block_name=name)
+    with pytest.raises(CuttingError) as refused:
+        conditions.f_z(3)
+    first = 7 if n_s[0] == 0.0 else 8
+    assert str(refused.value).startswith(f"{name.capitalize()} {first}: ")
+    assert refused.value.where == "n_s"
+    for words in ("S and M3", "spindle_1_min", "the path spindle_1_min"):
+        assert (words in str(refused.value)) == any(words in each for each in asked), words
+
+
+def test_the_conditions_of_one_step_are_its_entries() -> None:
+    rng = np.random.default_rng(3)
+    every = {name: rng.uniform(0.1, 1.0, 5) for name in ("v_f", "n_s", "a_p", "s", "t", "across", "along", "steep")}
+    whole = CutConditions(
+        **every, phi_st=np.zeros(5), phi_ex=rng.uniform(1.0, 3.0, 5), cutting=rng.random(5) > 0.3, block=np.arange(5)
+    )
+    for i in range(5):
+        one = whole.at(i)
+        assert len(one) == 1
+        assert all(getattr(one, name)[0] == getattr(whole, name)[i] for name in (*every, "phi_ex", "cutting", "block"))
+        np.testing.assert_array_equal(one.engaged, whole.engaged[i : i + 1])

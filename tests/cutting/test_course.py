@@ -5,6 +5,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.course import Course, force_over_pitch as over_pitch
@@ -198,6 +199,22 @@ def test_sectors_at_the_ends_of_the_arc_are_as_full_as_their_part_within_it():
     np.testing.assert_array_equal(found[:, 1:3], sectors[:, 1:3])
 
 
+@pytest.mark.parametrize("count", [48, 96])
+@pytest.mark.parametrize(("first", "last"), [((0, 0.75), (47, 0.5)), ((0, 0.0), (47, 0.25)), ((5, 0.2), (47, 1.0))])
+def test_an_arc_may_end_in_the_last_sector_ahead(count, first, last):
+    """Begun so far into one sector and ended so far into another: each is as full as its part within the arc."""
+    sectors = np.zeros((1, count, 4))
+    sectors[0, :, 0], sectors[0, :, 2], sectors[0, :, 3] = 1e-3, 2e-3, 0.5e-3
+    edges = edges_of(count)
+    arc = tuple(edges[n] + share * (edges[n + 1] - edges[n]) for n, share in (first, last))
+    found = Course.of(with_part(sectors, arc), MILL, np.array([0])).sectors[0]
+    kept = sectors.astype(np.float16).astype(float)[0]
+    for (n, _), within in ((first, 1.0 - first[1]), (last, last[1])):
+        np.testing.assert_allclose(found[n, [0, 3]] * within, kept[n, [0, 3]], rtol=1e-9)
+    np.testing.assert_array_equal(found[first[0] + 1 : last[0]], kept[first[0] + 1 : last[0]])
+    np.testing.assert_array_equal(found[48:], kept[48:])
+
+
 def test_an_arc_without_a_part_is_two_half_turns_alike_with_the_end_face_beyond_the_dish():
     slopes = np.array([0.0, -PRESSED, -1.001 * DISH])
     conditions = CutConditions.steady(0.03, 200.0, [1e-3, 2e-3, 3e-3], along=slopes, arc=(0.5, 2.0))
@@ -207,6 +224,23 @@ def test_an_arc_without_a_part_is_two_half_turns_alike_with_the_end_face_beyond_
     np.testing.assert_allclose(course.arc, [[0.5, 2.0]] * 3)
     np.testing.assert_allclose(course.feed, np.stack([np.ones(3), slopes], axis=1))
     np.testing.assert_allclose(course.c, 0.03 / 200.0 / 3)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
+def test_on_a_gentle_slope_the_heel_alone_cuts_ahead_and_behind_by_its_ellipse(share):
+    """Outside r = R (1 - s^2) / (1 - 2 s sin phi + s^2), s the slope over that of the dish, by adaptive quadrature."""
+    pressed, dish = (math.tan(math.asin(each)) for each in (PRESSED, DISH))
+    slope = pressed + share * (dish - pressed)
+    along = -math.sin(math.atan(slope))
+    conditions = CutConditions.steady(0.03, 200.0, 2e-3, across=math.cos(math.atan(slope)), along=along)
+    found = Course.of(conditions, MILL, np.array([0])).sectors[0, :, 3]
+
+    def cut(phi):
+        r = MILL.radius * (1 - share**2) / (1 - 2 * share * math.sin(phi) + share**2)
+        return max(MILL.radius - r, 0.0)
+
+    means = [quad(cut, low, low + math.pi, limit=200)[0] / math.pi for low in (0.0, math.pi)]
+    np.testing.assert_allclose(found, means, rtol=5e-3, atol=1e-6 * MILL.radius)
 
 
 def test_cuts_alike_to_a_thousandth_are_one_kind():

@@ -127,3 +127,16 @@ def test_tool_axes_of_any_length_give_the_same_frames():
     step = p[1] - p[0]
     along = (step @ unit[1]) / np.linalg.norm(step)
     assert feed_share(moves(p), 5.0 * k)[1] == pytest.approx(np.sqrt(1.0 - along**2))
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e-3, 1e3])
+def test_frames_are_the_same_however_long_the_ways_are(scale):
+    """Steps of a micrometre as those of a metre, with plunges that carry a direction on to an axis that has turned."""
+    rng = np.random.default_rng(12)
+    way, k = rng.normal(size=(12, 3)), rng.normal(size=(12, 3))
+    k /= np.linalg.norm(k, axis=1, keepdims=True)
+    way[[0, 6]] = 0.0
+    way[[3, 4, 9]] = -2.0 * k[[3, 4, 9]]
+    np.testing.assert_allclose(feed_frame(scale * way, k), feed_frame(way, k), atol=1e-9)
+    np.testing.assert_allclose(feed_share(scale * way, k), feed_share(way, k), atol=1e-9)
+    np.testing.assert_allclose(feed_along(scale * way, k), feed_along(way, k), atol=1e-9)

@@ -59,6 +59,8 @@ def test_words_for_the_report():
     assert PathForce().numbers == "0 N"
     assert ConstantForce([0, 100, -3]).numbers == "F (0, 100, −3) N in {M}"
     assert MechanisticForce(MILL, ROW).numbers == ROW.title
+    for force in (PathForce(feed_normal=100.0), ConstantForce([0, 100, -3]), MechanisticForce(MILL, ROW)):
+        assert force.numbers.replace("\N{MINUS SIGN}", "-") in repr(force)
     assert MechanisticForce(MILL, ROW, axial=False).numbers == f"{ROW.title}, axial force left out"
 
 
@@ -92,9 +94,12 @@ def test_the_axial_force_alone_is_left_out():
     np.testing.assert_array_equal(without.peak(SLOT).high, whole.peak(SLOT).high * [1, 1, 0])
 
 
-def test_many_different_cuts_are_as_one_by_one(monkeypatch):
+@pytest.mark.parametrize("teeth", [1, 6, 9, 10**6])
+def test_many_different_cuts_are_as_one_by_one(monkeypatch, teeth):
+    """In whatever portions of steps and of teeth they are looked at; many alike count as one."""
     monkeypatch.setattr("robomill.cutting.process.CASES", 3)
-    depths = 1e-3 + 0.2e-3 * np.arange(8)
+    monkeypatch.setattr("robomill.cutting.process.TEETH", teeth)
+    depths = 1e-3 + 0.2e-3 * np.array([0, 3, 1, 3, 3, 2, 3, 4, 5, 3, 7, 6])
     force = MechanisticForce(MILL, ROW)
     together = force.peak(CutConditions.steady(0.03, 200.0, depths))
     for i, depth in enumerate(depths):

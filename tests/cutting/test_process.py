@@ -13,7 +13,7 @@ from robomill.cutting.force import force_on_tool
 from robomill.cutting.forces.kienzle import KienzleForce
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.materials import PUBLISHED
-from robomill.cutting.tool import Cutter
+from robomill.cutting.tool import DISH, Cutter
 from robomill.io.materials import load_material
 from tests.cutting.cutters import CUTTERS, MILL, SLOT
 
@@ -21,6 +21,7 @@ TURNED = load_material("al_wrought_cured_kienzle")
 NO_AXIAL = load_material("al6061_t6_carbide_ref160")
 DRILL = Cutter("drill", 6e-3, tip_angle=2.0, flutes=2)
 WAYS = {"level": (1.0, 0.0), "ramp": (0.8, -0.6), "up": (0.8, 0.6), "down": (0.0, -1.0)}
+WAYS["gentle"] = (np.sqrt(1.0 - (0.6 * DISH) ** 2), -0.6 * DISH)  # its heel alone cuts, ahead
 TOOLS = [*CUTTERS, MILL.replace(helix_angle=0.0), DRILL]
 
 
@@ -52,6 +53,16 @@ def test_judged_is_what_does_not_change_with_the_unknown(cutter, way, axial):
         for each in reasons:
             assert ("radial_ratio" in each.names) == (known[0] is None)
             assert ("the radial" in each.why) == (known[0] is None)
+        if way == "level":
+            # What is asked for is what the force changes with by itself, and nothing else.
+            named = {name for each in reasons for name in each.names if name.endswith("_ratio")}
+            given = {"radial_ratio": known[0] or 0.2, "axial_ratio": known[1] or 0.2}
+            for name, told in zip(given, known, strict=True):
+                pushed = [
+                    KienzleForce(cutter, row.replace(**{**given, name: ratio}), axial=axial).components(conditions)[0]
+                    for ratio in (0.1, 0.5)
+                ]
+                assert (name in named) == (told is None and np.ptp(pushed, axis=0).max() > 1e-6)
 
 
 def test_a_share_stands_for_what_the_source_does_not_give():

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.optimize import minimize_scalar
 
 from robomill.cutting.profile_kernels import (
     BALL,
@@ -26,6 +27,7 @@ from robomill.cutting.profile_kernels import (
     radius_at,
     stretch_ends,
     upright_part,
+    valley,
 )
 from robomill.cutting.tool import Cutter
 
@@ -194,5 +196,26 @@ def test_the_cutter_cuts_lowest_where_a_search_along_its_way_finds_it(name, shar
     lag = contact_lag(shape, rise, v * v)
     assert 0.0 <= lag <= w[-1] + 1e-12
     assert profile(shape, min(math.hypot(lag, v), shape.R)) - rise * lag <= height.min() + 1e-9
+
+    def above(a):
+        return profile(shape, min(math.hypot(a, v), shape.R)) - rise * a
+
+    lowest = minimize_scalar(above, bounds=(0.0, w[-1]), method="bounded", options={"xatol": 1e-13}).fun
+    assert above(lag) <= min(lowest, above(0.0), above(w[-1])) + 1e-13
     if rise == 0.0:
         assert lag == 0.0
+
+
+@pytest.mark.parametrize("size", [1e-5, 1e-4, 3e-4])
+@pytest.mark.parametrize("name", CUTTERS)
+def test_a_valley_between_two_places_is_no_deeper_than_it_is_told(name, size):
+    """Between two noses side by side the part stands as high as the profile halfway; a flat end leaves nothing, a
+    pointed cone what its flanks do, and a round nose much less than the places are apart."""
+    shape = CUTTERS[name].solid
+    told = valley(shape, size)
+    for apart in np.linspace(0.0, size, 7):
+        assert height(name, 0.5 * apart) <= told + 1e-18
+    assert (told == 0.0) == (name == "flat")
+    assert name == "chamfer" or told <= 0.25 * size
+    pointed = Cutter("chamfer", 8e-3, tip_angle=np.radians(80.0)).solid
+    assert valley(pointed, size) == pytest.approx(0.5 * size / math.tan(math.radians(40.0)))

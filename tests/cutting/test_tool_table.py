@@ -23,8 +23,9 @@ def test_tools_stand_in_the_order_of_their_numbers() -> None:
 def test_what_is_missing_is_asked_for_by_number() -> None:
     table = ToolTable((TableTool(1, SIX), TableTool(3)))
     assert table.cutter(1) == SIX
-    with pytest.raises(CuttingError, match="Tool 2 cuts and is not in the tool table"):
-        table.cutter(2)
+    for held, numbers in ((table, "1, 3"), (ToolTable(), "none")):
+        with pytest.raises(CuttingError, match=f"Tool 2 cuts and is not in the tool table .*: {numbers}"):
+            held.cutter(2)
     with pytest.raises(CuttingError, match="Tool 3 cuts, but the tool table does not say its diameter"):
         table.cutter(3)
     with pytest.raises(CuttingError, match="tool 1 is there twice"):
@@ -68,3 +69,17 @@ def test_what_nobody_said_of_a_tool() -> None:
     for wrong in ({"number": -1}, {"number": 1, "orientation": 10}, {"number": 1, "assumed": ("colour",)}):
         with pytest.raises(CuttingError):
             TableTool(**wrong)  # type: ignore[arg-type]
+
+
+def test_a_tool_is_sized_where_the_table_says_what_compensation_counts_with() -> None:
+    tools = (TableTool(1), TableTool(2, SIX), TableTool(3, compensates=6e-3), TableTool(4, SIX, compensates=0.0))
+    assert [tool.sized for tool in tools] == [False, True, True, True]
+    assert [tool.diameter for tool in tools] == [0.0, 6e-3, 6e-3, 0.0]
+
+
+def test_tools_whose_flutes_nobody_has_stated_are_those_of_the_table_that_cut() -> None:
+    assumed = (("flutes",), ("kind",), ("kind", "flutes"), (), ("flutes",))
+    table = ToolTable(tuple(TableTool(n, SIX, assumed=each) for n, each in enumerate(assumed, 1)))
+    assert [tool.number for tool in table.unstated([9, 3, 2, 1, 3])] == [1, 3]
+    assert table.unstated([]) == table.unstated([9]) == table.unstated([2, 4]) == ()
+    assert [tool.number for tool in table.unstated(range(9))] == [1, 3, 5]

@@ -130,10 +130,11 @@ def test_a_misspelled_name_has_a_suggestion(call, meant: str) -> None:
         (lambda: rm.Cutter("flat"), "Cutter: diameter is missing; give diameter or diameter_mm."),
         (lambda: rm.Cutter(), "Cutter: kind is missing."),  # type: ignore[call-arg]
         (lambda: rm.simulate(), "simulate: setup is missing."),  # type: ignore[call-arg]
-        (lambda: rm.ForceRecord(), "ForceRecord: x and F is missing."),  # type: ignore[call-arg]
+        (lambda: rm.ForceRecord(), "ForceRecord: x and F are missing."),  # type: ignore[call-arg]
         (lambda: rm.Cutter("flat", 0.008, diameter=0.008), "got multiple values for diameter"),  # type: ignore[misc]
         (lambda: rm.load_robot("a", "b"), "found 2 values without a name, expected at most 1 .name_or_path."),  # type: ignore[misc]
         (lambda: rm.Stock([0] * 3, [1] * 3, None, 5), "found 4 values without a name, expected at most 3"),  # type: ignore[misc]
+        (lambda: rm.Robot.from_dh([1, 2]), "found 1 value without a name, expected none; give everything by name"),  # type: ignore[misc]
         (lambda: rm.PathForce(foo=1), "it takes feed, feed_normal, axial, .*axial_N."),  # type: ignore[call-arg]
     ],
 )

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import robomill as rm
 from robomill.arrays import as_floats, brief, check_place, digest, frozen, next_true, sealed, stretches, with_article
 from robomill.errors import RobomillError, RobotError
 
@@ -208,3 +209,27 @@ def test_stretches_are_those_that_a_look_at_each_place_finds(length: int) -> Non
         begins = [i for i in range(length) if which[i] and not (i and which[i - 1])]
         looked = [[i, next((j for j in range(i, length) if not which[j]), length)] for i in begins]
         assert stretches(which).tolist() == looked
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda p: rm.Toolpath.from_points(p_mm=p, feed_mm_min=600),
+        lambda p: rm.Toolpath.from_points(p * 1e-3, 0.01),
+        lambda p: rm.tool_pose(rm.load_robot("planar_2r"), p[:, :2]),
+        lambda p: rm.Robot.from_dh(a_mm=p[0] * 100.0),
+        lambda p: rm.frame_from_points(p[0], p[1] + 1.0, [0.0, 1.0, 0.0]),
+    ],
+)
+def test_a_masked_entry_is_no_number(call) -> None:
+    """NumPy hands on what stands behind the mask, which is what the mask says not to use."""
+    p = np.ma.array([[0.0, 1.0, -2.0], [5.0, 0.0, -2.0]], mask=[[1, 0, 0], [0, 0, 0]])
+    with pytest.raises(rm.RobomillError, match="a masked entry"):
+        call(p)
+    call(np.ma.array(p.data))
+
+
+def test_a_table_in_place_of_a_file_is_told_in_a_line() -> None:
+    with pytest.raises(rm.RobomillError) as refused:
+        rm.read_points(pd.DataFrame({"X_mm": [0.0, 1.0]}))
+    assert "found a DataFrame" in str(refused.value)

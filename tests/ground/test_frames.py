@@ -11,10 +11,10 @@ import pandas as pd
 import pytest
 
 import robomill as rm
+from robomill.csv_text import csv_text
 from robomill.identification.measured_field import MeasuredField
 from robomill.io.maps import map_csv
 from robomill.io.samples import samples_dir
-from robomill.report.tables import csv_text
 from robomill.units import UNITS, si_unit
 from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import Grid

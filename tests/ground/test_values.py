@@ -233,3 +233,36 @@ def test_small_values_say_themselves_in_a_line() -> None:
     assert all(words.isascii() and "\n" not in words for words in said)
     assert "<PathForce 100 N left of the feed>" in said
     assert "<Element rectangle of 2 points, 1.5 mm deep, 1200 mm/min>" in said
+
+
+def known(x):
+    setup = rm.load_setup("paper_flute")
+    found = rm.identify(setup.robot, "one_joint_at_a_time" if x else "nine_points")
+    return setup.replace(robot=found.applied_to(setup.robot), knowledge=found).known
+
+
+SMALL = {
+    "constant force": lambda x: rm.ConstantForce([0.0, 100.0 + x, 0.0]),
+    "force record": lambda x: rm.ForceRecord([0.0, 0.1, 0.2, 0.3], [[10.0 + x, 20.0, -5.0]] * 4),
+    "measured force": lambda x: rm.MeasuredForce.over_time([0.0, 0.1, 0.2, 0.3], [[10.0 + x, 20.0, -5.0]] * 4),
+    "element": lambda x: rm.Element("line", [[0.0, 0.0], [0.05 + x * 1e-3, 0.0]], depth=2e-3, v_f=0.03),
+    "sketch": lambda x: rm.Sketch((SMALL["element"](x),)),
+    "sketch source": lambda x: rm.SketchSource(SMALL["sketch"](x)),
+    "lines": lambda x: rm.LinesSource([[0.0, 0.0, -2e-3]], [[0.05 + x * 1e-3, 0.0, -2e-3]], [0.03]),
+    "weights": lambda x: rm.LinkMasses([30.0 + x, 12.0], [[0.2, 0.0, 0.0], [0.1, 0.0, 0.0]]),
+    "drawing": lambda x: rm.read_drawing("bracket").moved("centre" if x else "corner"),
+    "knowledge": known,
+}
+
+
+@pytest.mark.parametrize("make", SMALL.values(), ids=SMALL)
+def test_small_values_made_alike_are_equal_and_so_are_their_copies(make):
+    one, other = make(0.0), make(1.0)
+    assert one == make(0.0) != other
+    assert hash(one) == hash(make(0.0))
+    assert len({one, make(0.0), other}) == 2
+    twin = pickle.loads(pickle.dumps(one))
+    assert twin == one
+    assert not any(array.flags.writeable for array in vars(twin).values() if isinstance(array, np.ndarray))
+    assert len(repr(one)) < 200
+    assert "array(" not in repr(one)

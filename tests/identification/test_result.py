@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import robomill as rm
@@ -143,3 +144,41 @@ def test_a_row_of_the_table_is_a_parameter_in_the_unit_that_it_names():
     assert table["unit"][:5].tolist() == ["1e-7 rad/(N m)"] * 5
     assert "not seen" in repr(blind)
     assert "not seen" not in repr(rich)
+
+
+@pytest.mark.parametrize("name", ["kuka_kr500", "planar_2r"])
+def test_compliances_are_given_to_no_arm_of_another_number_of_joints(name):
+    with pytest.raises(LoadTestError, match=r"5 joints.*has [26]"):
+        RESULT.applied_to(rm.load_robot(name))
+
+
+def frame_of(poses=((-0.4, -1.5), (0.0, -1.3), (0.4, -1.1), (0.3, -1.5), (-0.3, -1.1))):
+    """A table with what ``delta = C F`` gives to the last digit, as somebody tries the library with."""
+    rows = []
+    for X, Y in poses:
+        theta = rm.inverse_kinematics(ROBOT, rm.pose_from_world([X, Y, 0.0, 0.0, 0.0])).theta
+        C = rm.cartesian_compliance(ROBOT, theta)
+        rows += [[X * 1e3, Y * 1e3, 0, 0, 0, *F, *(C @ F * 1e3)] for F in 250.0 * np.eye(3)]
+    names = ["X_mm", "Y_mm", "Z_mm", "A_deg", "B_deg", "Fx_N", "Fy_N", "Fz_N", "dx_mm", "dy_mm", "dz_mm"]
+    return pd.DataFrame(rows, columns=names)
+
+
+def test_readings_that_are_right_to_the_last_digit_leave_no_doubt():
+    """What is left over is rounding, of which an F-test made that something was missing from the model."""
+    for scale in (1.0, 1e-3, 1e3):
+        readings = frame_of()
+        readings[["dx_mm", "dy_mm", "dz_mm"]] *= scale
+        found = rm.identify(ROBOT, readings)
+        np.testing.assert_allclose(found.C_theta, ROBOT.C_theta * scale, rtol=1e-9)
+        assert "model-misses" not in {each.code for each in found.findings}
+    assert "in doubt" not in repr(rm.identify(ROBOT, frame_of()))
+
+
+def test_a_row_is_named_once_and_no_farther_off_than_anybody_can_read():
+    readings = frame_of()
+    readings.loc[4, ["dx_mm", "dy_mm", "dz_mm"]] *= -1.0
+    readings = pd.concat([readings, readings.iloc[[2]]], ignore_index=True)
+    told = {each.code: each.sentence for each in rm.identify(ROBOT, readings).findings}
+    assert told["repeat"].startswith("Row 15 repeats row 2")
+    assert "row 4 (more than 1000 times the usual scatter" in told["outliers"]
+    assert not told["outliers"].startswith("Line")

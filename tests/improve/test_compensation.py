@@ -129,6 +129,64 @@ def test_its_text_simulated_is_told_from_the_path_that_was_meant(process: Compen
     assert sizes.max() < 1e-12
 
 
+@pytest.mark.parametrize("way", ["G0 Z10", "G1 Z10", "G1 Z10 F2000", "G4 P1\nG1 Z10", "G85"])
+def test_a_hole_is_corrected_however_the_tool_is_drawn_out_of_it(way: str) -> None:
+    """Pushed as it comes down, the tip ends on the hole's bottom. Drawn out at feed it goes back there first, while
+    only the floor can push it, and then up on the hole's axis."""
+    bored = "G85 X3 Y2 Z-5 R1 F100\nG80" if way == "G85" else f"G1 Z-5 F100\n{way}"
+    text = f"G21 G90\nS12000 M3\nG0 X3 Y2 Z10\n{bored}\nG0 Z20\nM2\n"
+    setup = rm.load_setup(SLOT / "setup_process.toml").replace(source=rm.GCodeSource(text))
+    found = rm.compensate(setup)
+    before = rm.simulate(setup).verdict
+    assert found.before.max == pytest.approx(max(abs(before.wall.value), abs(before.floor.value)), rel=0.01)
+    assert found.after.max < 0.01 * found.before.max
+    tip, run = tip_of(setup, found.text)
+    end = int(np.flatnonzero(run.conditions.plunges & run.conditions.engaged)[-1])
+    bottom = -5e-3 + (float(run.C[end, 2] @ run.F[end]) if "G4" in way else 0.0)  # waiting, it cuts to depth
+    np.testing.assert_allclose(tip[end], [3e-3, 2e-3, bottom], atol=3e-6)
+    if way != "G0 Z10":
+        after = run.path.p[end + 1 :][run.path.cutting[end + 1 :]]
+        at = int(np.argmax(np.linalg.norm(after - [3e-3, 2e-3, -5e-3], axis=1) < 1e-6))
+        np.testing.assert_allclose(after[at], [3e-3, 2e-3, -5e-3], atol=1e-6)
+        np.testing.assert_allclose(after[at:, :2], np.broadcast_to([3e-3, 2e-3], after[at:, :2].shape), atol=1e-6)
+        assert np.linalg.norm(after[:at] - tip[end], axis=1).max(initial=0.0) < 1.01 * run.deviation[end]
+    if "G4" in way:
+        lines = found.text.splitlines()
+        assert {"X3", "Y2"} <= set(lines[lines.index("G4 P1") - 1].split())
+
+
+def test_a_slot_left_at_feed_goes_back_to_its_end_and_then_straight_up() -> None:
+    text = "G21 G90\nS12000 M3\nG0 X-40 Y0 Z10\nG0 Z-2\nG1 X8 F1000\nG1 Z10\nG0 Z20\nM2\n"
+    found = rm.compensate(rm.load_setup(SLOT).replace(source=rm.GCodeSource(text)))
+    tip, run = tip_of(found.setup, found.text)
+    assert found.after.max < 0.01 * found.before.max
+    up = run.path.cutting & (np.diff(run.path.p[:, 2], prepend=0.0) > 0.02e-3) & (run.path.p[:, 0] > 0.0)
+    np.testing.assert_allclose(run.path.p[up, :2], np.broadcast_to([8e-3, 0.0], (up.sum(), 2)), atol=1e-6)
+
+
+def test_a_ramp_into_a_level_cut_is_cut_to_its_depth_up_to_its_end() -> None:
+    """Its end teeth push the tool up by 0.7 mm to the last; only then does the level cut let it down."""
+    text = "G21 G90\nS12000 M3\nG0 X-20 Y0 Z1\nG1 X0 Z-3 F600\nX20\nG0 Z20\nM2\n"
+    found = rm.compensate(rm.load_setup(SLOT / "setup_process.toml").replace(source=rm.GCodeSource(text)))
+    assert found.after.max < 0.01 * found.before.max
+    tip, run = tip_of(found.setup.replace(coupling=True), found.text)  # it meets the part where it is pushed to
+    x, y, z = tip[run.path.cutting & run.conditions.engaged].T
+    on_ramp, on_level = (x > -9e-3) & (x < -0.5e-3), x > 1e-3
+    assert np.abs(z[on_ramp] - (1e-3 - 0.2 * (x[on_ramp] + 20e-3))).max() < 0.02 * found.before.max
+    assert np.abs(z[on_level] + 3e-3).max() < 0.02 * found.before.max
+    assert np.abs(y[on_ramp | on_level]).max() < 0.02 * found.before.max
+
+
+def test_at_the_corners_of_a_zigzag_nothing_is_cut_deeper_than_elsewhere() -> None:
+    """Where the tool just leaves a wall, the push ends at once: it is not sent down against it there."""
+    text = "G0 X-20 Y-8 Z10\nG0 Z-2\nG1 X20 F600\nY-4\nX-20\nY0\nX20\nG0 Z20\nM2\n"
+    setup = rm.load_setup(SLOT / "setup_process.toml").replace(source=rm.GCodeSource(f"G21 G90\nS12000 M3\n{text}"))
+    found = rm.compensate(setup)
+    tip, run = tip_of(setup, found.text)
+    assert found.before.floor[0] > 0.09e-3
+    assert tip[run.path.cutting, 2].min() > -2.02e-3
+
+
 def test_a_softer_arm_leaves_a_fifth_of_a_program_that_is_simulated_too(slot: Compensation) -> None:
     arm = slot.setup.robot
     softer = slot.setup.replace(robot=arm.replace(C_theta=1.2 * arm.C_theta))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from random_arms import seven
 
 import robomill as rm
 from robomill.errors import SetupError
@@ -199,6 +200,35 @@ def test_a_force_in_the_robots_axes_is_told_where_the_part_may_turn() -> None:
     found = place(setup, x=(0.0, 0.0), y=(-1.3, -1.3), yaw_deg=(0, 90), candidates=4)
     assert "force-in-robot" in {each.code for each in found.findings}
     assert "force-in-robot" not in {each.code for each in place(setup, candidates=4).findings}
+
+
+def test_of_seven_axes_the_map_is_what_full_simulations_say() -> None:
+    """At each place the arm brings its elbow along from home."""
+    path = rm.Toolpath.from_points(p_mm=[[-30, 0, 5], [-30, 0, -2], [30, 0, -2]], feed_mm_min=[0, 0, 1800])
+    setup = slot(source=path, stock=None, robot=seven(), force=rm.PathForce(-20.0, 80.0, -30.0), step_mm=10, cell_mm=1)
+    T_MW = rm.tool_pose(setup.robot, np.array([0.3, -0.7, 0.6, -1.1, 0.8, 0.9, 0.2]))
+    x, y = T_MW[:2, 3, None] + [-0.1, 0.1]
+    found = place(setup.replace(T_MW=T_MW, spin=0.3), x=x, y=y, measure="tip", candidates=9)
+    for i, j in np.ndindex(found.share.shape[:2]):
+        there = T_MW.copy()
+        there[:2, 3] = found.axes[0][i], found.axes[1][j]
+        run = rm.simulate(found.setup.replace(T_MW=there))
+        C = rm.cartesian_compliance(run.setup.robot, run.theta[run.judged])
+        size = np.linalg.norm(np.einsum("sij,sj->si", C, run.F[run.judged]), axis=1).max()
+        assert found.share[i, j, 0, 0] == pytest.approx(size / setup.tolerance, rel=1e-6)
+
+
+def test_a_yaw_turns_the_walls_against_a_force_in_the_robots_axes() -> None:
+    """The tip goes one way at every yaw: the walls of a slot are off by what of C F stands across it."""
+    F = np.array([60.0, 20.0, 0.0])
+    setup = slot(force=rm.ConstantForce(F), step_mm=20, cell_mm=0.5)
+    at = setup.T_MW[:3, 3] + [0.0, 0.0, -0.002]  # the middle of the slot's floor
+    T_MT = transform(np.eye(3), at)
+    delta = rm.cartesian_compliance(setup.robot, rm.inverse_kinematics(setup.robot, T_MT).theta) @ F
+    for yaw in np.radians([0.0, 40.0, 90.0]):
+        across = np.array([-np.sin(yaw), np.cos(yaw), 0.0]) @ delta
+        found = place(setup, x=(0.0, 0.0), y=(-1.3, -1.3), yaw=(yaw, yaw), candidates=1)
+        assert found.best.wall == pytest.approx(across, abs=0.05 * float(np.linalg.norm(delta)))
 
 
 def test_a_coupled_run_is_compared_coupled() -> None:

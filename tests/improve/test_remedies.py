@@ -13,7 +13,7 @@ from robomill.errors import SetupError
 from robomill.improve.advice import Advice, Way
 from robomill.improve.errors import Errors
 from robomill.improve.remedies import REMEDIES, Stiffened, decides, moved_and_corrected, remedy_of, saves, stiffened
-from robomill.report.remedies_told import told
+from robomill.report.remedies_told import told, told_of
 
 SLOT = rm.load_setup("paper_flute").replace(step_mm=5, cell_mm=0.5)
 NOW = rm.simulate(SLOT)
@@ -67,6 +67,58 @@ def test_stiffer_joints_halve_an_error_that_keeps_its_tolerance_and_are_judged_b
     (row,) = told(found)
     assert row.what.endswith(", which halves what is used of the tolerance")
     assert row.leaves == again.verdict.sentence
+
+
+@pytest.mark.parametrize(
+    "own",
+    [
+        {"floor_tolerance_mm": 0.125},
+        {"floor_tolerance_mm": 0.5},
+        {"floor_tolerance_mm": 0.13, "feed_tolerance_mm": 0.01},
+    ],
+)
+def test_with_tolerances_of_their_own_the_largest_share_of_any_is_halved(own: dict[str, float]) -> None:
+    setup = SLOT.replace(**own)
+    limits = {"wall": 0.3, "floor": own["floor_tolerance_mm"], "feed": own.get("feed_tolerance_mm", np.inf)}
+
+    def largest(run: rm.SimulationResult) -> float:
+        """Of the tolerances, by the numbers of each reading."""
+        end, feed = (1e3 * abs(getattr(run.verdict, name).value) / limits["feed"] for name in ("end", "feed"))
+        read = [1e3 * abs(getattr(run.verdict, name).value) / limits[name] for name in ("wall", "floor")]
+        return float(np.nanmax([*read, feed, end]))
+
+    found = stiffened(setup, rm.simulate)
+    assert found.half
+    assert largest(found.run) == pytest.approx(0.5 * largest(rm.simulate(setup)), rel=1e-3)
+    (row,) = told_of(setup, found)
+    assert row.leaves == found.run.verdict.sentence
+    (row,) = told_of(setup, rm.design(setup, tolerance_mm=0.2))
+    assert "to keep 0.2 mm" in row.what
+
+
+def test_a_corrected_program_is_graded_along_the_feed_too_where_that_has_a_tolerance() -> None:
+    """What is pushed along the feed is not corrected: it stays, and is 20 % more where the arm is as much softer."""
+    setup = SLOT.replace(force=rm.PathForce(-60.0, 100.0, 0.0), feed_tolerance_mm=0.04)
+    found = rm.compensate(setup)
+    read = rm.simulate(setup.replace(source=found.source)).verdict
+    along = max(abs(read.feed.value), abs(read.end.value))
+    assert max(abs(read.wall.value), abs(read.floor.value)) < 0.1 * along
+    assert found.after.share(setup) == pytest.approx(along / 0.04e-3, rel=1e-6)
+    there = left(found, rm.simulate(setup))
+    assert there.share == pytest.approx(1.2 * along / 0.04e-3, rel=1e-3)
+    assert there.error == ("feed", pytest.approx(1.2 * along, rel=1e-3))
+    assert not there.better
+    assert "not-met" in {each.code for each in found.findings}
+
+
+def test_the_error_that_decides_at_a_place_is_the_one_that_uses_most_of_its_tolerance() -> None:
+    setup = SLOT.replace(tolerance_mm=0.5, floor_tolerance_mm=0.11)
+    found = rm.place(setup, x_mm=(-100, 100), y_mm=(-1350, -1250), candidates=9)
+    run = rm.simulate(found.moved)
+    wall, floor = (abs(getattr(run.verdict, name).value) for name in ("wall", "floor"))
+    assert wall > floor
+    assert floor / 0.11 > wall / 0.5
+    assert left(found, rm.simulate(setup)).error == ("floor", pytest.approx(floor))
 
 
 def test_where_nothing_pushes_or_nothing_is_judged_no_joint_is_made_stiffer() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from random_arms import seven
 
 import robomill as rm
 from robomill.errors import SetupError
@@ -68,6 +69,54 @@ def test_the_deviation_along_the_course_is_that_of_the_arm_there(found: Turning)
         ik = rm.inverse_kinematics(setup.robot, run.ik.T_MT[i] @ T, near=run.theta[i], spin="fixed")
         sizes.append(np.linalg.norm(rm.cartesian_compliance(setup.robot, ik.theta) @ run.F[i]))
     assert found.course.max_deviation == pytest.approx(max(sizes), rel=1e-6)
+
+
+def test_of_seven_axes_too_the_map_is_what_runs_at_a_constant_spin_say_and_none_is_better() -> None:
+    """Each of them brings its elbow along from home; it is not where another spin has left it."""
+    theta = np.array([0.3, -0.7, 0.6, -1.1, 0.8, 0.9, 0.2])
+    path = rm.Toolpath.from_points(p_mm=[[-60, 0, 5], [-60, 0, -2], [60, 0, -2]], feed_mm_min=[0, 0, 1800])
+    setup = rm.load_setup("paper_flute").replace(source=path, stock=None, robot=seven(), step_mm=20, cell_mm=1)
+    setup = setup.replace(T_MW=rm.tool_pose(setup.robot, theta))
+    found = turn(setup, measure="tip")
+    largest = []
+    for k in range(0, 72, 8):
+        run = rm.simulate(setup.replace(spin=float(found.angle[k])))
+        i = run.judged
+        C = rm.cartesian_compliance(setup.robot, run.theta[i])
+        size = np.linalg.norm(np.einsum("sij,sj->si", C, run.F[i]), axis=1)
+        assert found.deviation[i, k] == pytest.approx(size, rel=1e-6)
+        largest.append(size.max())
+    assert found.constant.max_deviation <= min(largest) * (1 + 1e-9)
+
+
+def bounded(share: np.ndarray, station: np.ndarray, rate: float) -> float:
+    """The least largest share of all courses on a map (s, a), by going on from every angle to those within reach."""
+    angles = share.shape[1]
+    apart = np.abs((np.arange(angles)[:, None] - np.arange(angles) + angles // 2) % angles - angles // 2)
+    best = share[0]
+    for way, here in zip(np.diff(station), share[1:]):
+        near = apart * 2.0 * np.pi / angles <= rate * way * (1.0 + 1e-9)
+        best = np.maximum(here, np.where(near, best, np.inf).min(axis=1))
+    return float(best.min())
+
+
+def test_that_no_course_is_better_is_said_only_where_the_map_has_none() -> None:
+    """Round a sharp corner the map holds both cuts at one spin: what looks better there does not hold in full."""
+    path = rm.Toolpath.from_points(
+        p_mm=[[-150, 0, 5], [-150, 0, -2], [150, 0, -2], [150, 200, -2]], feed_mm_min=[0, 0, 1800, 1800]
+    )
+    setup = rm.load_setup("paper_flute").replace(
+        source=path,
+        stock=rm.Stock(lower_mm=[-145, -20, -10], upper_mm=[180, 230, 0]),
+        robot=rm.load_robot("fanuc_r2000ic"),
+        force=rm.PathForce(-20.0, 80.0, -30.0),
+        part_zero=(1.3, 0.2, 0.4),
+        part_rotation_z=1.3,
+    )
+    found = turn(setup.replace(step_mm=10, cell_mm=1))
+    assert found.course.share == found.constant.share
+    assert bounded(np.where(np.isnan(found.share), np.inf, found.share), found.station, found.rate) < found.course.share
+    assert "spin-course" not in {each.code for each in found.findings}
 
 
 def test_where_nothing_is_left_to_turn_is_said() -> None:

@@ -185,6 +185,17 @@ def test_walls_that_another_tool_has_made_are_said_to_be_off() -> None:
     assert found.checked[1] >= differs / setup.tolerance * 0.999
 
 
+def test_what_draws_differ_by_is_told_of_the_tolerance_that_the_error_has() -> None:
+    """Where floors alone are judged, the tolerance of walls, ten times as wide, changes nothing that is said."""
+    wide = spread(part_mm=60.0, lengths_mm=20.0)
+    tight = dict(measure="floor", samples=60, seed=2)
+    alike = rm.uncertainty(slot().replace(tolerance_mm=0.03), wide, **tight)
+    found = rm.uncertainty(slot().replace(tolerance_mm=0.3, floor_tolerance_mm=0.03), wide, **tight)
+    assert (found.share == alike.share).all()
+    assert found.checked == alike.checked
+    assert {each.code for each in found.findings} == {each.code for each in alike.findings}
+
+
 def test_the_same_seed_gives_the_same_numbers_and_another_others() -> None:
     one, again, other = (rm.uncertainty(slot(), samples=50, seed=seed) for seed in (1, 1, 2))
     assert one == again

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -22,16 +23,32 @@ def table(text: str, where: str = "f.toml") -> Table:
 
 @given(st.floats(-1e6, 1e6))
 def test_what_is_written_reads_back_to_the_last_bit(value: float) -> None:
-    written = exactly(value, "mm")
-    if written is not None:
-        assert written * MM_IN_M == value
-        assert shown(value, "mm") == written
-    else:  # no number of millimetres is this number of metres
+    """A number of metres that no float of millimetres is, is written with more digits than a float has."""
+    written = shown(value, "mm")
+    assert float(Fraction(written) * Fraction(MM_IN_M)) == value
+    again = Table(parse_toml(f"x = {toml_value(written)}", "f.toml", exact=True), "f.toml").number("x", "mm")
+    assert again == value
+    if exactly(value, "mm") is None:
         near = value / MM_IN_M
-        assert shown(value, "mm") == near
-        assert all(
-            n * MM_IN_M != value for n in (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
-        )
+        around = (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
+        assert all(n * MM_IN_M != value for n in around)
+
+
+@given(st.floats(-1e3, 1e3), st.sampled_from(["deg", "mm/min", "1/min", "N/mm2", "in", "1e-7 rad/(N m)", "um"]))
+def test_so_it_does_in_every_unit(value: float, unit: str) -> None:
+    text = f"x = {toml_value(shown(value, unit))}"
+    assert Table(parse_toml(text, "f.toml", exact=True), "f.toml").number("x", unit) == value
+
+
+def test_a_number_of_many_digits_is_a_number_like_another() -> None:
+    for text in ("0.10000000000000000555111512312578", "1.00000000000000000000000000001e999999", "1e400"):
+        for exact in (True, False):
+            read = Table(parse_toml(f"x = {text}", "f.toml", exact=exact), "f.toml")
+            if "e" in text:
+                with pytest.raises(ProjectError, match="x: expected a"):
+                    read.number("x", "mm")
+            else:
+                assert read.number("x", "mm") == 0.1 * MM_IN_M
 
 
 @given(st.integers(-999_999, 999_999), st.sampled_from([1, 10, 100, 1000]))

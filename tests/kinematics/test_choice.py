@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from random_arms import seven
 
 import robomill as rm
 from robomill.errors import KinematicsError
 from robomill.kinematics.choice import SPIN_STEPS
 from robomill.kinematics.decoupled import branch_names
 from robomill.kinematics.transforms import rotation_z, transform
+from tests.identification.cables import as_robot, ur_like
 
 
 def _box(robot, count=200):
@@ -39,6 +41,23 @@ def test_fixed_and_given_spin_are_whole_poses():
     turned = rm.inverse_kinematics(robot, T_MT, spin=0.5)
     expected = T_MT @ transform(rotation_z(0.5), np.zeros(3))
     np.testing.assert_allclose(rm.tool_pose(robot, turned.theta[turned.reached]), expected[turned.reached], atol=1e-9)
+
+
+@pytest.mark.parametrize("spin", [0.5, -1.0, 0.0])
+def test_a_given_spin_turns_the_tool_of_seven_joints_and_is_nothing_to_five(spin):
+    robot = seven()
+    T_MT = rm.pose_from_world([0.45, 0.1, 0.25, 0, 0])
+    found = rm.inverse_kinematics(robot, T_MT, spin=spin)
+    expected = T_MT @ transform(rotation_z(spin), np.zeros(3))
+    np.testing.assert_allclose(rm.tool_pose(robot, found.theta), expected, atol=1e-9)
+    np.testing.assert_allclose(found.T_MT, expected, atol=1e-15)
+    assert found.spin == spin
+    five = rm.load_robot("slavkovic_5r")
+    there = rm.pose_from_world([0.1, -1.3, 0.0, 0.1, 0.2])
+    asked = rm.inverse_kinematics(five, there, spin=spin)
+    np.testing.assert_array_equal(asked.T_MT, there)
+    np.testing.assert_array_equal(asked.theta, rm.inverse_kinematics(five, there).theta)
+    assert asked.spin is None
 
 
 @pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "fanuc_r2000ic"])
@@ -157,3 +176,66 @@ def test_the_joint_that_hinders_is_told_by_the_stand_that_is_least_past_its_limi
         assert result.reason() == (
             f"joint {joint + 1} would need {shown[0]}{unit}, {shown[1]}{unit} past its limit of {shown[2]}{unit}"
         )
+
+
+@pytest.mark.parametrize("pieces", [1, 3, 7, 20])
+def test_poses_in_pieces_are_as_one_by_one(monkeypatch, pieces):
+    """Whatever pieces the work is done in, each pose has its own goal, or the one that is for all."""
+    robot = rm.load_robot("kuka_kr500")
+    theta = robot.home + np.random.default_rng(3).uniform(-0.5, 0.5, (20, 6))
+    T_MT, near = rm.tool_pose(robot, theta), theta[::-1] + 0.1
+    alone = [rm.inverse_kinematics(robot, T, near=goal, spin="fixed") for T, goal in zip(T_MT, near, strict=True)]
+    home = [rm.inverse_kinematics(robot, T, spin="fixed") for T in T_MT]
+    walked = rm.inverse_kinematics(robot, T_MT, near="path", spin="fixed")
+
+    def cut(count, stage, most=None):
+        yield from (slice(at, min(at + pieces, count)) for at in range(0, count, pieces))
+
+    for module in ("choice", "joining", "result"):
+        monkeypatch.setattr(f"robomill.kinematics.{module}.slices", cut)
+    for found, expected in (
+        (rm.inverse_kinematics(robot, T_MT, near=near, spin="fixed"), alone),
+        (rm.inverse_kinematics(robot, T_MT, spin="fixed"), home),
+    ):
+        np.testing.assert_array_equal(found.theta, [each.theta for each in expected])
+        np.testing.assert_array_equal(found.residual, [each.residual for each in expected])
+        assert list(found.branch) == [each.branch for each in expected]
+    again = rm.inverse_kinematics(robot, T_MT, near="path", spin="fixed")
+    np.testing.assert_array_equal(again.theta, walked.theta)
+    np.testing.assert_array_equal(again.residual, walked.residual)
+
+
+@pytest.mark.parametrize("way", [[0.4, 1.0, 0.4, 0.2, -0.2], [0.3, 1.8, -0.2, 0.3, 0.3], [0.9, 0.3, 0.1, 0.6, 0.4]])
+def test_a_long_path_is_turned_as_its_whole_way_asks_and_not_its_beginning(way):
+    """Every spin walked by itself: the one that is taken misses no pose and has the least joint motion between the 205
+    poses that are compared, with a thousandth of the squared way from home to the first."""
+    robot = rm.load_robot("fanuc_r2000ic")
+    x_M = np.array([1.5, -0.9, 0.4, 0.2, 0.1]) + np.linspace(0, 1, 410)[:, None] * way
+    T_MT = rm.pose_from_world(x_M)
+    cost = {}
+    for angle in 2.0 * np.pi / SPIN_STEPS * np.arange(SPIN_STEPS):
+        walked = rm.inverse_kinematics(robot, T_MT, near="path", spin=float(angle))
+        if walked.reached.all():
+            steps = np.diff(walked.theta[::2], axis=0)
+            cost[float(angle)] = (steps**2).sum() + 1e-3 * ((walked.theta[0] - robot.home) ** 2).sum()
+    assert len(cost) < SPIN_STEPS
+    taken = rm.inverse_kinematics(robot, T_MT, near="path").spin
+    assert np.ptp(taken) == 0.0
+    assert cost[float(taken[0])] <= 1.01 * min(cost.values())
+    assert max(cost.values()) > 1.2 * min(cost.values())
+
+
+@pytest.mark.parametrize("arm", [seven(), as_robot(ur_like(), "ur_like")])
+def test_an_arm_without_closed_form_keeps_one_turn_about_the_tool_on_a_whole_path(arm):
+    """Round a square: how far the tool's x axis is turned from that of each pose, by forward kinematics."""
+    start = rm.tool_pose(arm, np.array([0.3, -0.7, 0.6, -1.1, 0.8, 0.9, 0.2])[: arm.n])
+    square = 0.03 * np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0], [2, 2, 0], [1, 2, 0], [0, 2, 0], [0, 1, 0]])
+    T_MT = np.array([start @ transform(np.eye(3), p) for p in square])
+    found = rm.inverse_kinematics(arm, T_MT, near="path")
+    assert found.reached.all()
+    stands = rm.tool_pose(arm, found.theta)
+    np.testing.assert_allclose(stands[:, :3, [2, 3]], T_MT[:, :3, [2, 3]], atol=1e-8)
+    x = np.einsum("mji,mj->mi", T_MT[:, :3, :3], stands[:, :3, 0])
+    turned = np.arctan2(x[:, 1], x[:, 0])
+    np.testing.assert_allclose(np.exp(1j * turned), np.exp(1j * turned[0]), atol=1e-8)
+    np.testing.assert_allclose(np.exp(1j * found.spin), np.exp(1j * turned), atol=1e-8)

@@ -9,6 +9,7 @@ import robomill as rm
 from robomill.kinematics.choice import every
 from robomill.kinematics.decoupled import decoupled, shortfall
 from robomill.kinematics.forward import joint_frames
+from tests.kinematics.oracles import screw
 from tests.robot.written_otherwise import with_blocked
 
 
@@ -29,6 +30,38 @@ def test_the_arm_at_home_stands_in_front_with_its_wrist_plus(name, sign, at):
     assert "wrist +" in there.branch
 
 
+@pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "fanuc_r2000ic"])
+def test_front_is_where_the_wrist_stands_at_home_however_long_the_tool_is(name):
+    """Tools of up to six metres, whose tip may lie behind axis 1 while the wrist is in front; any home and base."""
+    robot, rng = rm.load_robot(name), np.random.default_rng(9)
+    behind = 0
+    for _ in range(40):
+        T_tool = np.array(robot.T_tool)
+        if robot.n == 5:
+            T_tool[:3, 3] += T_tool[:3, 2] * rng.uniform(-6, 6)
+        else:
+            T_tool[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+            T_tool[:3, 2] = np.cross(T_tool[:3, 0], T_tool[:3, 1])
+            T_tool[:3, 3] = rng.uniform(-4, 4, 3)
+        home = rng.uniform(*robot.limits.T)
+        home[4] = rng.choice([-1.0, 1.0]) * rng.uniform(0.1, 2.9)
+        # Without zero between them home is the middle of the limits.
+        room = np.abs(home)[:, None] * [-0.5, 0.5]
+        T_base = screw(0, rng.uniform(-3, 3), 0.0) @ screw(2, rng.uniform(-3, 3), 0.0)
+        T_base[:3, 3] = rng.uniform(-5, 5, 3)
+        arm = robot.replace(T_base=T_base, T_tool=T_tool, limits=home[:, None] + room)
+        np.testing.assert_allclose(arm.home, home)
+        frames = joint_frames(arm, home)
+        k, p, tip = frames[:-1, :3, 2], frames[:-1, :3, 3], frames[-1, :3, 3]
+        ways = [np.cross(k[1], k[0]) @ (at - p[0]) for at in (crossing(p[3], k[3], p[4], k[4]), tip)]
+        behind += ways[0] * ways[1] < 0.0
+        there = rm.inverse_kinematics(arm, frames[-1], near=home, spin="fixed")
+        np.testing.assert_allclose(there.theta, home, atol=1e-6)
+        assert there.branch.startswith("front")
+        assert there.branch.endswith("wrist +")
+    assert 0 < behind < 40
+
+
 def test_structures_recognised_from_the_table():
     assert decoupled(rm.load_robot("slavkovic_5r")).n == 5
     assert decoupled(rm.load_robot("kuka_kr500")).spindle_on_last_axis
@@ -39,11 +72,14 @@ def test_structures_recognised_from_the_table():
     assert decoupled(with_blocked(rm.load_robot("kuka_kr500"), 6, 0.0)).n == 5
 
 
+@pytest.mark.parametrize("hangs", [False, True])
 @pytest.mark.parametrize("name", ["slavkovic_5r", "kuka_kr500", "fanuc_r2000ic"])
-def test_an_elbow_that_is_up_stands_higher_than_one_that_is_down(name):
-    """At poses that an arm on the floor meets both ways, from the front."""
+def test_an_elbow_that_is_up_stands_higher_than_one_that_is_down(name, hangs):
+    """At poses that an arm on the floor, or one that hangs from the ceiling, meets both ways, from the front."""
     robot = rm.load_robot(name)
     robot = robot.replace(limits=np.tile([-np.pi, np.pi], (robot.n, 1)))
+    if hangs:
+        robot = robot.replace(T_base=np.diag([1.0, -1.0, -1.0, 1.0]) @ robot.T_base)
     theta = rm.load_robot(name).home + np.random.default_rng(6).uniform(-0.3, 0.3, (40, robot.n))
     T_MT = rm.tool_pose(robot, theta)
     up, down = (rm.inverse_kinematics(robot, T_MT, branch=f"front, elbow {b}", spin="fixed") for b in ("up", "down"))

@@ -5,6 +5,7 @@ import pytest
 
 import robomill as rm
 from robomill.kinematics import dexterity
+from robomill.kinematics.choice import turn
 from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import box_grid
 
@@ -32,6 +33,25 @@ def test_scara():
     field = compliance_map(robot, box_grid([-0.6, -0.6, 0.1], [0.6, 0.6, 0.3], 0.3))
     # Only the slide gives in Z, by its compliance in m/N.
     np.testing.assert_allclose(field.values("C_zz")[field.reached], 1e-9)
+
+
+def test_no_whole_turn_within_limits_is_nearer():
+    """All turns tried one by one, for limits of a part of a turn to several; goals lie inside and beyond them."""
+    rng = np.random.default_rng(3)
+    for _ in range(40):
+        low = rng.uniform(-14.0, 0.0, 4)
+        limits = np.stack([low, low + rng.uniform(0.5, 16.0, 4)], axis=1)
+        limits[2] = 0.0, 0.3
+        robot = rm.Robot(**{**SCARA, "limits_all": limits})
+        theta, near = rng.uniform(-np.pi, np.pi, (7, 4)), rng.uniform(-16.0, 16.0, (7, 4))
+        found = turn(robot, theta, near)
+        np.testing.assert_array_equal(found[:, 2], theta[:, 2])  # it slides
+        for i, j in np.ndindex(7, 4):
+            tried = theta[i, j] + 2.0 * np.pi * np.arange(-6, 7)
+            inside = tried[(limits[j, 0] <= tried) & (tried <= limits[j, 1])]
+            some, goal = (inside, near[i, j]) if inside.size else (tried, limits[j].mean())
+            assert j == 2 or abs(found[i, j] - some[np.argmin(np.abs(some - goal))]) < 1e-12
+        np.testing.assert_array_equal(turn(robot, theta, near[0])[0], found[0])
 
 
 def test_gantry():
@@ -71,6 +91,9 @@ def test_an_arm_without_closed_form_follows_each_path_from_pose_to_pose(lead):
     assert result.branch_names == ("numerical",)
     np.testing.assert_allclose(rm.tool_pose(robot, result.theta)[..., :3, 3], T_MT[..., :3, 3], atol=1e-9)
     assert np.abs(np.diff(result.theta, axis=-2)).max() < 0.1
+    if len(lead) > 1:  # each run begins anew, whatever went before it
+        alone = [rm.inverse_kinematics(robot, run, near="path").theta for run in T_MT]
+        np.testing.assert_allclose(result.theta, alone, atol=1e-9)
     # A pose out of reach in the middle is left out; the path goes on from where it was.
     broken = T_MT.copy()
     broken[..., 5, :3, 3] *= 20.0

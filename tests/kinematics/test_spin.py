@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from random_arms import seven
 
 import robomill as rm
-from robomill.kinematics.spin import OverSpin, over_spins
+from robomill.kinematics.spin import OverSpin, over_spins, spin_matters
 from robomill.kinematics.transforms import rotation_z, transform
 
 
@@ -45,3 +46,13 @@ def test_the_best_spin_misses_least_and_costs_least_of_these(missed, value, best
     found = OverSpin(np.arange(len(missed)) * 0.1, np.array(missed), np.array(value))
     assert found.best == best
     np.testing.assert_array_equal(found.range, span)
+
+
+def test_a_spin_matters_where_the_turn_about_the_tool_is_free_and_not_one_joint_s_alone():
+    """Six axes or more whose last one is not the tool's: a turn about the tool by that joint alone moves the tip."""
+    kuka = rm.load_robot("kuka_kr500")
+    aside = np.array(kuka.T_tool)
+    aside[:3, 3] += 0.1 * aside[:3, 0]
+    arms = [kuka, kuka.replace(T_tool=aside), rm.load_robot("fanuc_r2000ic"), seven()]
+    arms += [rm.load_robot(name) for name in ("slavkovic_5r", "planar_3r", "planar_2r")]
+    assert [spin_matters(arm) for arm in arms] == [False, True, True, True, False, False, False]

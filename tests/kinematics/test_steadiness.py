@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from random_arms import seven
 from scipy.spatial.transform import Rotation
 
 import robomill as rm
@@ -77,6 +78,18 @@ def test_a_tool_turned_on_the_spot_may_turn_the_joints():
     assert all(np.isinf(haste.rate) for haste in hasty_turns(sweep))
 
 
+def test_an_arm_of_seven_joints_that_turns_the_tool_about_itself_as_told_has_no_haste():
+    """Every joint turns by less than twice what the tool does; nothing is singular there."""
+    robot = seven()
+    T_MT = rm.pose_from_world([0.45, 0.1, 0.25, 0, 0])
+    spun = np.tile(T_MT, (11, 1, 1))
+    spun[:, :3, :3] = T_MT[:3, :3] @ Rotation.from_rotvec(np.linspace(0, 0.5, 11)[:, None] * [0, 0, 1.0]).as_matrix()
+    result = rm.inverse_kinematics(robot, spun, near="path", spin="fixed")
+    assert result.reached.all()
+    assert np.abs(np.diff(result.theta, axis=0)).max() < 2 * 0.05
+    assert hasty_turns(result) == []
+
+
 def test_nothing_is_said_across_a_gap():
     result = line([0, -1.5, 0, 0, 0], [0, -3.0, 0, 0, 0], 300)
     assert not result.reached.all()
@@ -137,12 +150,22 @@ def test_a_passage_is_told_with_the_branches_it_leads_between():
     assert " from " not in Passage(3, "front", "front").sentence()
 
 
-@pytest.mark.parametrize(("name", "free_spin"), [("kuka_kr500", False), ("kuka_kr500", True), ("slavkovic_5r", False)])
+@pytest.mark.parametrize(
+    ("robot", "free_spin"),
+    [
+        (rm.load_robot("kuka_kr500"), False),
+        (rm.load_robot("kuka_kr500"), True),
+        (ROBOT, False),
+        (seven(), False),
+        (seven(), True),
+    ],
+    ids=["six", "six, free", "five", "seven", "seven, free"],
+)
 @pytest.mark.parametrize("seed", range(3))
-def test_runs_of_haste_are_those_of_a_loop_over_steps_and_joints(name, free_spin, seed):
+def test_runs_of_haste_are_those_of_a_loop_over_steps_and_joints(robot, free_spin, seed):
     """Poses and joints drawn apart from each other. A turn of the tool about itself is asked of the joints where six
-    axes follow the whole pose; it explains nothing where its spin is free, nor with five axes."""
-    robot, m = rm.load_robot(name), 40
+    axes or seven follow the whole pose; it explains nothing where its spin is free, nor with five axes."""
+    m = 40
     rng = np.random.default_rng(seed)
     T_MT = np.tile(np.eye(4), (m, 1, 1))
     way = rng.choice([0.0, 0.5e-3, 1e-3], m)
@@ -164,7 +187,7 @@ def test_runs_of_haste_are_those_of_a_loop_over_steps_and_joints(name, free_spin
         for i in range(1, m + 1):
             fast = False
             if i < m and np.isfinite(theta[[i - 1, i]]).all():
-                if robot.n == 6 and not free_spin:
+                if robot.n >= 6 and not free_spin:
                     turned = Rotation.from_matrix(T_MT[i, :3, :3].T @ T_MT[i - 1, :3, :3]).magnitude()
                 else:
                     turned = np.arccos(np.clip(T_MT[i, :3, 2] @ T_MT[i - 1, :3, 2], -1.0, 1.0))

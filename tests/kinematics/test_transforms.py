@@ -79,6 +79,12 @@ def test_turns_about_x_the_new_y_and_the_new_z_lead_there_and_back():
     R = rotation_from_turns(turns)
     np.testing.assert_allclose(R, Rotation.from_euler("XYZ", turns).as_matrix(), atol=1e-15)
     np.testing.assert_allclose(rotation_from_turns(turns_from_rotation(R)), R, atol=1e-14)
+    for shape in ((), (2, 102), (3, 4, 17)):  # any leading axes
+        some = R[: int(np.prod(shape))].reshape(*shape, 3, 3)
+        found = turns_from_rotation(some)
+        assert found.shape == (*shape, 3)
+        np.testing.assert_allclose(rotation_from_turns(found), some, atol=1e-14)
+        assert (np.abs(found[..., 1]) <= np.pi / 2 + 1e-15).all()
 
 
 @pytest.mark.parametrize("T", [np.zeros((4, 4)), 2 * np.eye(4), np.diag([1.0, 1.0, -1.0, 1.0]), np.eye(4)[::-1]])

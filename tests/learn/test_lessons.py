@@ -131,7 +131,8 @@ def test_up_and_down_milling_push_as_the_integral_over_the_arc_says(pose: PoseRe
         y = np.mean(Ft * np.sin(phi) - Fr * np.cos(phi)) * weight
         F = np.array([x, y, -np.mean(Fa) * weight])
         shifts.append(side * float((C @ F)[1]))
-    told = [float(v.replace("−", "-")) for v in re.findall(r"([+−][\d.]+) µm", fifth.answer)]
+    said = re.findall(r"([\d.]+) µm (into|away from) its wall", fifth.answer)
+    told = [float(far) * (1 if way == "into" else -1) for far, way in said]
     assert told == pytest.approx([1e6 * shift for shift in shifts], abs=0.06)
     words = ["too much is cut away" if shift > 0 else "material is left" for shift in shifts]
     assert fifth.choices[fifth.right].text == f"Up: {words[0]}; down: {words[1]}"

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import pickle
 
+import numpy as np
 import pytest
 
 from robomill import learn
@@ -135,3 +137,39 @@ def test_every_exercise_is_data_with_hints_and_an_equation() -> None:
         assert given.number
         assert given.text.endswith(("?", ".", "sign."))
         assert to_si(from_si(given.answer, given.unit), given.unit) == pytest.approx(given.answer)
+
+
+@pytest.mark.parametrize(
+    "of", [np.float64, np.float32, np.array, lambda x: np.array([[x]])[0, 0], lambda x: np.array(x)[()]]
+)
+def test_a_number_of_numpy_is_a_number(of) -> None:
+    assert learn.check(TIP, of(IN_MM)).right
+
+
+def test_a_joint_counted_by_numpy_is_right() -> None:
+    asked = learn.exercise("soft_joint", 1234567)
+    shares = np.zeros(6)
+    shares[round(asked.answer) - 1] = 1.0
+    assert learn.check(asked, shares.argmax() + 1).right
+    with pytest.raises(RobomillError, match="True"):
+        learn.check(asked, np.bool_(True))
+
+
+def test_a_share_of_one_is_told_from_one_in_per_cent() -> None:
+    asked = learn.exercise("share", 1234567)
+    found = learn.check(asked, asked.answer)
+    assert (found.kind, found.marks) == ("unit", 1.0)
+    assert "a hundred times too small" in found.sentence
+    assert learn.check(TIP, IN_MM / 100).kind == "wrong"
+
+
+def test_zero_is_told_in_words_that_hold_for_every_exercise() -> None:
+    """A cutting force of zero was told that every joint lets the tip move."""
+    said = {learn.check(asked, 0).sentence for asked in learn.exercises(1234567) if asked.tolerance}
+    assert said == {"It is not zero: take the next hint."}
+
+
+def test_an_exercise_is_a_value() -> None:
+    again = pickle.loads(pickle.dumps(TIP))
+    assert again == TIP == learn.exercise("tip", 1234567) != learn.exercise("tip", 7)
+    assert len({again, TIP}) == 1

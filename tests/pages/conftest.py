@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ import pandas as pd
 import pytest
 import streamlit as st
 from plotly_checks import checked_figure
+from streamlit.components.v2 import manifest_scanner
+from streamlit.runtime.scriptrunner.script_cache import ScriptCache
 from streamlit.testing.v1 import AppTest
 from streamlit.testing.v1.element_tree import TextInput
 
@@ -36,6 +39,24 @@ class NoPictures(RenderWorker):
     def start(self) -> None:
         for _ in range(9):
             self._starts.note(NO_OPENGL)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _looked_up_once() -> Iterator[None]:
+    """An AppTest asks every package for components when it begins and compiles its pages at every run, half of a short
+    test's time; neither changes while tests run."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(manifest_scanner, "scan_component_manifests", cache(manifest_scanner.scan_component_manifests))
+        of_page = ScriptCache.get_bytecode
+        compiled: dict[str, Any] = {}
+
+        def get_bytecode(self: ScriptCache, path: str) -> Any:
+            if path not in compiled:
+                compiled[path] = of_page(self, path)
+            return compiled[path]
+
+        patched.setattr(ScriptCache, "get_bytecode", get_bytecode)
+        yield
 
 
 @pytest.fixture(autouse=True)

@@ -122,7 +122,7 @@ def test_compliance_sheets(app: AppTest, sheet: str) -> None:
 def test_the_milling_point_in_words(app: AppTest) -> None:
     go(app, COMPLIANCE)
     said = words(app)
-    assert "100 N on the tool moves the tip by +0.230 mm in Y, −0.102 mm in Z." in said
+    assert "100 N on the tool moves the tip by +0.230 mm along Y, −0.102 mm along Z." in said
     assert "Of these 0.251 mm, 70 % come from joint 3 and 30 % from joint 5. At line 7 of the cut, which" in said
     assert "2.295" in said
     assert "1.134" in said

@@ -77,3 +77,11 @@ def test_a_link_a_command_and_python_are_there_to_be_copied(app: AppTest) -> Non
     assert link.endswith("?preset=paper_flute")
     assert command == "robomill simulate paper_flute"
     assert 'rm.load_setup("paper_flute")' in python
+
+
+def test_a_page_of_maps_and_load_tests_hands_on_what_it_shows(app: AppTest) -> None:
+    for page, verb in (("2_Workspace", "map"), ("3_Compliance", "map"), ("4_Identification", "identify")):
+        pressed(go(app, page), "Share")
+        _, command, python = (each.value for each in app.code[:3])
+        assert command.startswith(f"robomill {verb} slavkovic_5r")
+        assert "rm.identify" in python if verb == "identify" else "rm.compliance_map" in python

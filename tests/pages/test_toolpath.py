@@ -76,6 +76,18 @@ def test_part_zero_moves_the_cut(app: AppTest) -> None:
     assert T_MW[1, 0] == pytest.approx(1.0)
 
 
+def test_a_turn_by_more_than_half_is_not_another_one_in_silence(app: AppTest) -> None:
+    """1220.5 degrees are three turns and 140.5: what was typed and what it is stand beneath the box."""
+    go(app, "5_Toolpath")
+    box(app, "Turn about Z, °").set_value("1.220,5").run()
+    T_MW = store(app).project.setup.T_MW
+    assert np.rad2deg(np.arctan2(T_MW[1, 0], T_MW[0, 0])) == pytest.approx(140.5)
+    assert box(app, "Turn about Z, °").value == 140.5
+    assert all(number in words(app) for number in ("1220.50", "140.50"))
+    box(app, "Turn about Z, °").set_value("90").run()
+    assert "1220.50" not in words(app)
+
+
 def test_program_to_table_and_back(app: AppTest) -> None:
     go(app, "5_Toolpath")
     app.button_group(key="toolpath.kind").set_value("lines").run()

@@ -201,9 +201,22 @@ def test_remedies_are_told_with_their_verdicts() -> None:
     text = Page(rm.report_html(SLOT, [design])).text
     ratio = max(design.stiffness_ratio)
     assert f"× {ratio:.2f}" in text
-    assert design.after.verdict.sentence in text
+    assert rm.simulate(SLOT.replace(robot=design.setup.robot)).verdict.sentence in text, "one page, one tolerance"
+    assert design.after.verdict.sentence not in text
+    assert "to keep 0.2 mm" in text
     with pytest.raises(rm.RobomillError, match=r"rm\.advise"):
         rm.report_html(SLOT, [SLOT])
+
+
+def test_a_remedy_of_another_cut_is_refused_and_one_alone_is_taken() -> None:
+    corrected = rm.compensate(SLOT)
+    assert rm.report_html(SLOT, corrected).count("Correct the program") == 1
+    for other in (SLOT.replace(tolerance_mm=0.2), SLOT.replace(robot=rm.load_robot("kuka_kr270"))):
+        with pytest.raises(rm.RobomillError, match="another set-up"):
+            rm.report_html(other, [corrected])
+    stiffer = rm.design(SLOT.replace(force=rm.PathForce(feed_normal=150.0)), tolerance_mm=0.2)
+    with pytest.raises(rm.RobomillError, match="another set-up"):
+        rm.report_html(SLOT, [stiffer])
 
 
 @pytest.mark.browser

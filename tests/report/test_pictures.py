@@ -59,8 +59,8 @@ def test_a_section_is_drawn_to_scale_where_it_lies(result: rm.SimulationResult) 
     assert section is not None
     picture = ElementTree.fromstring(section_picture(section, result))
     (_, per_x), (_, per_y) = scales(picture)
-    assert per_x > 0.0 > per_y
-    assert -per_y / per_x == pytest.approx(1.0, abs=0.02), "to scale"
+    assert per_x < 0.0 > per_y, "seen along the feed, as on the screen: what is left of it stands to the left"
+    assert per_y / per_x == pytest.approx(1.0, abs=0.02), "to scale"
     for look, truth in (("ideal", section.z_ideal), ("left", section.z_machined)):
         line = drawn(picture, look)
         at = np.interp(line[:, 0], 1e3 * section.w, 1e3 * truth)
@@ -82,7 +82,7 @@ def test_what_is_allowed_is_as_thick_as_the_tolerances(result: rm.SimulationResu
     (_, per_x), (_, per_y) = scales(picture)
     (band,) = [each for each in picture.iter("g") if "scale(" in (each.get("transform") or "")]
     across, up = map(float, re.findall(r"[\d.]+", band.get("transform") or ""))
-    assert across / per_x == pytest.approx(1e3 * setup.tolerance, rel=0.02)
+    assert across / abs(per_x) == pytest.approx(1e3 * setup.tolerance, rel=0.02)
     assert up / abs(per_y) == pytest.approx(2e3 * setup.tolerance, rel=0.02)
     (line,) = with_look(picture, "polyline", "allowed")
     places = np.array([[float(v) for v in pair.split(",")] for pair in (line.get("points") or "").split()])

@@ -114,6 +114,8 @@ def test_a_new_joint_at_zero_leaves_the_tool_where_it_was(convention: str, slide
         np.testing.assert_array_equal(np.delete(more.C_theta, at), robot.C_theta)
         np.testing.assert_array_equal(np.delete(more.compliance_sets["first"], at), robot.compliance_sets["first"])
         assert more.C_theta[at] == more.compliance_sets["first"][at] == ASSUMED_COMPLIANCE
+        for block in ("geometry", "limits", "compliance.first"):
+            assert f"joint {at + 1} was added" in more.provenance[block].source
         assert more.provenance["compliance.first"].kind == "assumed"
         np.testing.assert_array_equal(with_joints(more, [i for i in range(5) if i != at]).limits, robot.limits)
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
+from robomill.errors import RobotError
 from tests.robot.written_otherwise import with_blocked, with_convention
 
 
@@ -135,3 +136,76 @@ def test_compliances_of_a_set_come_with_it_and_one_number_is_for_all_free_joints
     held = with_blocked(rm.load_robot("kuka_kr500"), 2, 0.0).replace(C_theta=5e-7)
     np.testing.assert_array_equal(held.C_theta, [5e-7] * 5)
     assert held.C_theta_all[1] == rm.load_robot("kuka_kr500").C_theta_all[1]
+
+
+def sliding_arm_with_its_first_joint_held() -> rm.Robot:
+    """Rows that turn, slide, turn and turn; the first stands still."""
+    robot = rm.Robot.from_dh(
+        a_mm=[100, 200, 300, 400],
+        prismatic=[False, True, False, False],
+        limits_deg=[(-11, 11), None, (-33, 33), (-44, 44)],
+        limits_mm=[None, (0, 22), None, None],
+        C_theta=[1e-7, 2e-7, 3e-7, 4e-7],
+    )
+    return with_blocked(robot, 1, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "limits"),
+    [
+        ({"limits_deg": [None, (-50, 60), None]}, [None, None, (-50, 60), None]),
+        ({"limits_mm": [(5, 70), None, None]}, [None, (5, 70), None, None]),
+        ({"limits_mm": [(5, 70), None, None], "limits_deg": [None, None, (1, 2)]}, [None, (5, 70), None, (1, 2)]),
+        ({"limits_deg": [(-5, 5), None, None, (-9, 8)]}, [(-5, 5), None, None, (-9, 8)]),
+        ({"limits_mm": [None, (5, 70), None, None]}, [None, (5, 70), None, None]),
+        ({"limits_deg": (-50, 60)}, [None, None, (-50, 60), (-50, 60)]),
+        ({"limits_deg": (-50, 60), "limits_mm": (5, 70)}, [None, (5, 70), (-50, 60), (-50, 60)]),
+    ],
+)
+def test_limits_by_a_unit_are_of_the_free_joints_or_of_all_rows(changes, limits):
+    """Written out by row: what is None stays, degrees go to what turns, millimetres to what slides."""
+    robot = sliding_arm_with_its_first_joint_held()
+    table, old = robot.replace(**changes).columns(), robot.columns()
+    for row, pair in enumerate(limits):
+        expected = pair or (old["lower"][row], old["upper"][row])
+        assert (table["lower"][row], table["upper"][row]) == pytest.approx(expected), row
+
+
+@pytest.mark.parametrize(
+    ("changes", "compliances"),
+    [
+        ({"k_theta_kNm_per_rad": [2000, 4000, 5000]}, [1e-7, 5e-7, 2.5e-7, 2e-7]),
+        ({"k_theta_Nm_per_rad": [1e6, 2e6, 4e6, 5e6]}, [1e-6, 5e-7, 2.5e-7, 2e-7]),
+        ({"C_theta_1e_7_rad_per_Nm": [6, 7, 8]}, [1e-7, 6e-7, 7e-7, 8e-7]),
+        ({"C_theta": [6e-7, 7e-7, 8e-7]}, [1e-7, 6e-7, 7e-7, 8e-7]),
+        ({"C_theta": [5e-7, 6e-7, 7e-7, 8e-7]}, [5e-7, 6e-7, 7e-7, 8e-7]),
+        ({"C_theta": 6e-7}, [1e-7, 6e-7, 6e-7, 6e-7]),
+        ({"k_theta_kNm_per_rad": 2000}, [1e-7, 5e-7, 5e-7, 5e-7]),
+        ({"C_theta_1e_7_rad_per_Nm": 6.0}, [1e-7, 6e-7, 6e-7, 6e-7]),
+    ],
+)
+def test_one_compliance_is_for_all_free_joints_and_a_held_one_keeps_its_own_by_whatever_name(changes, compliances):
+    robot = sliding_arm_with_its_first_joint_held()
+    np.testing.assert_allclose(robot.replace(**changes).C_theta_all, compliances)
+
+
+@pytest.mark.parametrize("held", [False, True])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"limits": None},
+        {"limits": [(-1, 1, 2)] * 3},
+        {"limits": [(-1, 1)] * 2},
+        {"limits": [("a", "b")] * 3},
+        {"limits_deg": [(-1, 1)] * 2},
+        {"C_theta": None},
+        {"C_theta": [[1e-7, 2e-7]] * 3},
+        {"C_theta": [1e-7, 2e-7]},
+        {"k_theta_kNm_per_rad": [1000, 2000]},
+        {"k_theta_kNm_per_rad": [1000, 2000, 3000, 4000, 5000]},
+    ],
+)
+def test_what_has_another_shape_is_refused_of_an_arm_with_a_held_axis_too(held, wrong):
+    robot = sliding_arm_with_its_first_joint_held()
+    with pytest.raises(RobotError, match="expected"):
+        (robot if held else with_blocked(robot, 1, None)).replace(**wrong)

@@ -120,3 +120,36 @@ def test_of_fewer_joints_less_is_asked() -> None:
     two = rm.Robot.from_dh(a_mm=[500, 400], k_theta_kNm_per_rad=[3000, 2000])
     assert tip_compliance(two) == pytest.approx(0.81 / 3e6 + 0.16 / 2e6)
     assert hardly_an_arm(two) == ""
+
+
+@pytest.mark.parametrize(
+    ("length", "k", "said"),
+    [
+        (3.0, 9.9e6, ""),  # 0.91 um/N: a long arm, and no joint too stiff
+        (3.0, 1.01e7, "as stiff"),  # a joint stiffer than any arm's softest, though the tip gives 0.89 um/N
+        (0.5, 2.9e6, ""),  # 8.6e-8 m/N of one joint
+        (0.5, 3.1e6, "as stiff"),  # 8.1e-8 m/N: less than any arm's tip
+        (1.0, 1.01e3, ""),  # 0.99 mm/N
+        (1.1, 1.01e3, "as soft"),  # 1.2 mm/N
+    ],
+)
+def test_each_bound_by_itself_of_an_arm_of_one_joint(length: float, k: float, said: str) -> None:
+    """The tip gives L^2 / k: at most 1 mm/N, at least 5e-7 / 6 m/N for its joint, which has at most 1e7 N m/rad."""
+    one = rm.Robot.from_dh(a=[length], C_theta=[1.0 / k])
+    assert tip_compliance(one) == pytest.approx(length**2 / k)
+    found = hardly_an_arm(one)
+    assert said in found
+    assert bool(found) == bool(said)
+
+
+def test_joints_that_slide_are_no_lever_and_count_for_no_turn() -> None:
+    """A slide of 2e-8 m/N before a joint at 0.5 m: 2e-8 + 0.25 / k at the tip, one joint that turns."""
+    for k, said in ((3.9e6, ""), (4.1e6, "as stiff")):
+        arm = rm.Robot.from_dh(
+            a=[0.7, 0.5], prismatic=[True, False], limits=[(0.0, 1.0), (-1.0, 1.0)], C_theta=[2e-8, 1 / k]
+        )
+        assert tip_compliance(arm) == pytest.approx(2e-8 + 0.25 / k)
+        assert said in hardly_an_arm(arm)
+        assert bool(hardly_an_arm(arm)) == bool(said)
+    rail = rm.Robot.from_dh(a=[0.7], prismatic=[True], limits=[(0.0, 1.0)], C_theta=[1e-10])
+    assert hardly_an_arm(rail) == ""

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.errors import RobotError
+from robomill.errors import ArgumentError, RobotError
 from robomill.provenance import GIVEN
-from robomill.robot.sources import BLOCKS, changed_blocks
+from robomill.robot.sources import BLOCKS, block_in_force, changed_blocks, is_of_robot
 
 PAPER = rm.load_robot("slavkovic_5r")
 TABLES = {"compliance.table_2", "compliance.table_3"}
@@ -88,3 +88,37 @@ def test_a_named_set_alone_puts_its_numbers_in_force() -> None:
     other = robot.replace(compliance_set="table_3")
     assert other.compliance_set == "table_3"
     assert other.C_theta.tolist() == robot.with_compliance_set("table_3").C_theta.tolist()
+
+
+def test_the_block_in_force_is_that_of_the_set_or_of_none() -> None:
+    assert block_in_force(PAPER) == f"compliance.{PAPER.compliance_set}" == "compliance.table_2"
+    assert block_in_force(PAPER.replace(compliance_set="table_3")) == "compliance.table_3"
+    assert block_in_force(PAPER.replace(C_theta=1e-6)) == "compliance"
+
+
+def test_a_robot_speaks_of_its_own_blocks_alone() -> None:
+    mine = {*BLOCKS, "compliance", "compliance.table_2", "compliance.of_somebody"}
+    others = {"", "force", "geometry.a", "compliances", "material", "limits_all", "tools"}
+    assert {block for block in mine | others if is_of_robot(block)} == mine
+    said = rm.Provenance("measured", "May")
+    for block in mine:
+        assert PAPER.replace(C_theta=1e-6, provenance={block: said}).provenance[block] == said
+    for block in others - {""}:
+        with pytest.raises(ArgumentError, match=block):
+            PAPER.replace(provenance={block: said})
+
+
+def test_numbers_of_no_set_are_changed_where_they_differ_or_were_a_set_s() -> None:
+    """Between a named set, the same numbers under no name, and others under no name."""
+    named, same, other = PAPER, PAPER.replace(C_theta=PAPER.C_theta), PAPER.replace(C_theta=2 * PAPER.C_theta)
+    assert same.compliance_set == other.compliance_set == "user"
+    for before, after, changed in (
+        (named, same, True),
+        (named, other, True),
+        (same, same.replace(title="again"), False),
+        (same, other, True),
+        (other, same, True),
+        (other, named, False),
+        (same, named, False),
+    ):
+        assert ("compliance" in changed_blocks(before, after)) == changed

@@ -7,6 +7,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import RobotError
+from robomill.robot.joints import with_joints, with_new_joint
 
 PUMA = {  # Craig, Introduction to Robotics, 3rd ed., fig. 3.21: the Unimation PUMA 560, modified table, in inches here
     "alpha_deg": [0, -90, 0, -90, 90, -90],
@@ -99,6 +100,21 @@ def test_joints_that_slide_have_limits_in_mm() -> None:
     np.testing.assert_allclose(rm.tool_pose(robot, [25.0, 0.0])[:3, 3], [0.5, 0, 25.0])
 
 
+def test_one_pair_in_degrees_is_for_what_turns_and_one_in_mm_for_what_slides() -> None:
+    robot = rm.Robot.from_dh(
+        a_mm=[0, 500], prismatic=[True, False], limits_deg=(-90, 90), limits_mm=(0, 300), C_theta=[1e-11, 1e-7]
+    )
+    np.testing.assert_allclose(robot.limits, [[0, 0.3], [-np.pi / 2, np.pi / 2]])
+    assert robot.C_theta[0] == 1e-11, "a rail may be stiffer than any gear"
+
+
+def test_one_joint_alone_may_turn_by_a_few_degrees() -> None:
+    """Of an arm all of whose joints are held within three degrees somebody meant radians; of one joint nobody did."""
+    assert rm.Robot.from_dh(a_mm=[500], limits_deg=(-3, 3)).limits[0, 1] == pytest.approx(np.pi / 60)
+    with pytest.raises(RobotError, match="limits_deg is in degrees"):
+        rm.Robot.from_dh(a_mm=[500, 400], limits_deg=(-3, 3))
+
+
 def test_what_nobody_gave_is_assumed_and_says_so() -> None:
     bare = rm.Robot.from_dh(a_mm=[500, 400])
     assert {block: said.kind for block, said in bare.provenance.items()} == {
@@ -121,7 +137,10 @@ def test_what_nobody_gave_is_assumed_and_says_so() -> None:
         ({"a": [0, 1200, 300]}, "found 1200 m, .*a in m, or a_mm"),
         ({"a_mm": [500, 400], "limits": (-170, 170)}, "joint 1: limit: found 170 rad, .*limits_deg"),
         ({"a_mm": [500, 0], "prismatic": [0, 1], "limits": [(-1, 1), (0, 500)]}, "joint 2: .* limits_mm"),
-        ({"a_mm": [500, 400], "C_theta": [2.5, 3.1]}, "joint 1: C_theta=2.5 makes a stiffness of 0.4 N m/rad"),
+        (
+            {"a_mm": [500, 400], "C_theta": [2.5, 3.1]},
+            "joint 1: C_theta=2.5 makes a stiffness of 0.4 N m/rad, expected 1000 to 1e.09",
+        ),
         ({"a_mm": [500, 400], "C_theta_1e_7_rad_per_Nm": [3.0, 3e-7]}, "joint 2: .* stiffness of 3.33e"),
         ({"a_mm": [500, 400], "k_theta_Nm_per_rad": [800, 500]}, "stiffness of 800 N m/rad"),
         ({"a_mm": [500, 400], "k_theta_kNm_per_rad": [2.1e6, 1e6]}, "stiffness of 2.1e"),
@@ -158,6 +177,13 @@ def test_a_changed_robot_is_asked_the_same() -> None:
             robot.replace(**wrong)
 
 
+@pytest.mark.parametrize("joint", [1, 3, 5])
+def test_a_compliance_as_papers_print_it_is_refused_by_its_joint(joint: int) -> None:
+    C_theta = np.where(np.arange(1, 6) == joint, 7.14, 7.14e-7)
+    with pytest.raises(RobotError, match=f"joint {joint}, compliance: found 7.14"):
+        rm.load_robot("slavkovic_5r").replace(C_theta=C_theta)
+
+
 def test_columns_and_limits_of_a_data_frame_are_numbers() -> None:
     """Of a table its rows count; its columns' names were taken for the limits of joint 1."""
     pd = pytest.importorskip("pandas")
@@ -173,6 +199,24 @@ def test_columns_and_limits_of_a_data_frame_are_numbers() -> None:
         ({"alpha_deg": [0, -3.14], "a_mm": [500, 400]}, "in radians that is 180.?°"),
         ({"alpha_deg": [0.5 * np.pi * 1.0029, 0], "a_mm": [500, 400]}, "is 90.?°"),
         ({"alpha_deg": [0.5 * np.pi * 1.0031, 0], "a_mm": [500, 400]}, None),
+        ({"alpha_deg": [np.pi * 1.0029, 0], "a_mm": [500, 400]}, "is 180.?°"),
+        ({"alpha_deg": [np.pi * 1.0031, 0], "a_mm": [500, 400]}, None),
+        ({"alpha_deg": [0.0, 0.0], "a_mm": [500, 400]}, None),
+        ({"alpha": [np.deg2rad(1.5708), 0], "a_mm": [500, 400]}, None),
+        ({"theta_offset_deg": [1.574, 0], "a_mm": [500, 400]}, None),
+        ({"a_mm": [500, 400], "limits_deg": 90}, "expected .lower, upper. for each of 2 joints"),
+        ({"a_mm": [500, 400], "limits_deg": ["ab", "cd"]}, "joint 1: limits: expected two numbers"),
+        ({"a_mm": [500, 400], "C_theta": [1e-3, 1e-9]}, None),
+        ({"a_mm": [500, 400], "C_theta": [1e-7, 1.001e-3]}, "joint 2: C_theta=.* 999 N m/rad"),
+        ({"a_mm": [500, 400], "C_theta": [0.999e-9, 1e-7]}, "joint 1: C_theta=.* 1e.09 N m/rad"),
+        ({"a_mm": [500, 400], "T_tool": np.eye(3)}, "tool frame: expected a 4 x 4"),
+        ({"a_mm": [500, 400], "T_tool": shift(0, 0, 150)}, "tool frame: found 150 m"),
+        ({"a_mm": [500, 400], "T_base": shift(0, 0, -1500)}, "base frame: found .*1500 m"),
+        ({"a_mm": [500, 400], "T_tool": shift(0, 0, 0.15), "T_base": shift(0, 1.5, 0)}, None),
+        ({"a_mm": [5, 4], "prismatic": [0, 1], "limits_deg": [None, None]}, "joint 2 slides and has no limits"),
+        ({"a_mm": [500, 400], "k_theta_kNm_per_rad": [1000, 0]}, "joint 2: k_theta_kNm_per_rad: found 0; a stiffness"),
+        ({"a_mm": [500, 400], "k_theta_kNm_per_rad": [-1000, 500]}, "joint 1: k_theta_kNm_per_rad: found -1000; a "),
+        ({"a_mm": [500, 400], "T_base": [[1, 0], [0, 1]]}, "base frame: expected a 4 x 4"),
         ({"alpha_deg": [4.7, 0], "a_mm": [500, 400]}, None),
         ({"alpha_deg": [0.78, 0], "a_mm": [500, 400]}, None),
         ({"a_mm": [20, 29.9]}, "a_mm: all links together are 49.9 mm long, expected at least 50"),
@@ -204,3 +248,20 @@ def test_where_numbers_become_another_unit_s_and_where_they_do_not_yet(given, wo
     else:
         with pytest.raises(RobotError, match=words):
             rm.Robot.from_dh(**given)
+
+
+@pytest.mark.parametrize("title", ["", "The arm by the window"])
+def test_a_refusal_names_the_arm_by_its_title_or_by_its_name_where_it_has_none(title: str) -> None:
+    robot = rm.Robot.from_dh(a_mm=[500, 400], name="arm_7", title=title)
+    full = with_new_joint(rm.load_robot("kuka_kr500").replace(name="arm_7", title=title), 0)
+    who = f"^Robot '{title or 'arm_7'}'"
+    for refused in (
+        lambda: rm.Robot.from_dh(a_mm=[500, "x"], name="arm_7", title=title),
+        lambda: rm.Robot.from_dh(a_mm=[500, 400], k_theta_kNm_per_rad=1e5, name="arm_7", title=title),
+        lambda: robot.replace(limits_deg="wide"),
+        lambda: robot.replace(sign=[1, 2]),
+        lambda: with_joints(robot, []),
+        lambda: with_new_joint(full, 0),
+    ):
+        with pytest.raises(RobotError, match=who):
+            refused()

@@ -24,6 +24,9 @@ def test_the_spindle_stands_along_that_axis_and_the_tip_stays(name: str, axis: s
     way = (1.0 if axis[0] == "+" else -1.0) * np.eye(3)["xyz".index(axis[1])]
     last = before[:3, :3] @ robot.T_tool[:3, :3].T  # the frame that the tool stands in
     np.testing.assert_allclose(last.T @ after[:3, 2], way, atol=1e-12)
+    if turned is not robot:
+        following = np.eye(3)[{"x": 1, "y": 2, "z": 0}[axis[1]]]
+        np.testing.assert_allclose(last.T @ after[:3, 0], following, atol=1e-12)
     np.testing.assert_allclose(after[:3, :3].T @ after[:3, :3], np.eye(3), atol=1e-12)
     assert np.linalg.det(after[:3, :3]) == pytest.approx(1.0)
     assert tool_axis(turned) == axis

@@ -30,6 +30,7 @@ Point = tuple[float, float, float]
 FLAT = Cutter("flat", 8 * MM, flutes=3)
 BALL = Cutter("ball", 8 * MM, flutes=3)
 BULL = Cutter("bull", 8 * MM, corner_radius=1.5 * MM, flutes=3)
+ROUND = Cutter("bull", 8 * MM, corner_radius=3 * MM, flutes=3)
 CHAMFER = Cutter("chamfer", 8 * MM, tip_angle=math.radians(90.0), flutes=3)
 LEFT = FLAT.replace(hand="left", helix="left")
 
@@ -197,6 +198,21 @@ def way_out(name: str, cutter: Cutter, ramp: Pass, *before: Pass, span: tuple[fl
     return CutCase(name, cutter, (*before, ramp), span=span, steady=False, steps=(1.0,))
 
 
+def ramp_in(cutter: Cutter, degrees: float, z: float) -> CutCase:
+    """Down from the top, or from the floor z of a slot, once the end is in for a tool's width: its nose lifts it by
+    more than half of what it is told to sink."""
+    down_to = z - 36 * math.tan(math.radians(degrees))
+    before = (along_x(0, z, 30),) if z < 0 else ()
+    return CutCase(
+        f"nose of {cutter.corner_radius / MM} mm ramps in by {degrees} degrees from {z} mm",
+        cutter,
+        (*before, Pass(((-18, 0, z), (18, 0, down_to)))),
+        span=(9.5, 34.0),
+        steady=False,
+        steps=(1.0,),
+    )
+
+
 BESIDE_A_STEM: tuple[tuple[Point, Point], ...] = (((-20, -20, -12), (20, -2, -2)), ((-20, 2, -12), (20, 20, -2)))
 CAVITY = (((-15.0, -12.0, -6.0), (15.0, 12.0, -1.0)),)
 TUNNEL = (((-3.0, -20.0, -2.0), (3.0, 20.0, -1.0)),)
@@ -234,6 +250,7 @@ CASES = (
     CutCase("ramp up", FLAT, (Pass(((-30, 0, -3), (10, 0, -3 + 40 * RAMP))),), span=(20.0, 26.0), steady=False),
     CutCase("ramp down, ball", BALL, (Pass(((-14, 0, 0), (6, 0, -20 * RAMP))),), span=(4.0, 18.0), steady=False),
     CutCase("ramp up, ball", BALL, (Pass(((-30, 0, -3), (10, 0, -3 + 40 * RAMP))),), span=(20.0, 26.0), steady=False),
+    *(ramp_in(cutter, degrees, z) for cutter, degrees, z in ((BULL, 0.51, 0), (ROUND, 0.55, 0), (BULL, 0.6, -1))),
     way_out("way out of a ramp of 0.6 degrees", FLAT, down(0.6)),
     way_out("way out of a ramp of 1 degree", FLAT, down(1)),
     way_out("way out of a ramp of 1 degree, bull", BULL, down(1)),

@@ -68,6 +68,66 @@ def test_a_little_off_is_used_and_said():
     assert any(note.code == "map-axis" and "1.0°" in note.message for note in run.notes)
 
 
+TWO_TOOLS = GCodeSource(
+    "G21 G90 S12000 M3\nT1 M6\nG0 X-40 Y-8 Z5\nG0 Z-2\nG1 X40 F1800\nG0 Z50\n"
+    "T2 M6\nG0 X-40 Y8\nG0 Z-2\nG1 X40 F1200\nG0 Z50\nM2\n"
+)
+
+
+@pytest.mark.parametrize(("longer", "judged"), [(4e-3, True), (35e-3, False), (-35e-3, False)])
+def test_a_map_does_not_hold_for_a_tool_of_another_length(longer, judged):
+    """Tool 2 is longer than the one the map was taken with: what the arm then gives is its joints' give, turned one by
+    one, at the tip that stands farther out. At 35 mm that is a tenth beside the map."""
+    cutter = SETUP.cutter
+    tools = rm.ToolTable((rm.TableTool(1, cutter, 60e-3), rm.TableTool(2, cutter, 60e-3 + longer)))
+    run = rm.simulate(SETUP.replace(source=TWO_TOOLS, tools=tools, measured_map=model_map()))
+    second = run.path.cutting & (run.path.tool == 2)
+    i = int(np.flatnonzero(second)[np.argmin(np.abs(run.path.p[second, 0]))])
+    out = np.eye(4)
+    out[2, 3] = -longer
+    arm = SETUP.robot.replace(T_tool=SETUP.robot.T_tool @ out)
+    truth = by_turning_springs(arm, run.theta[i]) @ run.F[i]
+    by_map = model_map().compliance(SETUP.in_base(run.path.p[i])) @ run.F[i]
+    apart = np.linalg.norm(truth - by_map) / np.linalg.norm(truth)
+    assert apart < 0.015 if judged else apart > 0.08
+    assert run.not_judged[second].all() != judged
+    assert not run.not_judged[run.path.cutting & (run.path.tool == 1)].any()
+    if judged:
+        assert run.delta[i] == pytest.approx(by_map, abs=1e-12)
+        assert "map-tool" in [note.code for note in run.notes]
+    else:
+        assert [reason.code for reason in run.unjudged] == ["map-tool"]
+        assert run.verdict.level == "unjudged"
+
+
+@pytest.mark.parametrize(("height", "said"), [(5e-3, False), (40e-3, True)])
+def test_a_map_of_one_plane_says_how_far_beside_it_the_cut_lies(height, said):
+    whole = model_map()
+    flat = whole.p[:, 2] < 0.0
+    field = MeasuredField(whole.p[flat], whole.C[flat], whole.AB[flat])
+    place = SETUP.T_MW.copy()
+    place[2, 3] = field.p[0, 2] + 2e-3 + height  # the slot is 2 mm deep
+    run = rm.simulate(SETUP.replace(T_MW=place, measured_map=field))
+    notes = [note.message for note in run.notes if note.code == "map-plane"]
+    assert bool(notes) == said
+    assert not said or "40 mm" in notes[0]
+
+
+def test_with_a_map_the_sag_is_still_that_of_the_joints_and_said_to_be():
+    """A map twice as soft as the joints doubles what the force does and leaves the sag as it is."""
+    links = rm.LinkMasses(np.full(5, 50.0), np.zeros((5, 3)))
+    field = model_map()
+    soft = MeasuredField(field.p, 2.0 * field.C, field.AB)
+    setups = [SETUP.replace(measured_map=each, links=links, add_sag=True) for each in (field, soft)]
+    stiff, other = (rm.simulate(setup) for setup in setups)
+    cut = stiff.path.cutting
+    sag = 2.0 * stiff.delta[cut] - other.delta[cut]
+    np.testing.assert_allclose(sag, stiff.sag[cut].sum(axis=1), atol=1e-12)
+    assert np.abs(sag).max() > 1e-4
+    for setup, said in ((setups[0], True), (setups[0].replace(add_sag=False), False)):
+        assert ("sag-by-joints" in [note.code for note in map_notes(setup, stiff.path)]) == said
+
+
 def by_turning_springs(robot, theta):
     """(3, 3) m/N: each joint twisted in turn, by forward kinematics alone."""
     J = np.stack([(tip(robot, theta + 1e-6 * e) - tip(robot, theta - 1e-6 * e)) / 2e-6 for e in np.eye(robot.n)], -1)

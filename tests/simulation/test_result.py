@@ -347,5 +347,7 @@ def test_a_plunge_is_as_deep_however_the_tool_is_drawn_out_of_it(out: str) -> No
     found = rm.simulate(PROCESS.replace(source=GCodeSource(text)))
     bottom = int(np.flatnonzero(found.path.p[:, 2] == found.path.p[:, 2].min())[0])
     assert found.verdict.floor.value == pytest.approx((found.C[bottom] @ found.F[bottom])[2], rel=1e-6)
+    closer = rm.simulate(PROCESS.replace(source=GCodeSource(text), step=1e-4))
+    assert closer.verdict.floor.value == pytest.approx(found.verdict.floor.value, rel=1e-6)
     waited = rm.simulate(PROCESS.replace(source=GCodeSource(text.replace("G1 Z10", "G4 P1\nG1 Z10"))))
     assert waited.verdict.floor.value == (0.0 if out.startswith("G1") else found.verdict.floor.value)

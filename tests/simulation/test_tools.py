@@ -96,6 +96,30 @@ def test_a_longer_tool_bends_more_and_the_arm_holds_it_farther_back():
     assert "tool-frame" in {note.code for note in run.notes}
 
 
+def test_the_weight_at_the_last_joint_stays_where_it_is_with_a_longer_tool():
+    """On a tilted part, by potential energy: the torque about a joint is what the height of all masses falls by as it
+    turns, and the tip that it lowers is that of the tool in hand. The masses stand in the frames of the first tool."""
+    mass, centre = np.array([300.0, 150.0, 80.0, 40.0, 60.0]), np.zeros((5, 3))
+    centre[1, 0], centre[4, 2] = -0.6, 0.15
+    T_MW = SETUP.T_MW @ rm.pose_from_world([0.0, 0.0, 0.0, 0.5, 0.2])
+    setup = SETUP.replace(source=PROGRAM, tools=TABLE, T_MW=T_MW, links=rm.LinkMasses(mass, centre))
+    run = simulate(setup)
+    robot, step = setup.robot, 1e-5 * np.eye(5)
+
+    def energy(theta):
+        after = rm.joint_frames(robot, theta)[1:]
+        return 9.80665 * sum(m * (T @ np.append(c, 1.0))[2] for m, c, T in zip(mass, centre, after, strict=True))
+
+    for number, longer in ((1, 0.0), (2, 35e-3)):
+        theta = run.theta[np.flatnonzero(run.path.cutting & (run.path.tool == number))[3]]
+        tip = [[0.0, 0.0, -longer, 1.0] @ rm.tool_pose(robot, theta + k * e).T for e in step for k in (1, -1)]
+        J = (np.array(tip[::2]) - np.array(tip[1::2]))[:, :3] / 2e-5
+        tau = np.array([energy(theta - e) - energy(theta + e) for e in step]) / 2e-5
+        truth = J * (robot.C_theta * tau)[:, None]
+        sag = run.sag[np.flatnonzero((run.theta == theta).all(axis=1))[0]]
+        np.testing.assert_allclose(sag, truth, atol=1e-6 * np.abs(truth).max())
+
+
 CROSS = GCodeSource(
     "G21 G90 S12000 M3\nT1 M6\nG0 X-60 Y0 Z5\nG0 Z-2\nG1 X70 F1800\nG0 Z50\n"
     "T2 M6\nG0 X5 Y-40\nG0 Z-1\nG1 Y40 F1200\nG0 Z50\nM2\n"
@@ -161,6 +185,16 @@ def test_springs_are_those_of_the_first_tool_as_they_are_stated():
     assert first.springs == (slim,)
     assert second.springs == (ToolBending(LARGE.diameter, 30e-3 + 35e-3),)
     assert first.robot is setup.robot
+
+
+@pytest.mark.parametrize("length", [60e-3, 95e-3, 40e-3])
+def test_what_is_stated_at_the_tip_is_not_known_at_the_tip_of_another_length(length):
+    """A spindle's bearings turn the tool a little: how far its tip goes depends on how far out it is."""
+    tools = ToolTable((TableTool(1, SMALL, 60e-3), TableTool(2, LARGE, length)))
+    for spring, at_tip in ((rm.SpindleSpring(5e-8, 2e-8), True), (ToolBending(SMALL.diameter, 30e-3), False)):
+        setup = SETUP.replace(source=PROGRAM, tools=tools, springs=(spring,))
+        codes = {note.code for note in tool_notes(setup, setup.toolpath)}
+        assert ("spring-at-tip" in codes) == (at_tip and length != 60e-3)
 
 
 def test_no_tool_cuts_higher_than_it_sticks_out():

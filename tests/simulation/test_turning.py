@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import robomill as rm
+from robomill.cutting.forces.mechanistic import MechanisticForce
+from robomill.io.materials import load_material
 from robomill.io.samples import samples_dir
 from robomill.simulation.turning import AXIS_TURNS, turn_rate
 from robomill.surface.stock import Stock
@@ -70,9 +72,11 @@ def program(way: float, tilt: float, force=None):
     return rm.simulate(changed.replace(force=force or material))
 
 
-@pytest.mark.parametrize(("way", "tilt", "known"), [(40.0, 4.0, True), (40.0, 6.0, False), (10.0, -6.0, False)])
+@pytest.mark.parametrize(
+    ("way", "tilt", "known"), [(40.0, 4.0, True), (40.0, 19.0, True), (40.0, 22.0, False), (10.0, -6.0, False)]
+)
 def test_a_turn_that_is_not_known_is_counted_and_never_green(way, tilt, known):
-    """8 mm across: 0.125 degrees on every mm of way are the most that is judged."""
+    """8 mm across: 0.51 degrees on every mm of way are the most that is judged."""
     result = program(way, tilt)
     turned = (result.path.block == 5) & (np.append(0.0, np.abs(np.diff(result.path.k[:, 0]))) > 0.0)
     assert turn_rate(result.path)[turned] == pytest.approx(np.radians(abs(tilt)) / (way * 1e-3), rel=1e-6)
@@ -83,6 +87,32 @@ def test_a_turn_that_is_not_known_is_counted_and_never_green(way, tilt, known):
         assert lost[turned].all()
         assert set(result.path.block[lost]) == {5}
         assert np.isnan(result.delta[lost]).all()
+
+
+@pytest.mark.parametrize("cutter", [FLAT, BULL, BALL], ids=lambda cutter: cutter.kind)
+@pytest.mark.parametrize("letter", ["A", "B"])
+@pytest.mark.parametrize("rate", [0.5, -0.5])
+def test_the_force_of_a_turning_axis_is_that_of_teeth_that_move_as_they_do(cutter, letter, rate):
+    """Whole runs, half a degree on every mm of way, through a slot and beside a shoulder; straight flutes."""
+    straight, about = cutter.replace(helix_angle=0.0), np.array([0.0, 1.0, 0.0] if letter == "B" else [1.0, 0.0, 0.0])
+    text = f"G21 G90 S12000 M3\nG0 X-50 Y0 Z15\nG0 Z-1.5\nG1 X-10 F1800\nG1 X10 {letter}{20 * rate}\nM2\n"
+    paper = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    for side in ((-20e-3, 20e-3), (2.2e-3, 20e-3), (-20e-3, -2.2e-3)):
+        setup = paper.replace(
+            source=GCodeSource(text),
+            stock=Stock([-40e-3, side[0], -10e-3], [40e-3, side[1], 0.0]),
+            cell=2e-4,
+            cutter=straight,
+            engagement=True,
+            force=MechanisticForce(straight, load_material("al7075_t6_carbide_ref190")),
+        )
+        result = rm.simulate(setup)
+        assert not result.unjudged
+        turned = np.flatnonzero(result.path.block == 5)
+        for i in turned[[4, -3]]:
+            truth, _ = forces(straight, np.radians(rate) * 1e3 * about, result.path.k[i], side, 20_000)
+            off = np.linalg.norm(setup.to_part(result.F[i]) - truth)
+            assert off < max(0.05 * np.linalg.norm(truth), 0.3)  # N, where a ball but grazes the shoulder
 
 
 def test_a_stated_force_does_not_ask_how_the_teeth_move():

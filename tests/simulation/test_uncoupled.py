@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import root
 
 import robomill as rm
+from robomill.io.samples import samples_dir
 from tests.cutting.brute_force import Cut, Floats, Move, box
 from tests.cutting.test_brute_force import AL7075, UPRIGHT
 
@@ -81,3 +82,22 @@ def test_a_coupled_run_and_a_stated_force_are_told_nothing() -> None:
     ball = rm.Cutter("ball", diameter_mm=8, flutes=3)
     assert not told_of(run_of(ball, 2, coupling=True))
     assert not told_of(run_of(ball, 2, force=rm.PathForce(feed_normal=100.0)))
+
+
+@pytest.mark.parametrize(("depth", "tolerance_mm", "told"), [(2, 0.05, True), (5, 0.05, True), (2, 0.3, False)])
+def test_a_corrected_program_is_told_what_the_depth_that_it_is_sent_to_leaves_out(
+    depth: int, tolerance_mm: float, told: bool
+) -> None:
+    """It is sent 0.1 mm higher than it cuts, and pushed by as much less; a coupled run meets the full depth."""
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(
+        source=rm.GCodeSource(f"G21 G90\nS12000 M3\nG0 X-40 Y0 Z10\nG0 Z-{depth}\nG1 X0 F600\nG0 Z20\nM2\n"),
+        tolerance=tolerance_mm * 1e-3,
+    )
+    corrected = setup.replace(source=rm.compensate(setup).source)
+    run, truth = rm.simulate(corrected), rm.simulate(corrected.replace(coupling=True)).verdict.share
+    assert (truth > run.verdict.share + 0.1) == told
+    notes = told_of(run)
+    assert bool(notes) == told
+    for note in notes:
+        share = float(note.message.split("about ")[1].split(" %")[0]) / 100.0
+        assert share == pytest.approx(truth, rel=0.1)

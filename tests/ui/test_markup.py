@@ -128,5 +128,8 @@ def test_a_number_and_its_unit_stand_on_one_line() -> None:
     )
     assert unparted("3 sides, 5 m long, 2 in a row, 4 inputs") == "3 sides, 5\u00a0m long, 2\u00a0in a row, 4 inputs"
     assert unparted("± 53 rad/(N m) of joint 4") == "±\u00a053 rad/(N\u00a0m) of joint\u00a04"
+    assert unparted("(0.00, −0.68, 0.73) mm in {M}") == "(0.00,\u00a0−0.68,\u00a00.73)\u00a0mm in {M}"
+    assert unparted("X 0.000 · Y +0.230, Z −0.102") == "X\u00a00.000 · Y\u00a0+0.230, Z\u00a0−0.102"
+    assert unparted("lines (1, 2, 3, 4, 5), X and Y") == "lines (1, 2, 3, 4, 5), X and Y"
     assert isinstance(unparted(Html("5 mm")), Html)
     assert not isinstance(unparted("5 mm"), Html)

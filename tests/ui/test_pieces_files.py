@@ -5,15 +5,13 @@ from __future__ import annotations
 import io
 
 import numpy as np
-import pandas as pd
 import pytest
 import streamlit as st
 import trimesh
 
+from robomill.csv_text import csv_text, settled
 from robomill.io.meshes import FEW_TRIANGLES, mesh_bytes
 from robomill.report.records import jsonable, shown
-from robomill.report.settled import settled
-from robomill.report.tables import csv_text
 from robomill.simulation.run import simulate
 from robomill.ui import pieces, session
 from robomill.ui.project import preset_setup
@@ -58,5 +56,4 @@ def test_files_hold_numbers_of_twelve_digits() -> None:
     assert jsonable(np.array([1.0, -1.7e-22])) == [1.0, 0.0]
     assert jsonable(shown([1.0, -1.7e-22], "mm")) == [1000.0, 0.0]
     assert "e-2" not in csv_text({"x": np.array([1.0, -1.7e-22])})
-    text = pieces._csv(pd.DataFrame({"x": [20.3 * 3, -1.7e-22], "word": ["a", "b"]}))
-    assert text == "x,word\n60.9,a\n0,b\n"
+    assert csv_text({"x": np.array([20.3 * 3, -1.7e-22])}, pieces.DIGITS) == "x\n60.9\n0\n"

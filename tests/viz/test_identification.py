@@ -104,6 +104,32 @@ def test_correlations_carry_their_numbers() -> None:
     assert (fig.figure.data[0].zmin, fig.figure.data[0].zmax) == (-1, 1)
 
 
+@pytest.mark.parametrize("dark", [False, True])
+def test_every_correlation_can_be_read_on_its_colour(dark: bool) -> None:
+    """By the contrast of WCAG 2, with the colour of a cell found on the scale by hand: at least 4.5 : 1."""
+
+    def luminance(rgb: np.ndarray) -> float:
+        part = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in rgb / 255.0]
+        return float(0.2126 * part[0] + 0.7152 * part[1] + 0.0722 * part[2])
+
+    def hexadecimal(colour: str) -> np.ndarray:
+        return np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)], dtype=float)
+
+    values = np.linspace(-0.99, 0.99, 8)
+    table = np.eye(8)
+    table[0, 1:] = table[1:, 0] = values[1:]
+    fig = correlation_figure([f"J{k}" for k in range(8)], table, dark=dark).figure
+    cells, words = fig.data
+    for x, y, colour in zip(words.x, words.y, words.textfont.color, strict=True):
+        share = 0.5 + 0.5 * table[int(y[1:]), int(x[1:])]
+        scale = [(float(at), hexadecimal(shown)) for at, shown in cells.colorscale]
+        after = next(k for k, (at, _) in enumerate(scale) if at >= share)
+        (a, low), (b, high) = scale[max(after - 1, 0)], scale[after]
+        ground = low if b == a else low + (high - low) * (share - a) / (b - a)
+        light, shade = sorted((luminance(ground), luminance(hexadecimal(colour))), reverse=True)
+        assert (light + 0.05) / (shade + 0.05) >= 4.5
+
+
 def test_every_outlier_is_drawn_however_many_tests_there_are() -> None:
     m = 100_000
     row = np.arange(m) + 2

@@ -116,7 +116,7 @@ def test_every_point_of_the_ellipsoid_is_where_a_unit_force_leads() -> None:
 
 
 def test_no_ellipsoid_for_an_arm_that_does_not_give() -> None:
-    assert ellipsoid_traces(np.zeros((3, 3)), np.zeros(3), 1.0, dark=False, width=0.01) == []
+    assert ellipsoid_traces(np.zeros((3, 3)), np.zeros(3), 1.0, dark=False, width=0.01) == ([], [])
 
 
 def test_share_bars_end_at_the_sum_and_show_the_ghost() -> None:

@@ -23,6 +23,18 @@ def test_the_whole_tolerance_is_not_drawn_where_it_lies_far_beyond() -> None:
     assert [trace["x"][0] for trace in fig.traces if trace["type"] == "scatter"] == [7.0, 9.5]
 
 
+@pytest.mark.parametrize("now", [50.0, 99.0])
+def test_the_names_of_lines_stand_within_the_picture(now: float) -> None:
+    """A name beside a line in the right third stands to its left: there is no room on the other side."""
+    fig = distribution(np.linspace(40.0, 108.0, 1000), now, 104.0, dark=False).figure
+    sides = {note.text: note.xanchor for note in fig.layout.annotations}
+    assert sides == {
+        "<b>predicted</b>": "left" if now < 80.0 else "right",
+        "<b>95 %</b>": "right",
+        "<b>tolerance</b>": "right",
+    }
+
+
 def test_a_tornados_bars_reach_from_the_smaller_end_to_the_larger() -> None:
     low, high = np.array([90.0, 70.0]), np.array([60.0, 85.0])
     bars = tornado_bars(["one", "two"], low, high, 76.0, dark=False).traces[0]

@@ -207,3 +207,19 @@ def test_a_field_goes_through_pickle_and_into_xarray_with_its_places_and_unit():
 def test_a_tilt_that_is_no_angle_is_refused(tilt):
     with pytest.raises(WorkspaceError, match="must be finite angles"):
         compliance_map(rm.load_robot("slavkovic_5r"), box_grid([0.0, -1.3, 0.0], [0.1, -1.2, 0.0], 0.1), *tilt)
+
+
+def test_a_map_in_words_says_between_which_numbers_its_quantities_lie():
+    """The first numbers of each fact are the least and the largest of what is reached; of nothing there are none."""
+    robot = rm.load_robot("slavkovic_5r")
+    found = compliance_map(robot, plane_grid("z", 0.0, [-1, -3, 0], [1, -1, 0], 0.25))
+    facts = dict(found._facts())
+    for c in ("xx", "yy", "zz"):
+        field = found.field(f"C_{c}")
+        low, high = (np.nanmin(field.values) * 1e6, np.nanmax(field.values) * 1e6)
+        for said in (facts[field.quantity.title], field._said().partition(": ")[2]):
+            least, _, largest = said.split()[:3]
+            assert (float(least), float(largest)) == pytest.approx((low, high), rel=2e-3)
+    nowhere = compliance_map(robot, plane_grid("z", 9.0, *PAPER_BOX, 0.3))
+    for said in dict(nowhere._facts()).values():
+        assert not any(each in said.partition(" over ")[0] for each in "0123456789")

@@ -41,6 +41,18 @@ def test_points_stand_in_the_order_of_their_axes():
         Grid(np.zeros((2, 2)), 0.0, 0.0)
 
 
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_grid_goes_as_far_as_it_says_and_no_further(axis: str, side: float) -> None:
+    """200 m of {M} either way, in m and in mm; behind them somebody meant another unit."""
+    axes = {"x": 0.0, "y": 0.0, "z": 0.0}
+    for unit, far in (("", 200.0), ("_mm", 200e3)):
+        named = {name + unit: value for name, value in axes.items()}
+        assert getattr(Grid(**{**named, axis + unit: side * far}), axis)[0] == side * 200.0
+        with pytest.raises(WorkspaceError, match=f"axis {axis}"):
+            Grid(**{**named, axis + unit: side * far * 1.001})
+
+
 @pytest.mark.parametrize(("normal", "fixed"), [("x", 0), ("y", 1), ("z", 2)])
 def test_a_plane_has_one_axis_of_one(normal, fixed):
     grid = plane_grid(normal, 0.7, [0, 0, 0], [1, 2, 3], 0.5)
@@ -68,9 +80,25 @@ def test_a_step_in_mm_is_not_one_cell():
     with pytest.raises(WorkspaceError, match=r"a step of 50 m is far longer than the box \(1.2 m\).*50 mm are 0.05"):
         plane_grid("z", 0, [-0.6, -1.6, 0], [0.6, -1.0, 0], 50)
     assert plane_grid("z", 0, [-0.6, -1.6, 0], [0.6, -1.0, 0], 2.0).cells == 1
+    box = ([-0.6, -1.6, 0], [-0.6, -0.9, 0.2])  # ten times its longest side
+    assert box_grid(*box, 6.99).cells == 1
+    with pytest.raises(WorkspaceError, match="far longer than the box"):
+        box_grid(*box, 7.01)
     assert box_grid([0.1, 0.2, 0.3], [0.1, 0.2, 0.3], 1.0).cells == 1
 
 
 def test_the_corners_of_a_plane_have_three_numbers():
     with pytest.raises(WorkspaceError, match="Plane, lower corner"):
         plane_grid("z", 0, [-0.6, -1.6], [0.6, -1.0], 0.05)
+
+
+def test_a_grid_in_words_has_its_points_and_its_ends_along_each_axis():
+    """In millimetres; one number where an axis has one point."""
+    said = Grid([-0.1, 0.05, 0.3], [1.0, 1.25], 0.02)._said()
+    counts, ends = said.split(" cells at X, Y, Z = ")
+    assert [int(n) for n in counts.split(" × ")] == [3, 2, 1]
+    spans = [
+        [float(n) for n in each.replace("\u2212", "-").replace("\u202f", "").removesuffix(" mm").split(" to ")]
+        for each in ends.split("; ")
+    ]
+    assert spans == [[-100.0, 300.0], [1000.0, 1250.0], [20.0]]

@@ -63,3 +63,23 @@ def test_both_ends_are_edges_however_coarsely_one_looks(monkeypatch, radii: int,
     assert reached(np.linspace(low, high, 40)).all()
     assert not reached([low - 1e-5, high + 1e-5]).any()
     assert np.isfinite(way.theta).all()
+
+
+def test_a_ray_through_a_point_over_the_base_goes_to_the_table() -> None:
+    """Which stands in front of the arm, towards -Y of {M}."""
+    robot = rm.load_robot("slavkovic_5r")
+    robot = robot.replace(limits=np.tile([-np.pi, np.pi], (5, 1)))
+    way = ray_through(robot, [0.0, 0.0, 1.5])
+    assert (way.start, way.radius[0]) == (0, 0.0)
+    np.testing.assert_allclose(way.p, np.column_stack([0 * way.radius, -way.radius, 0 * way.radius + 1.5]), atol=1e-15)
+    np.testing.assert_allclose(rm.tool_pose(robot, way.theta)[:, :3, 3], way.p, atol=1e-9)
+    assert way.radius[-1] > 0.5
+
+
+@pytest.mark.parametrize(("name", "point", "places"), [("slavkovic_5r", 1.3, 121), ("planar_3r", 0.5, 41)])
+def test_an_arm_that_is_solved_numerically_is_looked_at_in_fewer_places(name: str, point: float, places: int) -> None:
+    """Evenly from two hundredths on to all links in a row and the point's own distance."""
+    robot = rm.load_robot(name)
+    way = ray_through(robot, [0.0, -point, 0.0])
+    longest = np.abs(robot.a).sum() + np.abs(robot.d).sum() + point
+    assert np.diff(way.radius).max() == pytest.approx(0.98 * longest / (places - 1), rel=1e-9)

@@ -40,6 +40,7 @@ class SpindleSpring(Spring):
     kind: ClassVar[str] = "spindle"
     title: ClassVar[str] = "Spindle and holder"
     follows_tooth: ClassVar[bool] = True
+    at_tip: ClassVar[bool] = True
     rank: ClassVar[int] = 2
 
     lateral: float = quantity("Across", "um/N", least=0.0, digits=4, slip=UNIT_SLIP, tiny=STIFFEST)

@@ -15,7 +15,8 @@ from robomill.cutting.force import ForceModel, Frame
 from robomill.errors import CuttingError
 from robomill.provenance import Finding, Kind, Provenance
 from robomill.quantities import quantity
-from robomill.units import format_si
+from robomill.units import format_count, format_si
+from robomill.values import Said, Value
 
 Axis = Literal["time", "path"]
 RecordFrame = Literal["path", "M", "W"]
@@ -32,9 +33,9 @@ LEFT_OVER = 0.2  # of a record over time: that much behind the last cut is suspe
 
 
 @asking
-@dataclass(frozen=True, eq=False)
-class ForceRecord:
-    """Force ON the tool against time (s) or path length (m) from the start of the path.
+@dataclass(frozen=True, eq=False, repr=False)
+class ForceRecord(Said, Value):
+    """Force ON the tool against time (s), or length (m) of path at feed from its start, rapids left out.
 
     x (k,) strictly increasing, F (k, 3) N in ``frame``: feed, feed-normal, axial ("path"); x, y, z of the robot ("M"),
     or of the part, where the sensor turns with it ("W"). Time counts from the first cut on, rapids and dwells included.
@@ -55,6 +56,10 @@ class ForceRecord:
     source: str = "measured force"
     notes: tuple[str, ...] = ()
     kind: Kind = field(default="measured", compare=False)
+
+    def _said(self) -> str:
+        length = format_si(float(self.x[-1] - self.x[0]), AXIS_UNITS[self.axis])
+        return f"{self.source}: {format_count(len(self.x), 'sample')} over {length}"
 
     def __post_init__(self) -> None:
         for name, known in (("axis", get_args(Axis)), ("frame", get_args(RecordFrame))):

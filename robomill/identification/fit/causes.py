@@ -214,7 +214,8 @@ class Inquiry:
             pure, free = pure + float(np.sum((A @ z - b) ** 2)), free + int(here.sum()) - int(rank)
         linear = left[self.system.linear]
         spare -= int((~self.system.linear).sum())
-        if free < FEWEST or spare <= free or pure <= 0.0 or self.tests.wrench[:, 3:].any():
+        rounded = float(linear @ linear) <= EXACT**2 * float(np.sum((self.system.b / self.system.noise) ** 2))
+        if rounded or free < FEWEST or spare <= free or pure <= 0.0 or self.tests.wrench[:, 3:].any():
             return float("nan")
         return float(fdtrc(spare - free, free, (linear @ linear - pure) / (spare - free) / (pure / free)))
 

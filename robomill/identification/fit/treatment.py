@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict
 
 import numpy as np
 
@@ -13,6 +13,17 @@ from robomill.identification.pull.points import FREED, Point
 BENDING_JOINTS = (2, 3)
 AUTO: Literal["auto"] = "auto"
 WEIGHTS = {"equal": "every reading alike", "size": "every test by its relative error"}
+
+
+class Choices(TypedDict, total=False):
+    """The fields of a Treatment as they may be given by name, for type checkers and completion."""
+
+    bending: Literal["auto"] | Iterable[int]
+    fit_points: Literal["none", "force", "gauge", "both"]
+    robust: bool
+    exclude: Iterable[int]
+    weights: Literal["equal", "size"]
+    leave_out: Literal["pose", "neighbours"]
 
 
 @dataclass(frozen=True)
@@ -41,8 +52,10 @@ class Treatment:
         if not isinstance(self.robust, bool):
             raise LoadTestError(f"robust: found {self.robust!r:.40}, expected True or False.")
         if self.bending != AUTO:
-            object.__setattr__(self, "bending", _joints(self.bending))
-        object.__setattr__(self, "exclude", _rows(self.exclude))
+            joints = _wholes("bending", self.bending, "joint numbers, e.g. [2, 3], or auto")
+            object.__setattr__(self, "bending", tuple(dict.fromkeys(joints)))
+        rows = _wholes("exclude", self.exclude, "numbers of rows, e.g. [2, 3]")
+        object.__setattr__(self, "exclude", tuple(sorted({*rows})))
 
     @property
     def freed(self) -> tuple[Point, ...]:
@@ -50,18 +63,12 @@ class Treatment:
         return FREED[self.fit_points]
 
 
-def _joints(given: Iterable[int] | str) -> tuple[int, ...]:
-    if isinstance(given, str):
-        raise LoadTestError(f"bending: found {given!r}, expected joint numbers or auto.")
-    return tuple(dict.fromkeys(int(joint) for joint in given))
-
-
-def _rows(exclude: Any) -> tuple[int, ...]:
-    """Rows that are left out, in order."""
-    found = list(exclude) if isinstance(exclude, Iterable) and not isinstance(exclude, str | bytes) else None
-    if found is None or not all(isinstance(row, int | np.integer) and not isinstance(row, bool) for row in found):
-        raise LoadTestError(f"exclude: found {exclude!r:.60}, expected numbers of rows, e.g. [2, 3].")
-    return tuple(sorted({int(row) for row in found}))
+def _wholes(name: str, given: Any, expected: str) -> tuple[int, ...]:
+    """Whole numbers, in their order."""
+    found = list(given) if isinstance(given, Iterable) and not isinstance(given, str | bytes) else None
+    if found is None or not all(isinstance(each, int | np.integer) and not isinstance(each, bool) for each in found):
+        raise LoadTestError(f"{name}: found {given!r:.60}, expected {expected}.")
+    return tuple(map(int, found))
 
 
 STANDARD = Treatment()

@@ -74,7 +74,7 @@ def pull_findings(found: LinesOfPull, robot: Robot, tests: LoadTests) -> list[Fi
     if found.suspects:
         text = f"Row {_listed(found.suspects)}: the line of the force cannot be, it passes by the pulley of the others."
         first = found.suspects[0]
-        said.append(Finding("suspicious", text, first, count=len(found.suspects), code="pull-suspect"))
+        said.append(Finding("suspicious", text, first, count=len(found.suspects), code="pull-suspect", place=""))
     return said
 
 

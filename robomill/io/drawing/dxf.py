@@ -162,6 +162,7 @@ class _DxfReading(Reading):
     def __init__(self, name: str, doc: Any, scale: float) -> None:
         super().__init__(name)
         self.doc, self.scale, self.looked_at = doc, scale, 0
+        self.held: dict[str, int] = {}  # entities of each block, blocks opened
 
     def read(self) -> Read:
         for entity, layer in self._walk(self.doc.modelspace(), "", 0):
@@ -175,8 +176,7 @@ class _DxfReading(Reading):
         """Every entity with its layer; what a block has on layer 0 is on the layer of its insert."""
         for entity in entities:
             self.looked_at += 1
-            if self.looked_at > MOST_ENTITIES:
-                raise self.refuse(f"it holds more than {format_count(MOST_ENTITIES)} entities, blocks opened")
+            self._check_count(self.looked_at)
             self.look()
             own = (
                 str(entity.dxf.layer) if entity.dxf.is_supported("layer") else "0"
@@ -202,10 +202,27 @@ class _DxfReading(Reading):
         if depth > DEEPEST_BLOCK:
             raise self.refuse(f"blocks are nested deeper than {DEEPEST_BLOCK}, or hold themselves")
 
+        self._check_count(self.looked_at + self._held(block, depth))
+
         def skipped(entity: Any, why: str) -> None:
             self.found.left_out[entity.dxftype()] += 1
 
         yield from self._walk(insert.virtual_entities(skipped_entity_callback=skipped), layer, depth)
+
+    def _held(self, block: Any, depth: int) -> int:
+        """Entities of a block, with those of the blocks in it each time that one is inserted; known before any of them
+        is made. What is nested too deep, or in itself, is refused where it is opened."""
+        if block.name not in self.held:
+            self.held[block.name] = 0
+            for entity in block:
+                inside = entity.block() if entity.dxftype() == "INSERT" and depth < DEEPEST_BLOCK else None
+                more = 0 if inside is None else max(entity.mcount, 1) * self._held(inside, depth + 1)
+                self.held[block.name] += 1 + more
+        return self.held[block.name]
+
+    def _check_count(self, count: int) -> None:
+        if count > MOST_ENTITIES:
+            raise self.refuse(f"it holds more than {format_count(MOST_ENTITIES)} entities, blocks opened")
 
     def _take(self, entity: Any, layer: str) -> None:
         kind = entity.dxftype()

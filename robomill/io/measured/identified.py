@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
 from robomill.arguments import asked, refuse_unknown
 from robomill.errors import LoadTestError
 from robomill.frames import is_frame
 from robomill.identification.fit import estimate
-from robomill.identification.fit.treatment import STANDARD, Treatment
+from robomill.identification.fit.treatment import STANDARD, Choices, Treatment
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.result import IdentificationResult
 from robomill.io.measured.load_tests import read_load_tests
@@ -26,7 +26,7 @@ def identify(
     tests: LoadTests | JointTests | DataFrame | str | Path,
     model: str = "joints",
     treatment: Treatment = STANDARD,
-    **choices: Any,
+    **choices: Unpack[Choices],
 ) -> IdentificationResult:
     """Joint compliances, and those of springs beside the joints, from load tests, with how sure they are.
 
@@ -37,10 +37,23 @@ def identify(
     tests : LoadTests, JointTests, pandas.DataFrame, str or Path
         Load tests, or what ``read_load_tests`` makes of a table, a file or the name of a sample.
     model : str
-        ``joints``, ``joints+bending``, ``joints+tool``, ``joints+bending+tool`` or ``constant``.
+        What gives: "joints", "joints+bending" (links, too), "joints+tool", "joints+bending+tool", or "constant" (one
+        compliance matrix at all poses).
     treatment : Treatment
-        How the tests are treated; its fields may be given by name instead, as ``choices``: ``bending``, ``fit_points``,
-        ``robust``, ``exclude``, ``weights``, ``leave_out``.
+        How the tests are treated, as a result has it in ``found.treatment``; or by name, each of these ``choices``:
+    bending : sequence of int, or "auto"
+        Joints, counted from 1, at which links bend in a model with bending; left out (2, 3). "auto": where the tests
+        say, in every model.
+    fit_points : {"none", "force", "gauge", "both"}
+        Which points of the tool are found beside the compliances: where the force acts, where the gauge reads.
+    robust : bool
+        Whether tests that do not fit the others count less.
+    exclude : sequence of int
+        Rows that are left out, by their numbers in ``found.row``.
+    weights : {"equal", "size"}
+        Every reading alike, or every test by its relative error.
+    leave_out : {"pose", "neighbours"}
+        What is left out together to see how well the model predicts: any poses, or neighbouring ones.
 
     Returns
     -------
@@ -68,8 +81,7 @@ def identify(
     [7.2, 10.13, 12.26, 17.34, 91.24]
     """
     check_robot(robot)
-    known = {each.name for each in fields(Treatment)}
-    refuse_unknown(choices, known, "identify")
+    refuse_unknown(choices, {each.name for each in fields(Treatment)}, "identify")
     if not isinstance(tests, LoadTests | JointTests | str | Path | bytes) and not is_frame(tests):
         found = type(tests).__name__
         raise LoadTestError(

@@ -12,7 +12,7 @@ from robomill.provenance import KINDS, Kind
 
 XYZ = "xyz"
 WORLD = ("x", "y", "z", "a", "b")
-_ANGLE, _LENGTH, _FORCE, _MOMENT = ("deg", "rad"), ("mm", "um", "m", "in"), ("N", "kN"), ("N m", "kN m")
+ANGLE, _LENGTH, _FORCE, _MOMENT = ("deg", "rad"), ("mm", "um", "m", "in"), ("N", "kN"), ("N m", "kN m")
 _ROTATION, _COMPLIANCE = ("mrad", "urad", "rad", "deg"), ("um/N", "mm/N", "m/N")
 GAUGES = ("1", "2", "3")
 ROTVEC = ("rotvec_x", "rotvec_y", "rotvec_z")
@@ -36,10 +36,12 @@ def _all(names: Iterable[str], units: Sequence[str]) -> dict[str, Sequence[str]]
     return {column: units for name in names for column in axes(name)}
 
 
+SLIDING = {"torque": _FORCE, "angle": ("mm", "um")}
+"""Units of what is given of a joint that slides in place of a torque and an angle."""
 _UNITS: dict[str, Sequence[str]] = {
-    **{f"theta{joint}": (*_ANGLE, "mm", "m") for joint in range(1, 10)},
+    **{f"theta{joint}": (*ANGLE, "mm", "m") for joint in range(1, 10)},
     **_all([""], _LENGTH),
-    **dict.fromkeys(("a", "b", "c", "w", "p", "r", *ROTVEC), _ANGLE),
+    **dict.fromkeys(("a", "b", "c", "w", "p", "r", *ROTVEC), ANGLE),
     **_all(("f", "f0"), _FORCE),
     **_all(("d", "d0", "fp", "mp", "pulley_", "hook_", "load_point_", "gauge_point_"), _LENGTH),
     **_all(("m",), _MOMENT),
@@ -48,8 +50,8 @@ _UNITS: dict[str, Sequence[str]] = {
     **{f"c{row}{column}": _COMPLIANCE for row in XYZ for column in XYZ},
     **{f"reading{k}": _LENGTH for k in GAUGES},
     "joint": ("1",),
-    "torque": (*_MOMENT, *_FORCE),
-    "angle": (*_ROTATION, "mm", "um"),
+    "torque": (*_MOMENT, *SLIDING["torque"]),
+    "angle": (*_ROTATION, *SLIDING["angle"]),
     "load": _FORCE,
     "noise": (*_LENGTH, "mrad", "urad"),
 }

@@ -21,7 +21,7 @@ from robomill.arrays import FloatArray
 from robomill.identification.configurations import pose_of, world_of
 from robomill.identification.load_test import LoadTests
 from robomill.io.columns import Columns
-from robomill.io.measured.load_test_columns import GAUGES, ROTVEC, WORLD, axes, directions, group, head_of
+from robomill.io.measured.load_test_columns import ANGLE, GAUGES, ROTVEC, WORLD, axes, directions, group, head_of
 from robomill.kinematics.transforms import invert, rotation_about, rotation_x, rotation_y, rotation_z, transform
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
@@ -43,7 +43,9 @@ def poses(table: Columns, robot: Robot | None) -> dict[str, Any]:
         for k, (number, key) in enumerate(joints, 1):
             if number != k:
                 raise table.place.refuse(f"found {table.written(key)} but no theta{k}_deg; number the joints from 1.")
-        return {"theta": np.stack([table.values[key] for _, key in joints], axis=-1), "findings": _unused(table)}
+        theta = np.stack([table.values[key] for _, key in joints], axis=-1)
+        sliding = tuple(number for number, key in joints if table.known[key].unit not in ANGLE)
+        return {"theta": theta, "sliding": sliding, "findings": _unused(table)}
     turned = _turned(table)
     if turned is None:
         x_M = group(table, WORLD)
@@ -198,7 +200,7 @@ def _hooks(
 ) -> tuple[FloatArray, tuple[Finding, ...]]:
     """(m, 3) m the hooks in {T}, and whether they are one point of the tool."""
     size = np.ones((len(hook), 3))
-    tests = LoadTests(size, size, row=table.row, **{k: where[k] for k in ("theta", "x_M") if k in where})
+    tests = LoadTests(size, size, row=table.row, **{k: where[k] for k in ("theta", "x_M", "sliding") if k in where})
     back = invert(tests.with_joints(robot).tool_poses(robot))
     point = np.einsum("mij,mj->mi", back[:, :3, :3], hook) + back[:, :3, 3]
     off = np.linalg.norm(point - np.median(point, axis=0), axis=1)
@@ -209,7 +211,7 @@ def _hooks(
         f"The hook stands up to {far} (row {row}) from where most rows have it in the tool: is it one hook, measured "
         "in {M}, and are the poses right?"
     )
-    return point, (Finding("suspicious", text, row, code="hook-scatter"),)
+    return point, (Finding("suspicious", text, row, code="hook-scatter", place=""),)
 
 
 def _unit(table: Columns, way: FloatArray) -> FloatArray:

@@ -28,13 +28,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robomill.arguments import asked
+from robomill.arrays import IntArray
 from robomill.errors import LoadTestError
 from robomill.frames import is_frame
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.measured_field import MeasuredField
 from robomill.identification.suspicion import suspicions
 from robomill.io.columns import Columns, frame_columns, read_columns
-from robomill.io.measured.load_test_columns import LAYOUT, POSTURE, XYZ, axes, group, head_of, kind_of
+from robomill.io.measured.load_test_columns import LAYOUT, POSTURE, SLIDING, XYZ, axes, group, head_of, kind_of
 from robomill.io.measured.load_test_poses import ABC, WPR, force_and_points, gauges, poses, rotation_vector
 from robomill.io.samples import sample_or_file
 from robomill.provenance import Finding, Provenance
@@ -98,7 +99,7 @@ def _read(given: str | Path | bytes | DataFrame, robot: Robot | None, name: str 
     if any(key in table for key in COMPLIANCES):
         tests: LoadTests | JointTests = _compliances(table, robot)
     elif "torque" in table or "joint" in table:
-        tests = _joints(table)
+        tests = _joints(table, robot)
     else:
         tests = _displacements(table, robot)
     head = table.place.head
@@ -184,7 +185,7 @@ def _displacements(table: Columns, robot: Robot | None) -> LoadTests:
     )
 
 
-def _joints(table: Columns) -> JointTests:
+def _joints(table: Columns, robot: Robot | None) -> JointTests:
     for key, example in (("joint", "joint"), ("torque", "torque_Nm"), ("angle", "angle_mrad")):
         if key not in table:
             raise table.place.refuse(
@@ -195,6 +196,7 @@ def _joints(table: Columns) -> JointTests:
     if odd.any():
         k = int(np.argmax(odd))
         raise table.refuse(k, "joint", f"found {joint[k]:g}, expected a joint number from 1.")
+    _check_sliding(table, joint.astype(np.int64), robot)
     return JointTests(
         joint=joint.astype(np.int64),
         torque=table.values["torque"],
@@ -204,11 +206,29 @@ def _joints(table: Columns) -> JointTests:
     )
 
 
+def _check_sliding(table: Columns, joint: IntArray, robot: Robot | None) -> None:
+    """Forces and displacements are of joints that slide: of one that turns nobody knows at which lever arm."""
+    for key, meant in (("torque", "its torque in Nm"), ("angle", "its angle in mrad")):
+        if table.known[key].unit not in SLIDING[key]:
+            continue
+        if robot is None:
+            raise table.place.refuse(
+                f"column {table.written(key)} is of joints that slide, which need the robot; read the tests with it."
+            )
+        turns = (joint <= robot.n) & ~robot.chain.prismatic[np.minimum(joint, robot.n) - 1]
+        if turns.any():
+            k = int(np.argmax(turns))
+            raise table.refuse(
+                k, key, f"joint {joint[k]} turns; give {meant} (of a dial gauge: its reading over its distance)."
+            )
+
+
 def _compliances(table: Columns, robot: Robot | None) -> LoadTests:
     m = len(table.row)
     load = table.values.get("load")
     where = poses(table, robot)
     found: tuple[Finding, ...] = where.pop("findings", ())
+    sliding = where.pop("sliding", None)
     if load is None:
         text = f"No load_N column: residuals are stated for the paper's dead weight of {NOMINAL_LOAD:g} N."
         found, load = (*found, Finding("info", text, code="nominal-load")), np.full(m, NOMINAL_LOAD)
@@ -229,6 +249,7 @@ def _compliances(table: Columns, robot: Robot | None) -> LoadTests:
         noise=None if noise is None else noise[each],  # type: ignore[arg-type]
         findings=found,
         protocol="measured compliances",
+        sliding=sliding,
         **{key: value[each] for key, value in where.items()},
     )
 

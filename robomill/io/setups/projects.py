@@ -48,7 +48,7 @@ from robomill.provenance import Provenance
 from robomill.quantities import quantities
 from robomill.robot.model import Robot
 from robomill.simulation.origin.sources import UNSTATED_TOLERANCE, unstated
-from robomill.simulation.setup import TOLERANCES, SimulationSetup
+from robomill.simulation.setup import ALLOWED, TOLERANCES, SimulationSetup
 from robomill.spelled import made
 from robomill.toolpath.path import TABLES
 from robomill.toolpath.source import LEANS, GCodeSource, LinesSource, PathSource, SketchSource
@@ -59,7 +59,6 @@ OF_THE_APP = ("view", "maps", "experiments")  # tables of a saved project that o
 VERSION = 1
 NUMBERS = quantities(SimulationSetup)
 SOURCES = ("program", "program_text", "lines_mm", "sketch", *POINTS)
-ALLOWED = ("tolerance", "floor_tolerance", "feed_tolerance")  # at the top, as tolerance_mm: one number, or three
 NUMERICS = tuple(name for name in NUMBERS if name not in ALLOWED)  # in [numerics]
 
 
@@ -106,7 +105,7 @@ def load_setup(path: str | Path, allow_outside: bool = False) -> SimulationSetup
 
 def setup_from_toml(text: str, where: str = "set-up", beside: Beside = ALONE) -> SimulationSetup:
     """A set-up from TOML text; ``beside`` are the files it may name: none, unless told otherwise."""
-    return setup_from_table(parse_toml(text, where), where, beside)
+    return setup_from_table(parse_toml(text, where, exact=True), where, beside)
 
 
 def setup_from_table(data: dict[str, Any], where: str, beside: Beside = ALONE) -> SimulationSetup:

@@ -14,7 +14,7 @@ from robomill.io.declared import Around, Codec, from_table, to_table
 from robomill.io.tables import Table, shown
 from robomill.simulation.given import PART_TURN, PART_ZERO, part_frame
 from robomill.surface.stock import Stock
-from robomill.units import format_count, to_si
+from robomill.units import format_count
 
 OF_TRIANGLE = 72  # bytes: three corners of three numbers
 MOST_TRIANGLES = STL.most // 50  # a triangle of a binary STL takes 50 bytes
@@ -27,7 +27,7 @@ def part_from_table(table: Table) -> FloatArray:
         if len(frame) not in (3, 4):
             raise table.refuse("frame", f"expected the three rows of a frame, found {len(frame)}.")
         T_MW[:3] = frame[:3]
-        T_MW[:3, 3] = to_si(T_MW[:3, 3], "mm")
+        T_MW[:3, 3] = [table.si("frame", row[3], "mm") for row in table.data["frame"][:3]]
     else:
         T_MW = part_frame(
             table.numbers(PART_ZERO.key, 3, PART_ZERO.unit, [0.0] * 3),
@@ -39,12 +39,10 @@ def part_from_table(table: Table) -> FloatArray:
 
 def part_to_table(T_MW: FloatArray) -> dict[str, Any]:
     zero = [shown(v, "mm") for v in T_MW[:3, 3]]
-    angle = shown(float(np.arctan2(T_MW[1, 0], T_MW[0, 0])), "deg")
-    if np.array_equal(part_frame(to_si(np.array(zero), "mm"), to_si(angle, "deg")), T_MW):
-        return {PART_ZERO.key: zero, PART_TURN.key: angle}
-    rows = T_MW.copy()
-    rows[:3, 3] = zero
-    return {"frame": rows.tolist()}
+    turn = float(np.arctan2(T_MW[1, 0], T_MW[0, 0]))
+    if np.array_equal(part_frame(T_MW[:3, 3], turn), T_MW):
+        return {PART_ZERO.key: zero, PART_TURN.key: shown(turn, "deg")}
+    return {"frame": [[*row[:3], z] for row, z in zip(T_MW[:3].tolist(), zero, strict=True)]}
 
 
 def stock_from_table(table: Table, beside: Beside) -> Stock:

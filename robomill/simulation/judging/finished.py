@@ -17,7 +17,7 @@ from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.progress import slices
 from robomill.simulation.judging.gauge import CORNER, Gauge, Readings
 from robomill.simulation.judging.places import stock_top
-from robomill.simulation.judging.seen import Run
+from robomill.simulation.judging.seen import WHOLE, Run
 from robomill.surface.outline import SAME
 from robomill.values import ReadOnly
 from robomill.vectors import angle_between, nearest_on
@@ -38,7 +38,7 @@ class Spread(ReadOnly):
 
     def out(self, tolerance: float) -> tuple[float, float]:
         """(out of ``tolerance`` (m), all) m^2; the first is never 0 where something is out, however small."""
-        far, total = np.abs(self.error) > tolerance, float(self.area.sum())
+        far, total = np.abs(self.error) > WHOLE * tolerance, float(self.area.sum())
         return (max(float(self.area[far].sum()), LEAST * total) if far.any() else 0.0), total
 
     def histogram(self, edges: FloatArray) -> FloatArray:

@@ -16,7 +16,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.simulation.judging.leaning import lies
 from robomill.simulation.judging.places import Places, places
-from robomill.simulation.judging.seen import Run
+from robomill.simulation.judging.seen import WHOLE, Run
 from robomill.surface.outline import SAME, Walls
 from robomill.values import ReadOnly
 
@@ -76,7 +76,7 @@ class Readings(ReadOnly):
     def share_out(self, tolerance: float) -> float:
         """Share of the length that is out of ``tolerance`` (m): 0 where nothing is, and never 0 where something is,
         however short."""
-        out, total = np.abs(self.error) > tolerance, float(self.length.sum())
+        out, total = np.abs(self.error) > WHOLE * tolerance, float(self.length.sum())
         if not out.any():
             return 0.0
         return max(float(self.length[out].sum()) / total if total > 0.0 else 1.0, LEAST)
@@ -290,14 +290,16 @@ def _floors(at: Places) -> Readings:
     # beside a shoulder or over a deeper slot.
     found &= (offset == 0.0) | (at.slope < LEVEL)[q] | at.steep[q] | ~np.isin(q, q[found & (offset == 0.0)])
     # A hole, or a groove with the sides of a cone, is as deep as its lowest point, wherever that has gone aside.
-    deepest = (at.bottoms | _roots(at, aside))[q] & (told > -SAME)
+    roots, lost = _roots(at, aside)
+    found &= ~lost[q]
+    deepest = (at.bottoms | roots)[q] & (told > -SAME)
     conditions = at.result.conditions
     rise = np.where(at.steep, 0.0, conditions.along[at.i])
     root = at.d[:, 2] * np.where(at.steep, 1.0, conditions.across[at.i]) - at.d[:, 0] * rise
-    error[deepest] = np.fmin(error, root[q])[deepest]
+    error[deepest] = np.where(roots[q], root[q], np.fmin(error, root[q]))[deepest]
     where = at.c[q] + offset[:, None] * u + np.where(found, told, 0.0)[:, None] * at.axial[q]
     q, error, where = q[found], error[found], where[found]
-    beside, off, height, normal = _on_noses(at, ~np.isin(np.arange(len(at.i)), q) & ~at.steep, aside)
+    beside, off, height, normal = _on_noses(at, ~np.isin(np.arange(len(at.i)), q) & ~at.steep & ~lost, aside)
     where = np.concatenate([where, at.c[beside] + height])
     normal = np.concatenate([np.tile([0.0, 0.0, 1.0], (len(q), 1)), normal])
     q, error = np.concatenate([q, beside]), np.concatenate([error, off])
@@ -330,26 +332,35 @@ def _on_noses(at: Places, where: BoolArray, aside: FloatArray) -> tuple[IntArray
     return q, error[found], beside, normal
 
 
-def _roots(at: Places, aside: FloatArray) -> BoolArray:
-    """(q,) bool: grooves of cones, which are as deep as their root: below whose sides nobody else was told to cut, as
-    far as they have gone ``aside``; or else (the next leg at a corner, a crossing, a raster) nobody below their root,
-    up to twice as far. A lower pass on a slope cut in steps comes below it there."""
-    roots = np.zeros(len(at.i), dtype=bool)
-    q = np.flatnonzero((at.number("conical") > 0) & ~at.steep)
+def _roots(at: Places, aside: FloatArray) -> tuple[BoolArray, BoolArray]:
+    """(q,) bool: grooves of cones and balls, as deep as their root; and (q,) bool: those of cones without one.
+
+    A groove has a root where nobody else was told to cut below one of its sides at least, as far as it has gone
+    ``aside``; or nobody below its root, up to twice as far (the next leg at a corner, a crossing, a raster). On a slope
+    cut in steps others come by on both sides, one of them below it: it is off where it has gone aside, all along. None
+    is left where another pass has cut deeper where the tip really went."""
+    roots, lost = np.zeros((2, len(at.i)), dtype=bool)
+    cone = at.number("conical") > 0
+    q = np.flatnonzero((cone | (at.number("flat_radius") == 0.0)) & ~at.steep)
     # On its way down or up a cone's groove is flatter across than the cone, and made by moves taken at their middle.
     flatter = np.sqrt(1.0 - at.wider(q, at.profile(q, aside[q]) + SAME) ** 2)
     slack = SAME + at.incline[q] * at.result.path.step_length[at.i[q]]
-    sides = at.profile(q, aside[q]) * flatter - slack
-    roots[q] = _lowest(at, q, aside[q]) >= sides
+    went = at.c[q] + at.d[q, :1] * at.feed[q] + at.d[q, 1:2] * at.left_of[q]
+    lost[q] = at.outline.left_over(np.hstack([went, at.axial[q], at.left_of[q]])) < at.d[q, 2] - slack
+    roots[q] = _beside(at, q, aside[q]).max(axis=0) >= at.profile(q, aside[q]) * flatter - slack
     q, slack = q[~roots[q]], slack[~roots[q]]
-    roots[q] = np.min([_lowest(at, q, share * aside[q]) for share in BESIDE_ROOT], axis=0) >= -slack
-    return roots
+    roots[q] = np.min([_beside(at, q, share * aside[q]) for share in BESIDE_ROOT], axis=(0, 1)) >= -slack
+    q, slack = q[~roots[q]], slack[~roots[q]] + (at.slope * aside)[q[~roots[q]]]
+    along = [_beside(at, q, aside[q], share * aside[q]) for share in (-1.0, 0.0, 1.0)]
+    lost[q] |= ~(np.ptp(along, axis=0).max(axis=0) <= slack)
+    return roots & (cone | ~lost), lost & cone
 
 
-def _lowest(at: Places, q: IntArray, offset: FloatArray) -> FloatArray:
-    """(m,) m: how high above the tips of places q the lower told floor is of the two at an ``offset`` (m,) m aside."""
-    lines = np.hstack([at.c[q], at.axial[q], at.left_of[q]])
-    return np.minimum(*(at.outline.floors(lines, side * offset, np.zeros(len(q)))[0] for side in (1.0, -1.0)))
+def _beside(at: Places, q: IntArray, offset: FloatArray, ahead: float | FloatArray = 0.0) -> FloatArray:
+    """(2, m) m: how high above the tips of places q the told floors are at an ``offset`` (m,) m to the left and to the
+    right, so far ``ahead`` (m,) m."""
+    lines = np.hstack([at.c[q] + np.reshape(ahead, (-1, 1)) * at.feed[q], at.axial[q], at.left_of[q]])
+    return np.array([at.outline.floors(lines, side * offset, np.zeros(len(q)))[0] for side in (1.0, -1.0)])
 
 
 def _under(at: Places, flat: FloatArray, aside: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:

@@ -26,8 +26,10 @@ from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import tooling
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.sampling import drawn_back
 from robomill.values import Tabled
 
+WHOLE = 1.0 + 1e-9  # of a tolerance: what is out by less is on the limit, and rounding
 FEW = 0.1
 """Of the length that cuts: where less is judged, no number stands for the cut (stated, not derived)."""
 MOST = 0.5
@@ -171,8 +173,10 @@ class Run(Tabled):
 
     @cached_property
     def removes(self) -> BoolArray:
-        """(m,) steps that cut: at feed, with an answer at both ends."""
-        return np.asarray(self.path.cutting & self.answered & np.append(False, self.answered[:-1]))
+        """(m,) steps that cut: at feed, with an answer at both ends, but not on a way straight back out of a plunge: as
+        a tool is drawn out the push lets go of it, and until then its tip stays at the bottom."""
+        at_feed = self.path.cutting & self.answered & np.append(False, self.answered[:-1])
+        return np.asarray(at_feed & ~drawn_back(self.path))
 
     def _placed(self, findings: Iterable[Finding]) -> tuple[Finding, ...]:
         """With what their lines count on this path."""

@@ -7,6 +7,9 @@ end needs to be met by what its rim has left.
 An end that presses on its floor holds its tip up, by its thrust, above where the tip would go if the end met nothing.
 Where the arm springs up, as where the flank leaves the material, it lets go only once it has sprung up by all of that:
 until then the tip would sink into the floor that it has left.
+
+A nose is pushed up the more the deeper it is. What a ramp so lifts its own tip is its deflection, as the thrust of its
+end is, and takes nothing off the force of the path as it is told; only what it is lifted by beside does.
 """
 
 from collections.abc import Callable
@@ -22,6 +25,7 @@ from robomill.toolpath.path import Toolpath
 
 SLIGHT = 1e-6  # of what an end cuts: less of it is lost by rounding only
 SLOT = 1e-3  # m deep: any depth has the same thrust of its end
+LEAST = 0.2  # of a slope: how much of it is left to a tip, however much it lifts itself
 ALIKE = 4  # decimals of a feed's part along the axis: ways down that differ by less press alike
 
 
@@ -44,18 +48,46 @@ def pressing(told: CutConditions) -> CutConditions:
     return replace(told, a_p=np.where(some, SLOT, 0.0), along=np.round(told.along, ALIKE))
 
 
-def sinking(told: CutConditions, path: Toolpath, tips: FloatArray, lift: Callable[[], FloatArray]) -> CutConditions:
+def sinking(
+    told: CutConditions,
+    path: Toolpath,
+    tips: FloatArray,
+    own: Callable[[], FloatArray] | None,
+    lift: Callable[[], FloatArray],
+) -> CutConditions:
     """The conditions with ends that sink no more steeply than ``tips`` (m, 3) m do, where these go along a path if no
-    end meets anything; ``lift`` says how far, (m, 3) m, whole ends that press hold them off that."""
+    end meets anything; ``own`` says how far (m,) m each step lifts its tip by going deeper (None: not at all), ``lift``
+    how far, (m, 3) m, whole ends that press hold them off that."""
     some = told_to_sink(told)
     if not some.any():
         return told
     steep = np.where(some, np.minimum(told.sinks, sinks(-_slopes(told, path, tips))), told.sinks)
+    if own is not None:
+        steep = _without_own(told, path, (tips, steep), own)
     goes_on = some & np.append(False, some[:-1])
     if (goes_on & (steep < np.minimum(np.append(0.0, steep[:-1]), told.sinks) - SLIGHT)).any():
         up = np.einsum("mi,mi->m", lift(), path.k)
-        steep = np.minimum(told.sinks, _held(told, steep, goes_on, _falls(path, tips), up))
+        steep = np.minimum(told.sinks, _held(told, steep, goes_on, fallen(path, tips), up))
     return replace(told, steep=steep)
+
+
+def _without_own(
+    told: CutConditions, path: Toolpath, free: tuple[FloatArray, FloatArray], own: Callable[[], FloatArray]
+) -> FloatArray:
+    """(m,) how steeply ends sink: as ``free`` tips say, (m, 3) m and (m,); those of noses as they are told to, less the
+    share of their slope that is lost to other than their ``own`` lift, (m,) m a step."""
+    assert told.tooling is not None
+    tips, steep = free
+    nosed = told_to_sink(told) & (told.tooling.each("nose_height") > 0.0)
+    as_told = _slopes(told, path, path.p)
+    nosed &= (steep < np.minimum(told.sinks, sinks(-as_told)) - SLIGHT) & (as_told > 0.0)
+    if not nosed.any():
+        return steep
+    lifted = np.cumsum(np.where(told_to_sink(told), own(), 0.0))
+    alone, really = (_slopes(told, path, each) for each in (path.p + lifted[:, None] * path.k, tips))
+    lost = (alone - really) / np.maximum(np.maximum(alone, LEAST * as_told), np.finfo(float).tiny)
+    kept = as_told * np.clip(1.0 - lost, 0.0, 1.0)
+    return np.where(nosed, np.maximum(steep, np.minimum(told.sinks, sinks(-kept))), steep)
 
 
 def _held(
@@ -78,7 +110,7 @@ def _held(
     return held
 
 
-def _falls(path: Toolpath, points: FloatArray) -> FloatArray:
+def fallen(path: Toolpath, points: FloatArray) -> FloatArray:
     """(m,) m by which points (m, 3) m along a path fall along the tool's axis on each step."""
     return np.asarray(-np.einsum("mi,mi->m", np.diff(points, axis=0, prepend=points[:1]), path.k))
 
@@ -90,12 +122,12 @@ def _slopes(told: CutConditions, path: Toolpath, tips: FloatArray) -> FloatArray
     assert told.tooling is not None
     step = np.where(path.cutting, path.step_length, 0.0)
     s = np.cumsum(step)
-    fallen, fall = np.cumsum(_falls(path, tips)), _falls(path, path.p)
+    down, fall = np.cumsum(fallen(path, tips)), fallen(path, path.p)
     kind = np.where(path.cutting, np.where(told.mostly_axial, 2, 1), 0)
     begins = np.append(True, kind[1:] != kind[:-1])
     first = np.maximum.accumulate(np.where(begins, np.arange(len(s)), 0))
-    before = np.where(begins, fallen - fall, np.append(fallen[:1], fallen[:-1]))
-    area = np.cumsum(0.5 * (fallen + before) * step)
+    before = np.where(begins, down - fall, np.append(down[:1], down[:-1]))
+    area = np.cumsum(0.5 * (down + before) * step)
     start, level = (s - step)[first], before[first]
     way = told.tooling.each("diameter")
 

@@ -10,7 +10,7 @@ import numpy as np
 from robomill.arguments import made_by
 from robomill.arrays import with_article
 from robomill.provenance import named
-from robomill.simulation.judging.seen import Run
+from robomill.simulation.judging.seen import WHOLE, Run
 from robomill.units import format_beside, format_count, format_percent, format_share
 from robomill.values import Value
 
@@ -42,7 +42,7 @@ def level_of_share(share: float) -> Level:
     """ok | tight | out: what a share of the tolerance is; unjudged where nobody knows it."""
     if math.isnan(share):
         return "unjudged"
-    return "out" if share > 1.0 else "tight" if share >= TIGHT_FROM else "ok"
+    return "out" if share > WHOLE else "tight" if share >= TIGHT_FROM else "ok"
 
 
 def gauge_end(share: float) -> float:

@@ -33,7 +33,7 @@ def sources(setup: SimulationSetup, length: str = "mm") -> list[Source]:
         Source("Cutter", setup.cutter.called(length), given.get("cutter", UNSTATED)),
         Source("Force", setup.force.numbers, given.get("force", setup.force.provenance)),
         Source("Stock", _stock(setup, length), given.get("stock", UNSTATED)),
-        Source("Tolerance", format_limit(setup.tolerance, length), given.get("tolerance", UNSTATED)),
+        Source("Tolerance", _tolerances(setup, length), given.get("tolerance", UNSTATED)),
         Source("Model", "C = J C_θ Jᵀ, δ = C F", MODEL),
     ]
 
@@ -65,6 +65,15 @@ def _tool(robot: Robot, length: str) -> str:
     tip, k = robot.T_tool[:3, 3], robot.T_tool[:3, 2]
     direction = ", ".join(format_significant(float(v) + 0.0) for v in np.round(k, 4))
     return f"tip {format_many(tip, length, 1)}, z_T along ({direction})"
+
+
+def _tolerances(setup: SimulationSetup, length: str) -> str:
+    """One, or each that is another."""
+    own = {"floors": setup.floor_tolerance, "along the feed": setup.feed_tolerance}
+    said = [
+        f"{format_limit(each, length)} {where}" for where, each in own.items() if each not in (None, setup.tolerance)
+    ]
+    return ", ".join([format_limit(setup.tolerance, length), *said])
 
 
 def _stock(setup: SimulationSetup, length: str) -> str:

@@ -29,7 +29,7 @@ from robomill.surface.contact.engagement_kernels import (
 )
 from robomill.surface.contact.material_kernels import World
 from robomill.surface.contact.rib_kernels import Walk, aim_at_changes, alternates, fine_pitch, look_about, walk_on
-from robomill.surface.contact.step_kernels import Step, ask_for_rim
+from robomill.surface.contact.step_kernels import Step, ask_for_rim, rim_turns
 from robomill.surface.contact.turn_kernels import (
     ANGLES,
     COSINE,
@@ -217,7 +217,7 @@ def add_part(room: Room, world: World, shape: Shape, step: Step, total: FloatArr
     rest[PHI_ST], rest[PHI_EX], rest[LOST] = math.inf, -math.inf, world.dexels.lost[0]
     room.sectors[:] = 0.0
     lay_out(room, shape, step, world)
-    halves = 2 if step.along < -FACING else 1
+    halves = 2 if step.along < -FACING or rim_turns(step, shape.R) else 1
     angles = look_round(room, world, shape, step, halves)
     count = follow_jumps(room, world, shape, step, divide(room, world, shape, step, angles))
     add_pieces(room, count, total)

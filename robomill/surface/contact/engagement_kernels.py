@@ -16,7 +16,9 @@ from typing import NamedTuple
 
 from robomill.arrays import FloatArray
 from robomill.compiled import Out1, Out2, called, part
+from robomill.cutting.engaged import FACING
 from robomill.cutting.profile_kernels import (
+    CHAMFER,
     END,
     FLANK,
     FLAT,
@@ -30,10 +32,11 @@ from robomill.cutting.profile_kernels import (
     on_profile,
     stretch_ends,
 )
+from robomill.cutting.tool import DISH
 from robomill.surface.contact.material_kernels import FAR, World, standing, standing_near, top_over
 from robomill.surface.contact.relief_kernels import UNKNOWN, Relief, square_about, told, tops_between
 from robomill.surface.contact.rib_kernels import change_between, is_plain
-from robomill.surface.contact.step_kernels import Step
+from robomill.surface.contact.step_kernels import Step, rim_turns
 from robomill.surface.contact.turn_kernels import (
     COSINE,
     SINE,
@@ -42,8 +45,9 @@ from robomill.surface.contact.turn_kernels import (
     turn_row,
 )
 
-END_LOOKS = 7  # at most, at a piece of the profile for where material begins or ends in it (rule of false position)
+END_LOOKS = 12  # at most, at a piece of the profile for where material begins or ends in it (rule of false position)
 NARROW = 0.3e-3  # m: so far apart a nose is looked at where material may end between its pieces' ends
+SLOW = 0.5  # of the way between two such places: two looks that leave more have hardly closed in
 EXACT = 1e-7  # m: so near to where it ends is there
 END_PIECES, NOSE_PIECES, FLANK_PIECES = 8, 9, 96  # of each stretch of the profile, at most
 INSIDE = 1e-2  # of a piece: how far inside the ends of a stretch is looked
@@ -109,14 +113,49 @@ def about_at(world: World, step: Step, ray: Ray, at: Place) -> float:
 
 
 @part
+def faces_of(
+    shape: Shape, step: Step, stretch: int, turn: tuple[float, float], about: tuple[float, float, float]
+) -> tuple[float, float]:
+    """How a piece of a stretch faces its way at an angle (its sine and cosine): (a, b) of a sin(kappa) - b cos(kappa).
+
+    Where the axis turns by w a place moves by v + w x (r e + t k) beside the tip's v, so that its normal faces that by
+    (t sin(kappa) + r cos(kappa)) (e . w x k) more: on a round nose by (rc sin(kappa) + r0 cos(kappa)) times that,
+    elsewhere as in the middle of the piece; ``about``: the radius there, and the heights of its ends, m. Axes that are
+    alike but for rounding do not turn."""
+    sine, cosine = turn
+    a, b = step.across * sine, step.along
+    leans = sine * step.turn_f + cosine * step.turn_l
+    if abs(leans) * shape.R <= FACING:
+        return a, b
+    if stretch == NOSE and shape.kind != CHAMFER:
+        return a + shape.rc * leans, b - shape.r0 * leans
+    return a + 0.5 * (about[1] + about[2]) * leans, b - about[0] * leans
+
+
+@part
+def cutting_end(shape: Shape, step: Step, sine: float, cosine: float) -> tuple[float, float]:
+    """From which radius to which a flat end cuts at an angle, m: where its teeth go down by more than they are ground
+    hollow, as the axis turns; else from its heel on."""
+    if not rim_turns(step, shape.R):
+        return heel(shape.r0, step.sinks, sine), shape.r0
+    leans, down = sine * step.turn_f + cosine * step.turn_l, -step.along - DISH
+    if leans == 0.0:
+        return (0.0 if down > 0.0 else shape.r0), shape.r0
+    turned = -down / leans
+    return (max(turned, 0.0), shape.r0) if leans > 0.0 else (0.0, min(turned, shape.r0))
+
+
+@part
 def add_edge(room: Room, row: FloatArray, shape: Shape, step: Step, stretch: int, ends: tuple[Place, Place]) -> None:
     """Add an engaged piece of the profile, between two places of it, to what is measured at one angle."""
     start, end = ends
     length = end.s - start.s
     if length <= 0.0:
         return
+    faces = faces_of(
+        shape, step, stretch, (row[SINE], row[COSINE]), (0.5 * (start.radius + end.radius), start.height, end.height)
+    )
     for n in range(len(room.exponents)):
-        faces = (step.across * row[SINE], step.along)
         plain, up, lying = edge_sums(shape, ends, faces, room.exponents[n])
         row[SUMS + 3 * n] += plain
         row[SUMS + 3 * n + 1] += up
@@ -139,7 +178,7 @@ def lay_out(room: Room, shape: Shape, step: Step, world: World) -> None:
     first = 0
     for stretch in range(3):
         begin, stop = stretch_ends(shape, stretch, reach)
-        if stretch == END and step.sinks <= 0.0:
+        if stretch == END and step.sinks <= 0.0 and not rim_turns(step, shape.R):
             stop = begin
         pieces = END_PIECES if stretch == END else NOSE_PIECES
         if stretch == FLANK:
@@ -152,7 +191,7 @@ def lay_out(room: Room, shape: Shape, step: Step, world: World) -> None:
         for n in range(pieces + 1):
             inside = INSIDE if n == 0 else -INSIDE if n == pieces else 0.0
             at = on_profile(shape, stretch, begin + (n + inside) * (stop - begin) / pieces)
-            note_at(room, first + n, at, begin + n * width)
+            note_at(room, first + n, at, stop if n == pieces else begin + n * width)
         note_at(room, first + pieces + 1, on_profile(shape, stretch, begin), begin)
         note_at(room, first + pieces + 2, on_profile(shape, stretch, stop), stop)
         first += pieces + 3
@@ -197,10 +236,13 @@ def measure(room: Room, world: World, shape: Shape, step: Step, first: int, end:
             begin, stop = room.stretches[stretch, BEGIN], room.stretches[stretch, STOP]
             if stop <= begin:
                 continue
-            facing = facing_part(shape, stretch, (step.across * sine, step.along))
-            begin, stop = max(begin, facing[0]), min(stop, facing[1])
+            middle = 0.5 * (begin + stop)
             if stretch == END:
-                begin = max(begin, heel(shape.r0, step.sinks, sine))
+                facing = cutting_end(shape, step, sine, cosine)
+            else:
+                faces = faces_of(shape, step, stretch, (sine, cosine), (shape.R, middle, middle))
+                facing = facing_part(shape, stretch, faces)
+            begin, stop = max(begin, facing[0]), min(stop, facing[1])
             if stop <= begin:
                 continue
             if stretch == FLANK and plain:
@@ -271,15 +313,21 @@ def end_between(
     about: tuple[float, float],
 ) -> tuple[Place, Place]:
     """Where material begins or ends between two places of a stretch, of which one is ``about`` so deep in it and the
-    other in the air: from and to (rule of false position)."""
+    other in the air: from and to (rule of false position; two halvings where that hardly closes in, as where one of
+    them is near another surface)."""
     (shape, step, ray), (low, high), (deep_low, deep_high), cuts = seen, ends, about, about[0] > 0.0
     if abs(deep_low) == FAR:
         deep_low = engaged_at(world, step, ray, low)
     if abs(deep_high) == FAR:
         deep_high = engaged_at(world, step, ray, high)
     middle = on_profile(shape, stretch, 0.5 * (low.s + high.s))
-    for _ in range(END_LOOKS):
-        at = beside_place(shape, stretch, middle, low.s + (high.s - low.s) * deep_low / (deep_low - deep_high))
+    wide, halve = math.inf, False
+    for look in range(END_LOOKS):
+        apart = high.s - low.s
+        if look % 2 == 0:
+            halve, wide = wide < math.inf and apart > SLOW * wide, apart
+        share = 0.5 if halve else deep_low / (deep_low - deep_high)
+        at = beside_place(shape, stretch, middle, low.s + share * apart)
         deep = engaged_at(world, step, ray, at)
         if (deep > 0.0) == cuts:
             low, deep_low, deep_high = at, deep, 0.5 * deep_high
@@ -287,7 +335,8 @@ def end_between(
             high, deep_high, deep_low = at, deep, 0.5 * deep_low
         if abs(deep) < EXACT:
             return at, at
-    return low, high
+    at = beside_place(shape, stretch, middle, 0.5 * (low.s + high.s))
+    return at, at
 
 
 @part

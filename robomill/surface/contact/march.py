@@ -11,7 +11,7 @@ from robomill.cutting.edge import MOMENTS
 from robomill.cutting.engaged import FACING, PANELS, sinks
 from robomill.cutting.force import feed_frame
 from robomill.cutting.profile_kernels import valley
-from robomill.cutting.tool import Cutter
+from robomill.cutting.tool import DISH, Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.errors import SurfaceError
 from robomill.lazy import cached_property
@@ -35,7 +35,8 @@ class March:
     steeply the tool's end ``sinks`` (None: as the feed says). A step is met where it ends, in what was left before it;
     a step of no length that begins a cut at that place, ahead of which the next one goes. ``really`` (m, 3) m is where
     the tip goes, if not where it is told to: the chip stays that of the feed it is told, and where a cut begins
-    elsewhere than the tip was, the link to there is cut first. Steps that are not finite or not at feed cut nothing.
+    elsewhere than the tip was, the link to there is cut first. ``looked`` (m, 3) m is how far from where it is cut a
+    step is asked what it would meet. Steps that are not finite or not at feed cut nothing.
     Steps are cut in the order of the path; ``meet`` and ``cut`` take their ends anew, ``run`` knows straight runs of
     them as one move.
     Raises SurfaceError for a cell size that does not fit and a tool axis too close to level.
@@ -51,6 +52,7 @@ class March:
     really: ArrayLike | None = None
     way: ArrayLike | None = None
     steep: ArrayLike | None = None
+    looked: ArrayLike | None = None
 
     @cached_property
     def points(self) -> FloatArray:
@@ -121,12 +123,22 @@ class March:
         return feed_frame(np.nan_to_num(way), tool_axes(self.k, len(self.points)))[self.steps, :, 0].copy()
 
     @cached_property
+    def _turns(self) -> FloatArray:
+        """(n, 3) 1/m: by how much the axis changes on the tip's way; 0 where it turns on the spot."""
+        axes, move = tool_axes(self.k, len(self.points)), self._move[self.steps]
+        length = np.linalg.norm(self.points[move] - self.points[move - 1], axis=1, keepdims=True)
+        turn, k = axes[move] - axes[move - 1], self._axes[0]
+        turn = turn - np.einsum("ni,ni->n", turn, k)[:, None] * k
+        return np.divide(turn, length, out=np.zeros_like(turn), where=length > 0.0)
+
+    @cached_property
     def _ahead(self) -> FloatArray:
         """(n, 3) m from where a step ends to where the tool is when it is looked at."""
         move = self._move[self.steps]
         length = np.linalg.norm(self.points[move] - self.points[move - 1], axis=1)
         just = np.minimum(JUST, 0.5 * length)
-        return np.asarray(np.where(self._at_start, just, -just)[:, None] * self._feed)
+        ahead = np.asarray(np.where(self._at_start, just, -just)[:, None] * self._feed)
+        return ahead if self.looked is None else ahead + np.asarray(self.looked)[self.steps]
 
     @cached_property
     def _axes(self) -> tuple[FloatArray, FloatArray]:
@@ -206,7 +218,9 @@ class March:
             phi = half * np.pi + half_turn()
             main = rows[half * ANGLES : (half + 1) * ANGLES]
             main[:, : kernels.LENGTH] = np.stack([phi, np.sin(phi), np.cos(phi)], axis=1)
+        widest = max(cutter.radius for cutter in self.tooling.cutters)
         down = (np.einsum("ni,ni->n", self._feed, self._axes[0]) < -FACING).any()
+        down |= (np.linalg.norm(self._turns, axis=1) * widest > DISH).any()
         return kernels.Room(
             np.array(self.exponents, dtype=float),
             np.zeros((3, 4)),
@@ -302,6 +316,7 @@ class March:
             self._feed[n],
             self._axes[0][n],
             self._heading[n],
+            self._turns[n],
             self._sinks[n],
             runs[0],
             runs[1].astype(np.int64),

@@ -49,14 +49,16 @@ HALF_BITS, HALF_BIAS = 13, (127 - 15) << 23  # fewer in its fraction than in sin
 
 class Steps(NamedTuple):
     """Steps of a path: ends (n, 6) m, then the tip (m), unit feed, axis of the tool and heading (see ``step_at``)
-    where each is looked at (n, 3), how steeply it sinks for its end, the run it belongs to, whether it begins it and
-    whether nothing goes on from its end, and whether it is but a link to where a cut begins (n,)."""
+    where each is looked at (n, 3), by how much its axis ``turns`` there (n, 3) 1/m, how steeply it sinks for its end,
+    the run it belongs to, whether it begins it and whether nothing goes on from its end, and whether it is but a link
+    to where a cut begins (n,)."""
 
     ends: Out2
     tip: Out2
     feed: Out2
     axis: Out2
     heading: Out2
+    turns: Out2
     sinks: Out1
     run: OutInt1
     begins: OutInt1
@@ -273,7 +275,9 @@ def march(world: World, room: Room, steps: Steps, found: Out2, sectors: Singles2
             cut_run(world, r, True)
         if do[0]:
             but = NOBODY if links else r
-            step = step_at(steps.tip[n], steps.axis[n], steps.feed[n], steps.heading[n], (steps.sinks[n], but))
+            step = step_at(
+                steps.tip[n], steps.axis[n], steps.feed[n], steps.heading[n], (steps.sinks[n], but), steps.turns[n]
+            )
             add_part(room, world, shape_of(world.runs[r]), step, found[n], sectors[n])
         if do[1] and not links:
             go_on(world.runs[r], ends, steps.begins[n] == 1)

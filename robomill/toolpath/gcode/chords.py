@@ -58,7 +58,7 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR, table: 
     block = _spread(program.line, counts, program.line[0])
     k = _axes(program, counts)
     if program.planes:
-        p, k = tilted.stand(program.planes, p, first)
+        p, k = tilted.stand(program.planes, p, k, first)
     if far := far_off(p, block):
         raise GCodeError.at(*far)
     v_f = _spread(np.where(program.at_feed, program.v_f, 0.0), counts, 0.0)
@@ -110,7 +110,9 @@ def point_counts(program: Program, chord_error: float = arcs.CHORD_ERROR, table:
     counts[program.is_kind("tap")] = 2
     for number, (row, _) in enumerate(program.planes):
         if row < len(program):
-            turn = tilted.turn_between(program.planes, number)
+            turn = tilted.turn_between(
+                program.planes, number, *(tool_axis(q[row]) for q in (program.rotary0, program.rotary))
+            )
             counts[row] = max(counts[row], math.ceil(turn / MAX_TILT_STEP - 1e-4))
     if len(program) > 1 and _stays(program):
         counts[0] = 0

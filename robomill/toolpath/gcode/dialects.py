@@ -12,9 +12,11 @@ from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
 from robomill.toolpath.gcode.fanuc.cycles import bolt_holes
 from robomill.toolpath.gcode.fanuc.scaling import scales
+from robomill.toolpath.gcode.foreign import meant_elsewhere
 from robomill.toolpath.gcode.machine import UNITS, Machine
 from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
 from robomill.toolpath.gcode.rules.motion_rules import LINE, is_arc
+from robomill.toolpath.gcode.scan import COMMENT
 from robomill.toolpath.gcode.sinumerik.lines import translated
 from robomill.toolpath.gcode.tilted import of_fanuc
 from robomill.toolpath.gcode.words import Block
@@ -28,6 +30,8 @@ SAMPLE = 200_000
 LONGEST = 300
 """Characters of a line that are looked at for signs of a dialect."""
 
+_OUT, _READ, _CHOOSE = "let the CAM system write its moves out", "which is read for", "choose that dialect"
+
 HARMLESS: dict[str, frozenset[int]] = {
     "linuxcnc": frozenset(),
     "fanuc": frozenset({90, 150, 220, 230, 401, 501, 500, 600, 620, 630, 670, 690, 1870}),
@@ -38,23 +42,20 @@ HARMLESS: dict[str, frozenset[int]] = {
 """G words that move nothing, by dialect; they are counted as ignored."""
 
 NAMED = {
-    120: "G12 mills a circular pocket (Haas), which is not read; let the CAM system write its moves out.",
-    130: "G13 mills a circular pocket (Haas), which is not read; let the CAM system write its moves out.",
-    1500: "G150 mills a pocket (Haas), which is not read; let the CAM system write its moves out.",
-    470: "G47 engraves text (Haas), which is not read; let the CAM system write its moves out.",
-    510: "G51 scales coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
-    511: "G51.1 mirrors coordinates, which is read for Fanuc-like controls alone; choose that dialect.",
-    682: "G68.2 tilts the working plane, which is read for Fanuc-like controls alone; choose that dialect.",
-    **{
-        code: f"G{code // 10} sets a pole, which is read for Sinumerik controls alone; choose that dialect."
-        for code in (1100, 1110, 1120)
-    },
-    650: "G65 calls a macro with values, which is read for Fanuc-like controls alone; choose that dialect.",
-    660: "G66 calls a macro at every point, which is read for Fanuc-like controls alone; choose that dialect.",
+    **{code: f"G{code // 10} mills a circular pocket (Haas), which is not read; {_OUT}." for code in (120, 130)},
+    62: f"G6.2 makes a NURBS curve (Fanuc), which is not read; {_OUT}.",
+    1500: f"G150 mills a pocket (Haas), which is not read; {_OUT}.",
+    **{n: f"G{n // 10} is not known; a lathe's cycle is not read: {_OUT}." for n in (700, 710, 720)},
+    470: f"G47 engraves text (Haas), which is not read; {_OUT}.",
+    510: f"G51 scales coordinates, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
+    511: f"G51.1 mirrors coordinates, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
+    682: f"G68.2 tilts the working plane, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
+    **{n: f"G{n // 10} sets a pole, {_READ} Sinumerik controls alone; {_CHOOSE}." for n in (1100, 1110, 1120)},
+    650: f"G65 calls a macro with values, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
+    660: f"G66 calls a macro at every point, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
 }
 """What is said of G words that are known and not read."""
 
-_COMMENT = re.compile(r"\([^()\n]*\)|;[^\n]*")
 _VERBATIM_OR_CODE = re.compile(r"\([^()\n]*\)?|;.*|<[^>]*>?|\"[^\"]*\"?|[^(;<\"]+")
 
 
@@ -69,7 +70,7 @@ _SINUMERIK_TEXT = (
     ("workpiece", r"\n[ \t]*(?:n\d+[ \t]*)?workpiece[ \t]*\("),
     ("cycle8", r"\n[ \t]*(?:n\d+[ \t]*)?cycle8\d+[ \t]*\("),
 )
-_HEIDENHAIN = (("begin pgm", r"\n[ \t]*n?\d*[ \t]*begin pgm\b"),)
+_HEIDENHAIN = (("begin pgm", r"\n[ \t]*n?\d*[ \t]*begin pgm\b"), ("%", r"\A\s*%[^\s*]+[ \t]+g7[01][ \t]*\*"))
 _GRBL = (("$", r"\n[ \t]*\$(?:[a-z#$]{0,2}[ \t]*(?=\n)|h|\d+=|n\d*=|j=|rst=)"),)
 _SINUMERIK = (
     *_words("g710", "g700", "g500", "g601", "g641", "g642", "g643", "g644", "g645"),
@@ -84,11 +85,12 @@ _SINUMERIK = (
     ("g7", r"\A(?![^\0]*\bg43\b)[^\0]*\n[^\n]*\bg7[01]\b(?![^\n]*(?:[qpuwrdl][ \t]*[-.\d#\[]|g9[01]\.1))"),
 )
 _FANUC = (
-    *_words("g65", "g54.1", "g05", "g43.4"),
+    *_words("g65", "g54.1", "g43.4", "g68.2"),
+    ("g05", r"\bg05(?:\.\d)?[ \t]*[pqr]"),
     (":", r"\n[ \t]*:\d{4,}[ \t]*(?=\n)"),
     ("o", r"\n[ \t]*o\d{4,}[ \t]*(?=\n)|\A\s*%[^\n]*\n\s*o\d+[ \t]*(?=\n)"),
     ("m98", r"\bm98[ \t]*p"),
-    ("goto", r"\bif[ \t]*\[.*\bgoto\b"),
+    ("[", r"\bif[ \t]*\[.*\bgoto|\bwhile[ \t]*\[.*\][ \t]*do[ \t]*[1-3]\b"),
     ("g28", r"\bg28[ \t]*u0"),
 )
 """Signs of a dialect in lower-case text: characters that are quickly missed, and the pattern that they must be in."""
@@ -213,9 +215,7 @@ class Dialect:
         """Refuse unknown G words (they may move the machine); count unknown M words and harmless G words."""
         for code in block.unknown_g:
             harmless = HARMLESS["fanuc"] if self._is_fanuc_like else HARMLESS[self.name]
-            if self.has_macros and (self._turns(machine, block, code) or _selects(machine, block, code)):
-                continue
-            if self.has_macros and (scales(machine, block, code) or bolt_holes(machine, block, code)):
+            if self.has_macros and any(do(machine, block, code) for do in (self._turns, _selects, scales, bolt_holes)):
                 continue
             if code in (700, 710) and not self.marked and block.words.keys().isdisjoint("pquwrdl"):
                 units = 200 if code == 700 else 210
@@ -231,6 +231,8 @@ class Dialect:
             if code == 500 and not block.words.keys().isdisjoint("xyzabc"):
                 raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")
             if code in harmless:
+                for letter in "xyzijk" if code == 220 else "":  # of G22, the limits of the machine
+                    block.words.pop(letter, None)
                 machine.note("harmless-g", "ignored", f"{g_name(code)} is left out: it moves nothing")
             else:
                 raise block.refuse(
@@ -261,10 +263,8 @@ class Dialect:
             del block.g[modal.COORDINATES]
             select_extended(machine, block, block.words["p"])
             return
-        if self.name == "sinumerik" and letter == "e":
-            raise block.refuse("E is no word of a Sinumerik; it writes 1000 as 1EX3, with EX for times ten to the.")
-        if self.name == "sinumerik" and letter == "l":
-            raise block.refuse(f"L{block.words['l']:g} calls a subprogram; put it on a line of its own.")
+        if meant := meant_elsewhere(letter, block.words, self.name):
+            raise block.refuse(meant)
         if block.unknown_m or modal.USER in block.m:
             code = [*block.unknown_m, block.m.get(modal.USER)][0]
             machine.note("unused-word", "ignored", f"{letter.upper()} beside M{code} is left out with it")
@@ -317,7 +317,7 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
     if _shows(text, _SINUMERIK_TEXT):
         return Dialect("sinumerik")
     if "(" in text or ";" in text:
-        text = _COMMENT.sub("", text)
+        text = COMMENT.sub("", text)
     for name, signs in (("grbl", _GRBL), ("sinumerik", _SINUMERIK), ("fanuc", _FANUC)):
         if _shows(text, signs):
             return Dialect(name)
@@ -373,7 +373,7 @@ def _take_corner(raw: str, machine: Machine) -> str:
 
 def _dwells(code: str, motion: int) -> bool:
     """Whether P is a dwell on a line of Fanuc's: of G4 or of a cycle, which may be in force (``motion``)."""
-    words = {found[1] or "call" for found in _G_WORD.finditer(_COMMENT.sub("", code))}
+    words = {found[1] or "call" for found in _G_WORD.finditer(COMMENT.sub("", code))}
     if words & {"10", "65", "66", "54.1", "call"}:
         return False
     in_force = str(motion // 10) in _CYCLES and not words & _MOVES

@@ -9,6 +9,7 @@ from robomill.toolpath.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.offsets import stored_system, system_name
 from robomill.toolpath.gcode.program import TRAVERSE, Program
+from robomill.toolpath.gcode.scan import COMMENT_BYTES
 from robomill.toolpath.path import NO_SPINDLE, ROTARY_ASKED
 from robomill.units import format_si, to_si
 
@@ -33,7 +34,6 @@ def _coordinate(number: bytes) -> re.Pattern[bytes]:
 _POINTED, _WHOLE = _coordinate(rb"\d{1,9}+\.\d*+"), _coordinate(rb"0*+([1-9]\d{0,8}+)(\.0*+)?+")
 _LATHE_TOOL = re.compile(rb"(?<![A-Za-z0-9])[Tt](\d\d)\1(?![\d.])")
 _CHANGES = re.compile(rb"[Mm]0?6(?![\d.])|(?<![A-Za-z#<])[Yy]\s*[-+.\d#\[]")
-_COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
 QUARTER = 90.0 + 1e-6
 """degrees that a tool which leans is led through, or stands from upright, without a doubt."""
 LONG_DWELL = 60.0
@@ -42,7 +42,7 @@ LONG_DWELL = 60.0
 
 def _without_comments(data: bytes) -> bytes:
     """A program with a blank for each comment: its lines stay."""
-    return _COMMENT.sub(b" ", data) if b"(" in data or b";" in data else data
+    return COMMENT_BYTES.sub(b" ", data) if b"(" in data or b";" in data else data
 
 
 def doubt_points(findings: Findings, data: bytes, on_fanuc: bool = False) -> None:
@@ -118,8 +118,9 @@ def doubt(machine: Machine, program: Program) -> None:
     _doubt_table(machine, program)
 
 
-def turned_far(program: Program) -> list[tuple[str, float, int]]:
-    """Axes that cuts turn through more than a quarter: A, B or C, by how many degrees, and from which line on."""
+def turned_far(program: Program, table: str = "") -> list[tuple[str, float, int]]:
+    """Axes that cuts turn through more than a quarter, or C at all beside an A or B that is not the ``table``: which,
+    by how many degrees, and from which line on."""
     cuts = np.flatnonzero(program.at_feed)
     if not len(cuts) or not (program.rotary.any() or program.rotary0.any()):
         return []
@@ -127,14 +128,18 @@ def turned_far(program: Program) -> list[tuple[str, float, int]]:
     with np.errstate(over="ignore"):
         most = np.degrees(np.maximum(np.abs(angles).max(axis=0), np.ptp(angles, axis=0)))
     found = []
-    for axis in np.flatnonzero(most > QUARTER):
+    least = np.full(3, QUARTER)
+    leans = [axis for axis in (0, 1) if "ABC"[axis] != table]
+    if (angles[:, leans].any(axis=1) & (angles[:, 2] != 0.0)).any():
+        least[2] = 0.0  # a head or table that turns the lean aside, but where C is the tool's own turn
+    for axis in np.flatnonzero(most > least):
         turned = (np.abs(program.rotary[cuts, axis]) > 0.0) | (np.abs(program.rotary0[cuts, axis]) > 0.0)
         found.append(("ABC"[axis], float(most[axis]), int(program.line[cuts[turned][0]])))
     return found
 
 
 def _doubt_table(machine: Machine, program: Program) -> None:
-    """Ask what turns where an axis turns through more than a quarter: a tool that leans, or a table with the part."""
+    """Ask what turns where an axis turns far, or C beside a lean: a tool that leans, or a table with the part."""
     for letter, most, line in turned_far(program):
         text = (
             f"{letter} turns by {most:.0f} degrees: does it turn the part (a rotary table) or lean the tool? It "
@@ -154,7 +159,7 @@ def doubt_second_table(program: Program, table: str) -> tuple[Finding, ...]:
             line,
             code=ROTARY_ASKED,
         )
-        for letter, most, line in turned_far(program)
+        for letter, most, line in turned_far(program, table[-1])
         if letter != table[-1]
     )
     return (*more, *kept)

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from robomill.toolpath.gcode import codes as modal, moves, offsets, splines, threads
+from robomill.toolpath.gcode import codes as modal, cutters, moves, offsets, splines, threads
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.program import PROBE
@@ -29,7 +29,13 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     if "t" in words:
         offsets.known_tool(machine, block, round(words["t"]))
         machine.selected = round(words["t"])
+        if machine.t_changes:
+            _change_to(machine, block, machine.selected)
+    if block.then >= 0 and modal.TOOL not in block.m:
+        raise block.refuse(block.twice)
     _execute_m(machine, block, saved)
+    if block.then > 0:
+        machine.selected = block.then
     switch(machine, plain)
     _execute_g(machine, block, plain)
     if not machine.other_control and (modal.TOOL in block.m or block.m.get(modal.IO) == 66):
@@ -72,8 +78,11 @@ def restore_modes(machine: Machine, block: Block, saved: dict[str, Any]) -> None
         machine.set_units(saved["unit_code"])
     if saved["system"] != machine.system:
         offsets.select_system(machine, block, saved["system"])
+    shifted = machine.save_modes()["shifted"]
+    if saved.get("shifted", shifted) != shifted:
+        offsets.axis_offsets(machine, block, 922 if shifted else 923)
     for name, value in saved.items():
-        if name not in ("unit_code", "system", "automatic"):
+        if name not in ("unit_code", "system", "shifted", "automatic"):
             setattr(machine, name, value)
 
 
@@ -88,6 +97,10 @@ def _change_tool(machine: Machine, block: Block) -> None:
         machine.need_compensation_off(block, "M6")
         number = machine.selected
         machine.spindle = 0
+    _change_to(machine, block, number)
+
+
+def _change_to(machine: Machine, block: Block, number: int) -> None:
     machine.tool = offsets.known_tool(machine, block, number) if number else Tool(0)
     machine.in_spindle = number
     machine.note_length(machine.length_of)
@@ -112,7 +125,7 @@ def _execute_g(machine: Machine, block: Block, plain: list[float]) -> None:
             if machine.compensation is not None:
                 machine.compensation.off(machine, block)
         else:
-            offsets.compensation_on(machine, block)
+            cutters.compensation_on(machine, block)
     if modal.LENGTH in g:
         offsets.tool_length(machine, block, g[modal.LENGTH])
     if modal.COORDINATES in g:

@@ -1,6 +1,7 @@
 """Words of languages that are not read, so that a refusal can name the word and its language, and say what to do."""
 
 import re
+from collections.abc import Mapping
 
 _LEFT_OUT = re.compile(r"\([^()]*\)|;.*|<[^>]*>")
 _WORD = re.compile(r"([a-z_]{2,})\d*(?:dc?[cf]?\b)?")
@@ -10,6 +11,10 @@ LANGUAGES = {
     "Fanuc's Macro B": (
         "if while goto then do end",
         "choose the dialect Fanuc-like, or write branches and loops as O words (O1 while [#1 LT 5])",
+    ),
+    "Sinumerik's splines": (
+        "bspline aspline cspline poly",
+        "let the CAM system write straight moves and arcs (G1, G2, G3)",
     ),
     "Heidenhain's dialogue": (
         "begin tool cycl lbl blk call cc fmax",
@@ -45,6 +50,21 @@ def said_of(raw: str, text: str, at: int) -> str:
     return ""
 
 
+def meant_elsewhere(letter: str, words: Mapping[str, float], control: str) -> str:
+    """What a word that nothing on its line uses means, where it must not be left out; "" for others."""
+    if control == "sinumerik":
+        texts = {
+            "e": "E is no word of a Sinumerik; it writes 1000 as 1EX3, with EX for times ten to the.",
+            "l": f"L{words.get('l', 0.0):g} calls a subprogram; put it on a line of its own.",
+        }
+        return texts.get(letter, "")
+    if letter == "e":
+        return "E chooses a fixture (Fadal) or feeds filament (a 3D printer), which is not read; write G54."
+    if letter == "l" and len(words) == 1:
+        return f"L{words['l']:g} alone begins or calls a subprogram (Fadal, Sinumerik); choose Sinumerik if it is one."
+    return ""
+
+
 FIRST_LINES = 40
 """Lines at the start of a file in which a language is told by its own words."""
 _TOLD = (
@@ -52,10 +72,18 @@ _TOLD = (
         "KUKA KRL",
         r"&(?:ACCESS|REL|PARAM)\b|(?:GLOBAL[ \t]+)?DEF[ \t]+\w+[ \t]*\([^\n]*\)[ \t]*$|;FOLD\b|(?:PTP|LIN)[ \t]*\{",
     ),
-    ("ABB RAPID", r"%%%|MODULE[ \t]+\w+|(?:PERS|CONST)[ \t]+(?:robtarget|tooldata|wobjdata)\b|Move[LJC][ \t]"),
+    (
+        "ABB RAPID",
+        r"%%%|MODULE[ \t]+\w+|(?:PERS|CONST)[ \t]+(?:robtarget|tooldata|wobjdata)\b|[ \t]*Move(?:[LJC]|AbsJ)[ \t]",
+    ),
     ("Fanuc's robot language (TP)", r"/PROG\b|/ATTR\b|[ \t]*\d*:[ \t]*[JLC][ \t]+P\["),
-    ("URScript", r"def[ \t]+\w+\([^\n]*\):|[ \t]*(?:movel|movej|movep|set_tcp)[ \t]*\("),
-    ("Heidenhain's DIN/ISO", r"%\S+[ \t]+G7[01][ \t]*\*"),
+    ("Yaskawa's INFORM", r"/JOB\b|//(?:NAME|POS|INST)\b"),
+    ("Kawasaki's AS", r"\.PROGRAM\b"),
+    ("Mitsubishi's MELFA", r"\d+[ \t]+M(?:OV|VS)[ \t]+P"),
+    ("a robot's PDL2 or KAREL", r"PROGRAM[ \t]+\w+[ \t]*$"),
+    ("URScript or VAL3", r"def[ \t]+\w+\([^\n]*\):|[ \t]*(?:movel|movej|movep|set_tcp)[ \t]*\("),
+    ("Okuma's OSP", r"\$[\w-]+\.(?:MIN|SSB|SUB|LIB)\b|[^(;\n]*\bG15[ \t]*H[ \t]*\d"),
+    ("a 3D printer's G-code", r"[ \t]*(?:N\d+[ \t]*)?(?:G92[ \t]*E[ \t]*-?[\d.]|M1(?:04|09)[ \t]+S\d)"),
     ("HPGL (a plotter's language)", r"(?:IN|PU|PD|SP\d?);"),
     ("a DXF drawing", r"[ \t]*0[ \t]*\n[ \t]*SECTION\b"),
     ("an STL surface", r"solid[ \t]*\w*[^\n]*\n[ \t]*facet\b"),

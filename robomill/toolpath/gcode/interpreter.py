@@ -6,10 +6,11 @@ from robomill.errors import GCodeError
 from robomill.progress import checkpoint
 from robomill.toolpath.gcode import check, codes as modal, tilted
 from robomill.toolpath.gcode.corners import AT_END
+from robomill.toolpath.gcode.cutters import keep_d
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
-from robomill.toolpath.gcode.fanuc.cycles import as_bored, repeats
+from robomill.toolpath.gcode.fanuc.cycles import as_bored, clamps, repeats
 from robomill.toolpath.gcode.fanuc.macro import with_brackets
 from robomill.toolpath.gcode.fanuc.scaling import scale_words
 from robomill.toolpath.gcode.klartext.lines import Klartext
@@ -88,7 +89,7 @@ class Interpreter(Klartext):
             raw = left
         macro = self.dialect.has_macros
         if macro:
-            raw = with_brackets(self.filled_in(raw, line))
+            raw = self.fanuc_angle(with_brackets(self.filled_in(raw, line)), line)
         text = normalise(self.dialect.line(raw, line, machine), line)
         if not text:
             return
@@ -111,15 +112,18 @@ class Interpreter(Klartext):
     def execute(self, block: Block) -> None:
         """Check and execute a block."""
         machine = self.machine
-        if machine.stuck or machine.tilted is not None:
+        if machine.stuck or machine.leans or machine.tilted is not None:
             tilted.check(machine, block)
         if block.unknown_m or block.unknown_g or block.m.get(modal.USER) in CALLS:
             if self.fanuc_call(block):
                 return
             self.dialect.unknown(machine, block)
         self.dialect.meant_otherwise(machine, block)
+        _leave_to_maker(machine, block, self.dialect.name)
         if self.dialect.has_macros:
             as_bored(machine, block)
+            clamps(machine, block)
+            keep_d(machine, block)
         check.choose_motion(machine, block, self.dialect)
         said = block.motion
         scale_words(machine, block)
@@ -189,7 +193,7 @@ class Interpreter(Klartext):
             leads = text[:1] == ";" or (text[:1] == "(" and text.find(")") == len(text) - 1)
             if not text or (leads and not self.dialect.strict):  # a post's name, before the % that begins
                 continue
-            if text.startswith("%"):
+            if text.startswith("%") and not (self.is_klartext and self.is_iso):
                 self.percent = True
                 self.pc = index + 1
                 if len(text) > 1:
@@ -239,3 +243,10 @@ class Interpreter(Klartext):
             raise block.refuse(f"the program gives up: {text.strip()}")
         if len(self.machine.messages) < 1000:
             self.machine.messages.append((block.line, text))
+
+
+def _leave_to_maker(machine: Machine, block: Block, control: str) -> None:
+    """M70 to M73 save and restore modes on LinuxCNC alone; elsewhere they are the machine maker's (a vise, air)."""
+    if control != "linuxcnc" and (code := block.m.get(modal.SPINDLE, 0)) in (70, 71, 72, 73):
+        del block.m[modal.SPINDLE]
+        machine.note("unknown-m", "ignored", f"M{code} is not known and is left out")

@@ -59,6 +59,7 @@ class Machine:
     with that, as LinuxCNC's preview does. ``length_of`` is the tool whose length is in force (None: none, or one that
     the program itself says); ``lifts`` holds how far the tip stands from the point that is told (m), each with the
     first move for which it holds. ``tool_name`` is the tool that a program calls by name, while no table has it.
+    ``shifted_by`` is the last of G52 and G92 (520, 920), which share the shift ``g92``.
     ``systems`` are the coordinate systems that are in force, each with the first move for which it is; ``placed`` those
     that the program itself has placed, each with the line. ``away`` says of which of x, y, z the place is not known, as
     only the machine knows where its home lies;
@@ -66,13 +67,15 @@ class Machine:
     itself (28, 30).
 
     ``tilted`` is the tilted plane in force, ``planes`` are all of them, each with the first move for which it is;
-    ``tilt_due`` is one that waits for G53.1, and ``stuck`` why no move may come before.
+    ``tilt_due`` is one that waits for G53.1, and ``stuck`` why no move may come before; ``left`` are A, B, C (degrees)
+    at which it began, if not at 0, and ``leans`` says that it has ended and nothing has turned the tool back.
 
     ``feeds_follow`` says that feeds count in the unit of lengths (a Sinumerik's G70 and G71 change lengths alone),
     ``feed_in_block`` that F beside a word of units counts in the new ones; ``sharp`` that compensation goes around
     outside corners without an arc (G451).
 
-    ``radii`` are the radius and wear that G10 gives a tool.
+    ``t_changes`` says that T changes the tool at once, without M6; ``kept_d`` is the D that a G41 without one means, 0
+    for the tool in the spindle. ``radii`` are the radius and wear that G10 gives a tool.
 
     ``corner`` is what the line says of the corner at its end (size in program units), ``rounding`` what RNDM says of
     all corners (a radius, 0: none), ``polar_words`` says that X
@@ -103,7 +106,7 @@ class Machine:
         self.factor = to_si(1.0, "mm")
         self.p, self.sent = [0.0] * 6, [0.0] * 6
         self.at, self.turned = [0.0] * 3, [0.0] * 3
-        self.g5x, self.g92 = [0.0] * 6, [0.0] * 6
+        self.g5x, self.g92, self.shifted_by = [0.0] * 6, [0.0] * 6, 0
         self.rotation = 0.0
         self.system = 1
         self.length_offset = [0.0] * 3
@@ -114,14 +117,15 @@ class Machine:
         self.feed_mode, self.feed, self.speed, self.spindle, self.spindle_mode = 940, 0.0, 0.0, 0, 970
         self.retract_r, self.diameter_mode = True, False
         self.tool, self.selected, self.in_spindle = _NO_TOOL, 0, 0
-        self.tool_name = ""
+        self.tool_name, self.t_changes, self.kept_d = "", False, 0.0
         self.away: tuple[bool, ...] = (False, False, False)
         self.aways: list[tuple[int, tuple[bool, ...]]] = []
         self.homes: set[int] = set()
         self.tilted: Any = None
         self.planes: list[tuple[int, Any]] = []
         self.tilt_due: Any = None
-        self.stuck = ""
+        self.stuck, self.leans = "", False
+        self.left: list[float] = []
         self.strict = False
         self.is_fanuc, self.other_control, self.machine_word = False, False, "G53"
         self.variable: Callable[[Machine, int], float] | None = None
@@ -143,8 +147,7 @@ class Machine:
         self.spline_order = 3
         self.line = 0
         self.seeking = self.broke = self.continued = False
-        self.dwells, self.dwell_time, self.waited = 0, 0.0, 0.0
-        self.moves = 0
+        self.moves, self.dwells, self.dwell_time, self.waited = 0, 0, 0.0, 0.0
         self.messages: list[tuple[int, str]] = []
 
     def note(self, code: str, level: Level, message: str) -> None:
@@ -168,7 +171,7 @@ class Machine:
         held = self.compensation is not None or self.recorder.held is not None
         other = self.diameter_mode or self.polar_words or self.modal is not None or self.scale is not None
         counted = self.feeds_follow or self.unit_code == 210
-        return counted and not (held or other or self.rounding or any(self.away) or self.stuck)
+        return counted and not (held or other or self.rounding or any(self.away) or self.stuck or self.leans)
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""
@@ -253,6 +256,11 @@ class Machine:
             self.planes.pop()
         self.planes.append((len(self.recorder), plane))
 
+    def stand_at(self, angles: list[float]) -> None:
+        """A, B and C stand at angles (degrees), without a move."""
+        self.p[3:], self.sent[3:] = angles, angles
+        self.turned = [math.radians(angle) for angle in angles]
+
     # --- places that only the machine knows
     def set_away(self, away: tuple[bool, ...]) -> None:
         """Of x, y and z the place is not known (True) from the next move on."""
@@ -298,8 +306,8 @@ class Machine:
 
     # --- saved modes
     def save_modes(self) -> dict[str, Any]:
-        """What M70 and M73 keep."""
-        return {name: getattr(self, name) for name in _SAVED}
+        """What M70 and M73 keep; of G52 and G92 whether they shift."""
+        return {name: getattr(self, name) for name in _SAVED} | {"shifted": self.store.numbered[5210] != 0.0}
 
     # --- values that programs can read
     def provided(self, name: str | int) -> float:

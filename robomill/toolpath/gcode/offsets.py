@@ -2,14 +2,12 @@
 
 from dataclasses import replace
 
-from robomill.toolpath.gcode.codes import COMPENSATION, g_name
-from robomill.toolpath.gcode.compensation import Compensation
+from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.rules.mode_rules import system_code
 from robomill.toolpath.gcode.rules.motion_rules import rotate
 from robomill.toolpath.gcode.standing import begins, stand
 from robomill.toolpath.gcode.words import Block
-from robomill.toolpath.plane import axes
 from robomill.toolpath.tools import MOST, Tool
 from robomill.units import from_si, to_si
 
@@ -140,7 +138,10 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
         text = "G92 before the first move shifts part zero, as LinuxCNC takes the tool to stand at its own zero then"
         machine.note("zero-shifted", "warning", f"{text}; remove the line where it says where the tool stands")
     if code in (520, 920):
-        numbered[5210] = 1.0
+        if machine.other_control and any(machine.g92) and machine.shifted_by != code:
+            text = f"{g_name(code)} on top of {g_name(machine.shifted_by)}, as a control adds them, is not read"
+            raise block.refuse(f"{text}; end that before.")
+        numbered[5210], machine.shifted_by = 1.0, code
         for axis, letter in enumerate(XYZABC):
             if letter not in block.words:
                 continue
@@ -350,51 +351,3 @@ def known_tool(machine: Machine, block: Block, number: int) -> Tool:
             raise block.refuse(f"tool {number} is not in the tool table; add it.") from None
     machine.note("tool-unknown", "warning", f"tool {number} is not in the tool table: its size is not known; add it")
     return Tool(number)
-
-
-def compensation_on(machine: Machine, block: Block) -> None:
-    """G41, G42, G41.1 and G42.1."""
-    code = block.g[COMPENSATION]
-    name = machine.sides.get(code, g_name(code))
-    if machine.plane not in (17, 18):
-        raise block.refuse(f"{name} works in the planes G17 and G18 only.")
-    if machine.compensation is not None and not machine.other_control:
-        raise block.refuse(f"{name}: cutter compensation is on already; use G40 first.")
-    orientation = 0
-    if code in (411, 421):
-        if "d" not in block.words:
-            raise block.refuse(f"{name} needs D, the diameter.")
-        if "l" in block.words and machine.plane != 18:
-            raise block.refuse(f"{name} takes L in the plane G18 only.")
-        radius = block.words["d"] / 2.0
-        orientation = round(block.words.get("l", 0.0))
-    else:
-        tool = machine.tool
-        if "d" in block.words:
-            number = block.words["d"]
-            if abs(number - round(number)) > 1e-4 or number < 0:
-                raise block.refuse(f"{name} has D{number:g}; expected the number of a tool.")
-            tool = known_tool(machine, block, round(number))
-        if machine.tools is None or not (tool.sized or machine.strict):
-            named = f'tool "{machine.tool_name[:40]}"' if machine.tool_name else "the tool in the spindle"
-            which = f"tool {tool.number}" if tool.number else named
-            do = "give a tool table" if machine.tools is None else "write it into the tool table"
-            raise block.refuse(f"{name} needs the diameter of {which}; {do}.")
-        if tool.number and tool.number not in machine.tools:
-            raise block.refuse(f"tool {tool.number} is not in the tool table; add it.")
-        if not tool.number and machine.tool_name:
-            raise block.refuse(f'tool "{machine.tool_name[:40]}" is not in the tool table; add it under that name.')
-        radius, orientation = from_si(tool.diameter, machine.unit) / 2.0, tool.orientation
-        if machine.plane != 18 and orientation not in (0, 9):
-            raise block.refuse(f"{name} with a lathe tool works in the plane G18 only.")
-    u, v, _ = axes(machine.plane)
-    mirrored = machine.scale is not None and machine.scale.factors[u] * machine.scale.factors[v] < 0.0
-    left = ((code in (410, 411)) == (radius >= 0)) != mirrored  # left of what is said is right of its image
-    if radius == 0:
-        machine.note("zero-diameter", "warning", f"{name} with a diameter of 0: the contour is followed as it is")
-    before = machine.compensation
-    if before is not None:  # said once more
-        if (before.left, before.radius) != (left, abs(radius)):
-            raise block.refuse(f"{name} changes the side or the cutter without G40; use G40 first.")
-        return
-    machine.compensation = Compensation(left, abs(radius), orientation, machine.plane)

@@ -22,7 +22,7 @@ __all__ = ["ARC", "FEED", "KINDS", "PLANES", "PROBE", "TAP", "TRAVERSE", "Move",
 KINDS = ("traverse", "feed", "arc", "tap", "probe")
 PLANES = {17: "XY", 18: "XZ", 19: "YZ"}
 MAX_MOVES = 6_000_000
-LOOPED_MOVES, MOVES_A_LINE = 400_000, 20
+LOOPED_MOVES, MOVES_A_LINE = 200_000, 20
 """So many moves a program may make, and so many more for each of its lines: what makes more has a loop without end."""
 FLUSH = 16_384
 

@@ -13,6 +13,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.arcs import CHORD_ERROR
 from robomill.toolpath.findings import NO_UNITS
 from robomill.toolpath.gcode.chords import to_toolpath
+from robomill.toolpath.gcode.cutters import never_changes
 from robomill.toolpath.gcode.dialects import SAMPLE, Dialect, choose_dialect
 from robomill.toolpath.gcode.doubts import doubt, doubt_all_points, doubt_lathe, doubt_points, doubt_second_table
 from robomill.toolpath.gcode.fanuc.macro_calls import begin_empty
@@ -23,7 +24,7 @@ from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program, most_moves
-from robomill.toolpath.gcode.tilted import check_rotary
+from robomill.toolpath.gcode.tilted import check_rotary, drop_positioning
 from robomill.toolpath.path import TABLES, Toolpath, far_off
 from robomill.toolpath.text import Source, is_apt, named_as_file, read_source
 from robomill.toolpath.tools import Tools
@@ -105,7 +106,7 @@ def interpret(
     chosen = choose_dialect(sample, dialect)
     if chosen.guessed and (foreign := language_of(sample)):
         raise GCodeError.at(*foreign)
-    machine = _machine(tools, chosen, len(lines))
+    machine = _machine(tools, chosen, lines)
     is_file = isinstance(source, Path) or (isinstance(source, str) and name != "program")
     folder = Path(source).parent if isinstance(source, str | Path) and is_file else None
     file = File(name, lines, folder)
@@ -133,9 +134,9 @@ def interpret(
     return program
 
 
-def _machine(tools: Tools | None, dialect: Dialect, lines: int) -> Machine:
+def _machine(tools: Tools | None, dialect: Dialect, lines: Lines) -> Machine:
     machine = Machine(tools)
-    machine.recorder.most = most_moves(lines)
+    machine.recorder.most = most_moves(len(lines))
     machine.strict = dialect.strict
     machine.keeps_heights = dialect.keeps_heights
     machine.feed_in_block = dialect.name in ("grbl", "sinumerik", "fanuc")
@@ -144,6 +145,7 @@ def _machine(tools: Tools | None, dialect: Dialect, lines: int) -> Machine:
         machine.store.cut_towards_zero()
     if dialect.name == "sinumerik":
         machine.further = "G5{:02}"
+        machine.t_changes = never_changes(lines.data)
     if dialect.name == "fanuc":
         begin_empty(machine)
         machine.retract_r = False  # these controls begin in G98
@@ -154,7 +156,7 @@ def _offered(refused: GCodeError, machine: Machine, tools: Tools | None, file: F
     """What a program is refused with; of an arc off its circle also whether all arcs fit with absolute centres."""
     if not machine.arc_refused:
         return refused
-    again = _machine(tools, dialect, len(file.lines))
+    again = _machine(tools, dialect, file.lines)
     again.arc_absolute = True
     try:
         Interpreter(again, File(file.name, file.lines, file.folder), dialect).run()
@@ -167,6 +169,8 @@ def _offered(refused: GCodeError, machine: Machine, tools: Tools | None, file: F
 def _program(machine: Machine, dialect: str, lines: int) -> Program:
     columns: dict[str, Any] = machine.recorder.columns()
     _check_sizes(columns)
+    if any(plane is not None for _, plane in machine.planes):
+        drop_positioning(machine.planes, columns)
     if not machine.unit_said and len(columns["line"]):
         machine.findings.add(NO_UNITS, "suspicious", 0, "no G20 or G21: lengths are taken as mm")
     program = Program(

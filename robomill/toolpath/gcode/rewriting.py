@@ -18,7 +18,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.fitting import Piece
 from robomill.toolpath.gcode.legs import Leg
 from robomill.toolpath.gcode.program import TRAVERSE, Program
-from robomill.toolpath.gcode.scan import AXES, CENTRES, ROTARY, Token, joined, scan, unscaled, without
+from robomill.toolpath.gcode.scan import AXES, CENTRES, ROTARY, Token, joined, notes, scan, unscaled, varies, without
 from robomill.toolpath.gcode.trace import Executed, Modes
 from robomill.toolpath.plane import axes
 from robomill.units import format_plain, from_si
@@ -35,7 +35,6 @@ SHAPES = (*CORNERS, "CR=", "AR=", "TURN=", "ANG=")
 PLACES = AXES + ROTARY + CENTRES + "R"
 CALLS = {"M97", "M98", "M99", "M198", "M17", "G65", "G66", "G67"}
 _CYCLE_CALL = re.compile(r"\s*(N\d+\s*)?(?:CYCLE\d+|HOLES\d+|MCALL\b.*)\s*(?:\(.*\))?\s*(;.*)?$", re.IGNORECASE)
-_REMARK, _PARAMETER = re.compile(r"\([^()]*\)|;.*"), (re.compile("#"), re.compile(r"#|\bR\d"))
 _MODAL_CALL = re.compile(r"\s*(N\d+\s*)?MCALL\b", re.IGNORECASE)
 
 
@@ -97,15 +96,17 @@ class Rewriter:
         before: Modes | None = None
         self.lines += text_lines[: executed[0].index if executed else 0]
         for each in executed:
-            text = each.text if each.index not in numbered else re.sub(r"^(\s*/?\s*)N\d+\s*", r"\1", each.text)
+            again = each.index in numbered
+            text = re.sub(r"^(\s*/?\s*)N\d+\s*", r"\1", each.text) if again else each.text
             numbered.add(each.index)
             moves = range(each.first, each.last)
             if len(moves) or self._kept(text, before, each.modes):
-                if not len(moves) and _PARAMETER[self.dialect == "sinumerik"].search(_REMARK.sub("", text)):
-                    raise GCodeError.at(
-                        each.index + 1, f"{text.strip()[:40]!r} is computed, and cannot be written back."
-                    )
+                if not len(moves) and varies(text, self.dialect):
+                    what = f"{text.strip()[:40]!r} is computed, and cannot be written back."
+                    raise GCodeError.at(each.index + 1, what)
                 self._line(text, moves, each.modes, each.index + 1)
+            elif not again:
+                self.lines += notes(text, self.dialect)
             before = each.modes
         self.lines += [line for line in text_lines[-1:] if line.strip() == "%"]  # what began as a tape ends as one
 
@@ -113,8 +114,7 @@ class Rewriter:
         """Whether a line that makes no move is kept where loops and calls are written out."""
         tokens = scan(text)
         if tokens is None:
-            frame = before is not None and not before.places_as(modes)
-            return frame or text.strip()[:1] in ("%", "")
+            return (before is not None and not before.places_as(modes)) or text.strip()[:1] in ("%", "")
         codes = {token.code for token in tokens}
         computes = any(token.letter and (token.value is None or token.letter in "LP#") for token in tokens)
         return not codes & CALLS and (not computes or "G10" in codes or "G4" in codes)
@@ -213,8 +213,7 @@ class Rewriter:
             yield Leg(j, piece, "G0" if program.kind[j] == TRAVERSE else "G1", program)
             return
         for piece in self.pieces[j]:
-            code = "G1" if piece.centre is None else "G3" if piece.sweep > 0.0 else "G2"
-            yield Leg(j, piece, code, program)
+            yield Leg(j, piece, "G1" if piece.centre is None else "G3" if piece.sweep > 0.0 else "G2", program)
 
     def _words(self, leg: Leg, modes: Modes, tokens: Mapping[str, Token], all_axes: bool) -> dict[str, str]:
         """What leads a leg to its end: words by letter, and the point that they lead to becomes ``at``."""

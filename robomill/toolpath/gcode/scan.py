@@ -1,6 +1,7 @@
 """A line of a program as its words where they stand, so that some can be changed and all others stay as they were."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 AXES, ROTARY, CENTRES = "XYZ", "ABC", "IJK"
@@ -12,7 +13,20 @@ _PART = re.compile(
     r"|(?P<computed>(?P<of>[A-Z])\s*(?:=\s*[^\s;]+|[-+]?(?:#<[^>]*>|#+\d+|#*\[)))",
     re.IGNORECASE,
 )
+COMMENT = re.compile(r"\([^()\n]*\)|;[^\n]*")
+"""What a line says to people."""
+COMMENT_BYTES = re.compile(COMMENT.pattern.encode())
+_PARAMETER = re.compile("#"), re.compile(r"#|\bR\d")
+_BLOCK = re.compile(r"\s*/?\s*N?\d")
 _SCALED = re.compile(r"\s*((?:N\d+\s*)?)(A?)(?:MIRROR|SCALE)\b", re.IGNORECASE)
+
+
+def behind_remark(lines: Sequence[str], index: int) -> int:
+    """The first line from ``index`` on that goes on with no remark above it: Heidenhain's go on behind ~, without a
+    block number."""
+    while index < len(lines) and lines[index - 1].rstrip().endswith("~") and not _BLOCK.match(lines[index]):
+        index += 1
+    return index
 
 
 @dataclass(frozen=True)
@@ -80,6 +94,17 @@ def without(tokens: list[Token], gone: set[int]) -> list[Token]:
     """The tokens but those at some places, each with the space before it."""
     also = {i - 1 for i in gone if i > 0 and tokens[i - 1].is_space}
     return [token for i, token in enumerate(tokens) if i not in gone | also]
+
+
+def notes(line: str, dialect: str) -> list[str]:
+    """What a line says to people, as a line of its own; brackets are none on a Sinumerik, where they hold values."""
+    found = [each[0] for each in COMMENT.finditer(line) if dialect != "sinumerik" or each[0][0] == ";"]
+    return [" ".join(found)] if found else []
+
+
+def varies(line: str, dialect: str) -> bool:
+    """Whether a line counts by parameters."""
+    return _PARAMETER[dialect == "sinumerik"].search(COMMENT.sub("", line)) is not None
 
 
 def unscaled(text: str) -> list[str] | None:

@@ -7,6 +7,7 @@ from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.owords import SENTENCES, Call, OWords
 from robomill.toolpath.gcode.rules import flow_rules as rules
+from robomill.toolpath.gcode.scan import COMMENT
 from robomill.toolpath.gcode.words import Block
 
 _LINE_NUMBER = re.compile(rb"^[/ \t]*N[ \t]*0*(\d{1,9})(?![\d.])", re.MULTILINE | re.IGNORECASE)
@@ -19,6 +20,7 @@ _NAMED = re.compile(
 )
 _LEAVES = re.compile(r"\b(?:M17|M0?2|M30|RET)\b(?:[ \t]*\([^()]*\))?")
 _N = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?")
+_OVER = re.compile(r"M[ \t]*99(?![\d.])(?![ \t]*P)|^[ \t]*[O:]\d", re.IGNORECASE)
 CALLS = (97, 98, 198)
 LOCALS = 33
 """Variables #1 to #33 of Macro B belong to the macro that is being run."""
@@ -37,11 +39,10 @@ class Subprograms(OWords):
         if code == 99:
             self._return(block)
             return True
+        if "p" not in block.words and "h" in block.words and code == 98:  # Mitsubishi: a line of this program
+            code, block.words["p"] = 97, block.words.pop("h")
         if "p" not in block.words:
             raise block.refuse(f"M{code} needs P, the {'line' if code == 97 else 'number of the program'} to call.")
-        if "q" in block.words:
-            text = "is a line on some controls (Fanuc) and a count on others (Mach3); write L for repeats"
-            raise block.refuse(f"M{code} has Q{block.words['q']:g}, which {text}.")
         bare = self.o_words(self.main).bare
         number, repeats = self.dialect.subprogram(block, code, bare)
         if code == 97:
@@ -53,9 +54,39 @@ class Subprograms(OWords):
             at = bare.get(str(number))
             if at is None:
                 raise block.refuse(self._missing(f"M{code}", f"O{number}", block.line))
-            start = at + 1
+            start, repeats = self._begun(block, at + 1, repeats)
         self._enter(block, str(number), start, repeats)
         return True
+
+    def _begun(self, block: Block, start: int, repeats: int) -> tuple[int, int]:
+        """Where M98 with Q (Mitsubishi: also H) begins, and how often it is run.
+
+        Q is a line of the subprogram (Fanuc, Mitsubishi); where no line there has that number, and nobody has stated
+        such a control, it is how often it is run (Mach3).
+        """
+        letter = next((each for each in "qh" if each in block.words), "")
+        if not letter:
+            return start, repeats
+        number, end = block.words[letter], self._end_of(start)
+        within = (at for at in self._line_numbers.get(round(number), []) if start <= at < end)
+        at = next(within, None) if number == round(number) else None
+        said = f"{letter.upper()}{number:g} of M98"
+        if at is not None:
+            self.machine.note("call-begins", "warning", f"{said} is read as the line N{number:g} at which to begin")
+            return at, repeats
+        stated = not self.dialect.guessed or letter == "h" or "l" in block.words
+        if stated or not 1 <= number <= 9999 or number != round(number):
+            raise block.refuse(f"{said} names a line of what it calls, and none there has that number; mend it.")
+        self.machine.note(
+            "call-counts", "warning", f"{said} is read as a count, as Mach3 does: no line there is N{number:g}"
+        )
+        return start, round(number)
+
+    def _end_of(self, start: int) -> int:
+        """The index of the line at which what begins at ``start`` ends: its M99, or the next O number."""
+        lines = self.main.lines
+        ends = (at for at in range(start, len(lines)) if _OVER.search(COMMENT.sub("", lines[at])))
+        return next(ends, len(lines))
 
     def _missing(self, call: str, name: str, line: int) -> str:
         """Why a subprogram cannot be called: it is not there, or stands where no control looks."""

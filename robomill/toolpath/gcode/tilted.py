@@ -12,10 +12,10 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.codes import COORDINATES, g_name
+from robomill.toolpath.gcode.codes import COORDINATES, MOTION, NON_MODAL, g_name
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.rules.mode_rules import system_code
-from robomill.toolpath.gcode.rules.motion_rules import to_frame
+from robomill.toolpath.gcode.rules.motion_rules import RAPID, TRAVERSE, to_frame
 from robomill.toolpath.gcode.words import Block
 
 _SHIFTS = frozenset({100, 520, 920, 921, 922, 923})
@@ -36,8 +36,8 @@ class Plane:
         return self.place + (p - self.read) @ self.R.T
 
 
-def turned_by(axes: str, degrees: tuple[float, float, float]) -> FloatArray:
-    """(3, 3): three turns, each about an axis ("X", "Y", "Z") as the turns before it have left it."""
+def turned_by(axes: str, degrees: tuple[float, ...]) -> FloatArray:
+    """(3, 3): turns, each about an axis ("X", "Y", "Z") as the turns before it have left it."""
     out = np.eye(3)
     for axis, angle in zip(axes, degrees):
         k, t = "XYZ".index(axis), math.radians(angle)
@@ -56,14 +56,18 @@ UNMOVED = (0.0, 0.0, 0.0)
 def tilt(machine: Machine, name: str, R: FloatArray, origin: Place = UNMOVED, moved: Place = UNMOVED) -> None:
     """The plane with axes ``R`` about ``origin`` is in force, its zero ``moved`` along those axes (program units).
 
-    Raises GCodeError where coordinates are turned or scaled, or rotary axes stand elsewhere than at 0.
+    Raises GCodeError where coordinates are turned or scaled, or rotary axes stand elsewhere than at 0: but for G68.2
+    and CYCLE800, before which programs turn them to where those will.
     """
     block = Block(machine.line)
     machine.need_compensation_off(block, name)
     if machine.rotation != 0.0 or machine.scale is not None or machine.polar_words:
         raise block.refuse(f"{name} while coordinates are turned, mirrored or scaled is not read; end that before.")
     if any(abs(angle) > 1e-9 for angle in machine.p[3:]):
-        raise block.refuse(f"{name} while A, B or C stand elsewhere than at 0 is not read; turn them back before.")
+        if name not in ("G68.2", "CYCLE800") or any(machine.g5x[3:]) or any(machine.g92[3:]):
+            raise block.refuse(f"{name} while A, B or C stand elsewhere than at 0 is not read; turn them back before.")
+        machine.left = machine.p[3:]
+        machine.stand_at([0.0] * 3)
     if machine.plane != 17:
         raise block.refuse(f"{name} is read in G17 alone; write that before.")
     zero, place = [0.0] * 3, [0.0] * 3
@@ -71,7 +75,7 @@ def tilt(machine: Machine, name: str, R: FloatArray, origin: Place = UNMOVED, mo
     to_frame(machine, *origin, place)
     aside = R @ np.array(moved) * machine.factor
     machine.set_tilted(Plane(R, np.array(zero), np.array(place) + aside))
-    machine.stuck = ""
+    machine.stuck, machine.leans = "", False
     text = (
         f"{name} tilts the working plane, and the tool with it: how the machine swivels there is not known, so it is "
         "taken to be clear of the part until X, Y and Z are given again"
@@ -80,13 +84,17 @@ def tilt(machine: Machine, name: str, R: FloatArray, origin: Place = UNMOVED, mo
     machine.set_away((True, True, True))
 
 
-def upright(machine: Machine) -> None:
-    """The plane is as it was, and so is the tool."""
+def upright(machine: Machine, stays: bool = False) -> None:
+    """The plane is as it was, and so is the tool, if it ``stays`` not as it was turned until A, B or C are said."""
     machine.need_compensation_off(Block(machine.line), "The end of a tilted plane")
+    machine.leans = stays and (machine.leans or (machine.tilted is not None and machine.tilted.R[2, 2] < 1.0 - 1e-9))
     if machine.tilted is not None:
         machine.set_tilted(None)
         machine.set_away((True, True, True))
     machine.stuck, machine.tilt_due = "", None
+    if machine.left:
+        machine.stand_at(machine.left)
+        machine.left = []
 
 
 def of_fanuc(machine: Machine, block: Block, code: int) -> bool:
@@ -109,7 +117,7 @@ def of_fanuc(machine: Machine, block: Block, code: int) -> bool:
         tilt(machine, "G68.2", R, origin)
         return True
     if code == 690 and (machine.tilted is not None or machine.tilt_due is not None):
-        upright(machine)
+        upright(machine, stays=True)
         return True
     return False
 
@@ -118,6 +126,8 @@ def check(machine: Machine, block: Block) -> None:
     """Raise GCodeError for what would shift or turn a tilted plane, or where a move waits for the tool to be turned."""
     if machine.stuck and block.words.keys() & set("xyzijkr"):
         raise block.refuse(machine.stuck)
+    if machine.leans:
+        _check_lean(machine, block)
     if machine.tilted is None:
         return
     shifts = [code for code in (*block.g.values(), *block.unknown_g) if code in _SHIFTS | _TURNS]
@@ -125,6 +135,34 @@ def check(machine: Machine, block: Block) -> None:
         shifts.append(block.g[COORDINATES])
     if shifts:
         raise block.refuse(f"{g_name(shifts[0])} in a tilted plane is not read; end that before.")
+
+
+def _check_lean(machine: Machine, block: Block) -> None:
+    """After G69 and CYCLE800() the tool stands as it was turned, until A, B or C are said."""
+    if block.words.keys() & set("abc"):
+        machine.leans = False
+        return
+    moves = block.words.keys() & set("xyz") and block.g.get(NON_MODAL, 0) not in (280, 300, 530)
+    if moves and block.g.get(MOTION, machine.motion) != RAPID:
+        raise block.refuse("the end of the plane leaves the tool as it was turned; turn A, B and C back before a cut.")
+
+
+def drop_positioning(planes: Any, columns: dict[str, Any]) -> None:
+    """Rapids at angles between a tilted plane and upright ones lean no tool: the plane alone says how it swivels."""
+    rotary0, rotary = columns["rotary0"], columns["rotary"]
+    edges, moves = {row for row, _ in planes}, len(rotary)
+    rows = np.flatnonzero((rotary0.any(axis=1) | rotary.any(axis=1)) & (columns["kind"] == TRAVERSE))
+    if not len(rows):
+        return
+    cut = 1 + np.flatnonzero((np.diff(rows) > 1) | np.isin(rows[1:], list(edges)))
+    still0, still = rotary0.copy(), rotary.copy()
+    for run in np.split(rows, cut):
+        begin, end = int(run[0]), int(run[-1]) + 1
+        before = begin in edges or not rotary0[begin].any()
+        after = end in edges or end == moves or not rotary0[end].any()
+        if edges & {begin, end} and before and after:
+            still0[begin:end] = still[begin:end] = 0.0
+    columns["rotary0"], columns["rotary"] = still0, still
 
 
 def check_rotary(planes: Any, columns: dict[str, Any]) -> None:
@@ -137,12 +175,13 @@ def check_rotary(planes: Any, columns: dict[str, Any]) -> None:
             raise GCodeError.at(line, "A, B or C in a tilted plane is not read; end the plane before.")
 
 
-def stand(planes: Any, p: FloatArray, first: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Points p (n, 3) m and tool axes (n, 3) in the part; ``first`` (m,) are the first points of the moves.
+def stand(planes: Any, p: FloatArray, k: FloatArray, first: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Points p (n, 3) m and tool axes k (n, 3) in the part; ``first`` (m,) are the first points of the moves.
 
-    A move that leads into another plane is straight, and the tool turns along it evenly.
+    Outside of tilted planes both are as they are told. A move that leads into another plane is straight, and the tool
+    turns along it evenly.
     """
-    p, k = p.copy(), np.tile([0.0, 0.0, 1.0], (len(p), 1))
+    p, k = p.copy(), np.broadcast_to(k, p.shape).copy()
     bounds = [*(int(first[row]) if row < len(first) else len(p) for row, _ in planes), len(p)]
     for (_, plane), begin, end in zip(planes, bounds, bounds[1:]):
         if plane is not None:
@@ -170,8 +209,11 @@ def _between(a: FloatArray, b: FloatArray, share: FloatArray) -> FloatArray:
     return np.cos(angle) * a + np.sin(angle) * across / size
 
 
-def turn_between(planes: Any, row: int) -> float:
-    """The angle (rad) by which the tool turns on the move at which the plane number ``row`` of ``planes`` begins."""
-    axes = [np.array([0.0, 0.0, 1.0]) if plane is None else plane.R[:, 2] for _, plane in planes]
-    before = axes[row - 1] if row else np.array([0.0, 0.0, 1.0])
-    return math.acos(float(np.clip(before @ axes[row], -1.0, 1.0)))
+def turn_between(planes: Any, number: int, before: FloatArray, after: FloatArray) -> float:
+    """The angle (rad) by which the tool turns on the move at which a plane of ``planes`` begins.
+
+    Its axes ``before`` and ``after`` that move, each (3,), are those of the rotary axes: outside of tilted planes.
+    """
+    old, new = planes[number - 1][1] if number else None, planes[number][1]
+    before, after = before if old is None else old.R[:, 2], after if new is None else new.R[:, 2]
+    return math.acos(float(np.clip(before @ after, -1.0, 1.0)))

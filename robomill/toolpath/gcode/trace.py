@@ -158,7 +158,7 @@ def trace(text: str, dialect: str = "auto", tools: Tools | None = None) -> tuple
     data = as_plain_bytes(text.encode("utf-8", "surrogateescape"))
     lines = Lines(data)
     chosen = choose_dialect(data[:SAMPLE].decode("utf-8", "replace"), dialect)
-    machine = _machine(tools, chosen, len(lines))
+    machine = _machine(tools, chosen, lines)
     reader = _Traced(machine, File("program", lines), chosen)
     reader.executed, reader.together = [], []
     reader.run()

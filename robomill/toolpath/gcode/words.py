@@ -21,7 +21,8 @@ class Block:
 
     ``g`` and ``m`` map modal groups to codes (G codes ten times their number); ``motion_rules`` is the G code of the
     motion that the line makes, -1 for none. ``twice`` is the refusal that LinuxCNC has for words that other controls
-    take together (G0 G0, M7 M8). ``falls`` says that I, J and K are the first, the fall and the least of Haas's pecks.
+    take together (G0 G0, M7 M8). ``falls`` says that I, J and K are the first, the fall and the least of Haas's pecks;
+    ``then`` is the tool that Mazak's T1 T2 M6 makes ready for the next change.
     """
 
     line: int
@@ -35,6 +36,7 @@ class Block:
     motion: int = -1
     twice: str = ""
     falls: bool = False
+    then: int = -1
 
     def refuse(self, message: str) -> GCodeError:
         """The error to raise: ``message`` with the line in front."""
@@ -129,8 +131,9 @@ def _bad_character(reader: Reader) -> str:
 
 
 def _read_value(reader: Reader, block: Block, letter: str) -> None:
-    if letter in block.words:
-        raise reader.refuse(f"{letter.upper()} is given twice; a word can stand on a line once.")
+    twice = f"{letter.upper()} is given twice; a word can stand on a line once."
+    if letter in block.words and (letter != "t" or block.then >= 0):
+        raise reader.refuse(twice)
     reader.at += 1
     value = reader.value()
     if letter in _WHOLE:
@@ -142,6 +145,9 @@ def _read_value(reader: Reader, block: Block, letter: str) -> None:
         raise reader.refuse(f"{_NOT_NEGATIVE[letter]} is {value:g}; it cannot be negative.")
     if letter == "t" and value > MOST:
         raise reader.refuse(f"A tool number is {value:g}; tool numbers run up to {MOST}.")
+    if letter in block.words:
+        block.then, block.twice = round(value), twice
+        return
     block.words[letter] = value
 
 

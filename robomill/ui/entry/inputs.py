@@ -144,7 +144,7 @@ def choice(
 
     def take() -> None:
         picked = st.session_state[key]
-        if picked is not None:
+        if picked in options:  # a browser says an option whose name has changed by the name that it had
             submit(key, picked, lambda: write(picked))
 
     common: dict[str, Any] = {

@@ -47,7 +47,9 @@ def choose(key: str, options: dict[str, str]) -> str:
 def source(bench: Bench, robot: Robot) -> None:
     """A sample, a file, or pasted rows; refused text stays with its sentence."""
     samples = {**SAMPLES, OWN: bench.name} if bench.sample == OWN else SAMPLES
-    inputs.choice("Load tests", "identification.sample", samples, bench.sample, put_sample, inputs.LISTED)
+    # A list of its own for each file: a browser shows a chosen entry by the name that it had.
+    key = "identification.sample" + f":{bench.name}" * (bench.sample == OWN)
+    inputs.choice("Load tests", key, samples, bench.sample, put_sample, inputs.LISTED)
     upload("Your load tests (CSV)", "identification.file", put_tests)
     _templates(robot)
     if len(bench.text) > EDITABLE:

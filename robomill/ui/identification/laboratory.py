@@ -25,12 +25,14 @@ from robomill.ui.entry import declared, inputs
 from robomill.ui.identification import words
 from robomill.ui.identification.bench import robot_of
 from robomill.ui.identification.plan import theta_columns
+from robomill.ui.posed.arm import arm
 from robomill.ui.project import View
 from robomill.units import decimals, format_number, format_percent, format_short, format_si, from_si, unit_label
-from robomill.viz.arm import ArmScene, arm_figure
+from robomill.viz.arm import ArmScene
 from robomill.viz.identification import intervals_figure
 
 KEY = "identification.lab"
+HEIGHT, ASPECT = 380, 1.3  # of the picture; of the arm's frame: a narrower column shows it smaller
 TONES = {"good": "ok", "fair": "tight", "poor": "out"}
 
 
@@ -107,7 +109,7 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
         "The compliances of this robot's joints are hidden. Hang weights on the tool, read the dial gauge, find them."
     )
     with top:
-        pieces.headline("Virtual laboratory", title(lab, result, now.handed_in), "" if done else task)
+        pieces.headline("Identification · virtual laboratory", title(lab, result, now.handed_in), "" if done else task)
     pieces.tiles(tiles(lab, result, now.handed_in))
     left, right = pieces.split([1, 1.9], "laboratory")
     with left:
@@ -115,7 +117,7 @@ def page(bench: Bench, view: View, dark: bool, top: Any) -> None:
         _measure(now)
     with right:
         with st.container(border=True):
-            _arm(robot, now.trial, dark, 330 if done else 450)
+            _arm(robot, now.trial)
         if result is not None:
             truth = lab.reveal() if now.handed_in else None
             with st.container(border=True):
@@ -235,7 +237,7 @@ def _fit(lab: Laboratory) -> tuple[IdentificationResult | None, str]:
         return None, str(exc)
 
 
-def _arm(robot: Robot, trial: Trial, dark: bool, height: int) -> None:
+def _arm(robot: Robot, trial: Trial) -> None:
     solved = inverse_kinematics(robot, pose_from_world(trial.pose))
     if not bool(solved.reached):
         pieces.said("info", f"This pose cannot be measured: {solved.reason()}.", "block")
@@ -245,14 +247,10 @@ def _arm(robot: Robot, trial: Trial, dark: bool, height: int) -> None:
         force=trial.F,
         force_label=format_short(trial.load, "N"),
         joints=robot.joint_numbers,
-        unit=session.project().view.of("m"),
+        aspect=ASPECT,
     )
-    pieces.figure(
-        arm_figure(scene, dark=dark, height=height, revision="lab-arm", zoom=0.9),
-        "lab-arm",
-        caption="The pose to be measured and the weight on the tool.",
-        alt="The arm at the chosen pose with its load.",
-    )
+    words = ("The pose to be measured and the weight on the tool.", "The arm at the chosen pose with its load.")
+    arm(scene, "lab-arm", words, HEIGHT)
 
 
 def _hand_in(now: Exercise, result: IdentificationResult) -> None:

@@ -121,7 +121,7 @@ def title(check: MapCheck) -> str:
     """How far the joint model in force is from what was measured, at the measured points."""
     if not check.seen:
         return "The joint model does not reach any of the measured points."
-    word, far = "higher" if check.softer else "lower", format_percent(check.mean)
+    word, far = "higher" if check.softer else "lower", format_percent(check.mean, 1)
     return f"Measured and calculated compliances differ by {far} on average; the measured ones are {word}."
 
 
@@ -269,7 +269,7 @@ def _cut(field: MeasuredField, cut: CutByBoth, unit: str, dark: bool) -> None:
         ]
         pieces.table(body, " nn", head)
         for finding in by_map.notes:
-            if finding.code == "map-axis":
+            if finding.code in ("map-axis", "map-tool", "map-plane"):
                 pieces.note(finding.sentence)
 
 

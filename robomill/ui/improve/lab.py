@@ -13,7 +13,7 @@ from robomill.report.tags import Html, joined, tag
 from robomill.simulation.result import SimulationResult
 from robomill.ui.improve.remedies import error_words
 from robomill.ui.judged.verdict import WORDS
-from robomill.units import format_duration, format_percent, from_si, unit_label
+from robomill.units import format_duration, format_share, from_si, unit_label
 
 WIDE, HIGH = 260, 150  # of a picture
 ABOVE = 1.1  # of what is shown: so much room
@@ -49,7 +49,7 @@ def _card(
     said = f"{way.title}: how far the tip is off over the time at feed."
     limit = axes.level(float(from_si(run.setup.tolerance, unit)), "tolerance", "limit")
     picture = [axes.frame("s at feed", f"tip off, {unit_label(unit)}"), limit, axes.line(*drawn, "wall")]
-    used = f" · {format_percent(way.share)}" if np.isfinite(way.share) else ""
+    used = f" · {format_share(way.share)}" if np.isfinite(way.share) else ""
     words = f"{format_duration(way.seconds)} · {error_words(decides(run), unit)}{used}"
     return tag(
         "figure",

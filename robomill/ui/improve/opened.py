@@ -16,6 +16,7 @@ from robomill.improve.remedies import Both, Stiffened, decides, error_at
 from robomill.improve.turning import Turning
 from robomill.provenance import Finding
 from robomill.simulation.result import SimulationResult
+from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces
 from robomill.ui.entry import inputs
 from robomill.ui.improve import lab, stiffen
@@ -26,7 +27,7 @@ from robomill.units import (
     format_count,
     format_duration,
     format_many,
-    format_percent,
+    format_share,
     format_short,
     format_si,
     from_si,
@@ -50,7 +51,7 @@ def _corrected(found: Compensation, row: Shown, result: SimulationResult, unit: 
     with here, st.container(border=True):
         pieces.strong("What the corrected program leaves")
         rows = [
-            (name, format_si(each.max, unit), format_percent(each.share(result.setup)))
+            (name, format_si(each.max, unit), format_share(each.share(result.setup)))
             for name, each in (
                 (first, found.before),
                 ("Corrected", found.after),
@@ -58,7 +59,7 @@ def _corrected(found: Compensation, row: Shown, result: SimulationResult, unit: 
                 ("Corrected, the force 20 % off", found.stronger),
             )
         ]
-        pieces.table(rows, " nn", ("Program", "Off the path", "Of tolerance"))
+        pieces.table(rows, " nn", ("Program", "Error", "Of tolerance"))
         words = f"Found after {format_count(found.iterations, 'iteration')}: force and engagement are those of the "
         pieces.note(words + "corrected path. Along the feed nothing is changed.")
         _told(found.findings)
@@ -146,10 +147,15 @@ def _stiffened(found: Stiffened, row: Shown, result: SimulationResult, unit: str
         stiffen.ranking(ranked, joints, unit, dark())
 
 
-def _places(places: Mapping[str, Place], unit: str) -> None:
-    """What full simulations say of places, by name."""
+def _places(places: Mapping[str, Place], setup: SimulationSetup, unit: str) -> None:
+    """What full simulations say of places of a set-up, by name."""
     rows = [
-        (name, error_words(error_at(place), unit), format_percent(place.share), format_si(place.max_deviation, unit))
+        (
+            name,
+            error_words(error_at(place, setup), unit),
+            format_share(place.share),
+            format_si(place.max_deviation, unit),
+        )
         for name, place in places.items()
     ]
     pieces.table(rows, " nnn", ("Place" if "worst" in places else "Spin", "Error", "Of tolerance", "Tip"))
@@ -159,7 +165,8 @@ def _placed(found: Placement, row: Shown, result: SimulationResult, unit: str) -
     here, beside = pieces.split(COLUMNS, "remedy")
     with here, st.container(border=True):
         pieces.strong("Where the part lies")
-        _places({"now": found.now, "best": found.best, "median": found.median, "worst": found.worst}, unit)
+        places = {"now": found.now, "best": found.best, "median": found.median, "worst": found.worst}
+        _places(places, result.setup, unit)
         pieces.note(
             f"Best at X, Y, Z {format_many(found.best.zero, unit, 1)}, turned by "
             f"{format_si(found.best.yaw, 'deg', 1)}. {format_count(found.tried, 'place')} looked at, "
@@ -182,7 +189,7 @@ def _placed(found: Placement, row: Shown, result: SimulationResult, unit: str) -
             "improve-places",
             table=found.columns,
             alt=f"Map of the tolerance used over {format_count(found.tried, 'place')}: now "
-            f"{format_percent(found.now.share)}, at the best place {format_percent(found.best.share)}.",
+            f"{format_share(found.now.share)}, at the best place {format_share(found.best.share)}.",
             caption="At the best height and turn of each point; blank where the arm does not get, or has no room. "
             + level_words(used),
         )
@@ -194,7 +201,8 @@ def _turned(found: Turning, row: Shown, result: SimulationResult, unit: str) -> 
         pieces.strong("How the tool is turned about its axis")
         was = "" if result.ik.spin is None else f", {format_si(float(result.ik.spin[0]), 'deg', 0)}"
         best = format_si(found.spin, "deg", 0)
-        _places({f"now{was}": found.now, f"best, {best} all the way": found.constant, "turning": found.course}, unit)
+        places = {f"now{was}": found.now, f"best, {best} all the way": found.constant, "turning": found.course}
+        _places(places, result.setup, unit)
         _told(found.findings)
         use(row, "Turn it so, all the way")
     with beside, st.container(border=True):
@@ -204,8 +212,8 @@ def _turned(found: Turning, row: Shown, result: SimulationResult, unit: str) -> 
             spins_map(*drawn, unit, dark=dark()),
             "improve-spins",
             table=found.columns,
-            alt=f"Map of the tolerance used by way and spin: now {format_percent(found.now.share)}, at the best spin "
-            f"{format_percent(found.constant.share)}, turning {format_percent(found.course.share)}.",
+            alt=f"Map of the tolerance used by way and spin: now {format_share(found.now.share)}, at the best spin "
+            f"{format_share(found.constant.share)}, turning {format_share(found.course.share)}.",
             caption="Only where it cuts; blank beyond limits and near singular configurations. "
             + level_words(drawn[2]),
         )
@@ -247,7 +255,7 @@ def _cut(found: Advice, row: Shown, result: SimulationResult, unit: str) -> None
                 rows.append([way.title, "–", "–", "–", "–", way.refused])
                 continue
             verdict = way.run.verdict
-            used = format_percent(way.share) if np.isfinite(way.share) else "–"
+            used = format_share(way.share) if np.isfinite(way.share) else "–"
             rate = format_si(way.removal_rate, in_lengths("cm3/min", unit), 1) if np.isfinite(way.removal_rate) else "–"
             error = error_words(decides(way.run), unit)
             rows.append([way.title, format_duration(way.seconds), rate, error, used, WORDS[verdict.level]])

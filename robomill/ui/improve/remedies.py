@@ -46,7 +46,6 @@ from robomill.units import (
     format_count,
     format_duration,
     format_many,
-    format_percent,
     format_share,
     format_short,
     format_si,
@@ -274,6 +273,9 @@ def sentence(found: Sequence[Found], result: SimulationResult, now: Shown, unit:
     if then is None:
         return "What would fix it?"
     title, left = found[0].remedy.title, then.left
+    if not saves(left.share, now.left.share):
+        rests = f" {result.verdict.premise}" if result.verdict.premise else ""
+        return f"Nothing that was tried makes this cut noticeably truer{rests}."
     if result.verdict.level == "unjudged":  # a share of the tolerance would be a judgement
         name, size = decides(result)
         rests = f", {result.verdict.premise}" if result.verdict.premise else ", where it is judged"
@@ -281,9 +283,7 @@ def sentence(found: Sequence[Found], result: SimulationResult, now: Shown, unit:
             f"{title}: {name} error of {format_si(size, unit)} becomes "
             f"{then.error.removeprefix(f'{name} ')}{rests}. Nothing is within tolerance or out of it yet."
         )
-    if not saves(left.share, now.left.share):
-        return "Nothing that was tried makes this cut noticeably truer."
-    used, was = format_percent(left.share), format_percent(now.left.share)
+    used, was = format_share(left.share), format_share(now.left.share)
     judged = f"{WORDS[left.level].lower()} ({used} of the tolerance, now {was})."
     if now.sure:
         return f"{title}: in 95 % of the draws the error is at most {then.error} instead of {now.error}, {judged}"
@@ -300,11 +300,13 @@ def table(found: Sequence[Found], now: Shown) -> None:
         if row is None:
             rows.append([each.remedy.title, each.why])
         else:
-            used, verdict = format_percent(row.left.share), WORDS[row.left.level]
+            used, verdict = format_share(row.left.share), WORDS[row.left.level]
             rows.append([each.remedy.title, row.error, used, verdict, row.cost, row.sure])
+    first = found[0].shown if found else None
+    best = first is not None and saves(first.left.share, now.left.share)
     head = ("Remedy", "Error then", "Of tolerance", "Verdict then", "What it takes", "How sure")
     with st.container(key="improve-table"):
-        pieces.table(rows, "snnvww", head, strong=1 if found and found[0].shown else -1)
+        pieces.table(rows, "snnvww", head, strong=1 if best else -1)
 
 
 def once(result: SimulationResult) -> None:

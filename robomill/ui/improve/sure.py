@@ -20,7 +20,16 @@ from robomill.ui.entry import inputs
 from robomill.ui.entry.box import NumberBox
 from robomill.ui.shell import dark
 from robomill.ui.work import cached
-from robomill.units import format_beside, format_count, format_many, format_percent, format_si, format_value, from_si
+from robomill.units import (
+    format_beside,
+    format_count,
+    format_many,
+    format_percent,
+    format_share,
+    format_si,
+    format_value,
+    from_si,
+)
 from robomill.viz.unsure import distribution, tornado_bars
 
 KEPT = "improve.spread"
@@ -63,11 +72,11 @@ def panel(result: SimulationResult, predicted: str, unit: str) -> None:
         return
     low, high = (format_beside(end, 1.0, "%", 1) for end in found.interval)
     rows = [
-        ("Predicted", predicted, format_percent(result.verdict.share)),
+        ("Predicted", predicted, format_share(result.verdict.share)),
         (
             "95 % of the draws keep",
             format_si(found.quantile(LEVEL), unit, missing="not reached"),
-            format_percent(found.quantile(LEVEL, "share")),
+            format_share(found.quantile(LEVEL, "share")),
         ),
     ]
     pieces.table(rows, " nn", ("", "Error", "Of tolerance"), strong=1)

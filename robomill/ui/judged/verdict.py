@@ -24,7 +24,6 @@ from robomill.ui.serving.menu import file_of
 from robomill.ui.work import cached
 from robomill.ui.work.job import Underway
 from robomill.units import format_beside, format_count, format_limit, format_many, format_share, format_si
-from robomill.wording import listed
 
 WORDS = TITLES
 TONES = {"unreached": "out", "missed": "out"}  # the others are their own
@@ -39,8 +38,7 @@ def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     words = {name: [range_words(each, name, unit) for each in found[:1]] for name in made}
     if out_over(result.verdict, found):
         words["share"].append("so it could be out of tolerance")
-    if len(found) > 1:
-        words["share"].append(f"less: {listed(each.over for each in found[1:])}")
+    words["share"] += [range_words(each, "share", unit) for each in found[1:]]
     return [replace(tile, ranges=[ends for ends in words[name] if ends]) for name, tile in made.items()]
 
 
@@ -156,13 +154,20 @@ def verdict_sentence(result: SimulationResult, unit: str = "mm") -> str:
 
 
 def headline(result: SimulationResult, unit: str = "mm") -> str:
-    """The same, and over what a cut within tolerance may be out of it, where that is known by now."""
-    words = verdict_sentence(result, unit)
+    """What a gauge would read on the part, and over what a cut within tolerance may be out of it, where that is known
+    by now."""
+    words = next(filter(None, said(result, result.verdict, unit)), "")
     try:
         found = widest_first(out_over(result.verdict, _ranges(result, session.known(result.setup))))
     except (RobomillError, Underway):
         return words
     return f"{words} It could be out (up to {format_share(found[0].share[1])}: {found[0].over})." if found else words
+
+
+def beside(result: SimulationResult, unit: str = "mm") -> str:
+    """What stands beneath the headline: how much of the cut is not judged, and what runs through material."""
+    told, more = said(result, result.verdict, unit)
+    return more if told else ""
 
 
 def open_question(result: SimulationResult, on: str = "") -> None:

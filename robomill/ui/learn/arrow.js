@@ -20,7 +20,10 @@ function arrow(parent, degrees, look, words) {
   node("line", { x1: X, y1: Y, x2: x - 10 * c, y2: y + 10 * s }, g);
   const head = [[x, y], [x - 18 * c - 9 * s, y + 18 * s - 9 * c], [x - 18 * c + 9 * s, y + 18 * s + 9 * c]];
   node("polygon", { points: head.map((p) => p.join(",")).join(" ") }, g);
-  node("text", { x: X + (LONG + 20) * c, y: Y - (LONG + 20) * s + 5, "text-anchor": "middle" }, g, words);
+  // Beside an axis, not on it: its dashes would run through the words.
+  const [aside, over] = [Math.abs(c) < 0.15 ? 12 : 0, Math.abs(s) < 0.15 ? 13 : 0];
+  const at = { x: X + (LONG + 20) * c + aside, y: Y - (LONG + 20) * s + 5 - over };
+  node("text", { ...at, "text-anchor": aside ? "start" : "middle" }, g, words);
 }
 
 export default function (component) {

@@ -4,6 +4,7 @@ follow."""
 import numpy as np
 import streamlit as st
 
+from robomill.arrays import FloatArray
 from robomill.compliance.at_pose import PoseReport
 from robomill.compliance.cartesian import cartesian_compliance
 from robomill.compliance.deflection import soft_direction
@@ -73,7 +74,9 @@ def _stretch(found: InHand, here: InHand, way: Ray) -> None:
     times = ellipsoid_scale(found.pose.C, 0.13 * yardstick)
 
     def finish(fig: Chart, dark: bool) -> None:
-        fig.add_traces(ellipsoid_traces(pose.C, pose.T_MT[:3, 3], times, dark=dark, width=0.005 * yardstick))
+        tip = pose.T_MT[:3, 3]
+        body, said = ellipsoid_traces(pose.C, tip, times, dark=dark, width=0.005 * yardstick)
+        fig.add_traces([*body, *(solids.words([each], textposition=_side(each[0] - tip)) for each in said)])
         # The box holds the body where it is longest, so that nothing of it is cut off.
         longest = 1.2 * times * float(soft_direction(cartesian_compliance(pose.robot, way.theta))[0].max())
         widen(fig, way.p.min(axis=0) - longest, way.p.max(axis=0) + longest, room=2.6)
@@ -92,6 +95,11 @@ def _stretch(found: InHand, here: InHand, way: Ray) -> None:
         1.1,
         ((pose.C, way.p), finish),
     )
+
+
+def _side(away: FloatArray) -> str:
+    """Where a word stands beside its point, so that it does not lie over what it is ``away`` (3,) from."""
+    return f"{'bottom' if away[2] < 0.0 else 'top'} center"
 
 
 def _large(value: float, unit: str) -> str:

@@ -212,7 +212,9 @@ def _onward(now: Place) -> None:
 
 def _picture(given: Lesson, found: InHand, now: Place) -> None:
     revealed, pose = now.step >= 2, found.pose
-    unit, size = session.project().view.length, float(np.linalg.norm(given.push))
+    fine = given.bars is not None and given.bars.unit == "um"  # what stands beside the picture is counted so
+    unit = session.project().view.of("um") if fine else session.project().view.length
+    size = float(np.linalg.norm(given.push))
     label = format_si(size, "N", 0)
     scene = ArmScene(
         frames=pose.frames,

@@ -2,6 +2,7 @@
 // gets the plane that was settled on, and the cell that was clicked. Every number was computed there.
 const LEFT = 52, RIGHT = 74, FOOT = 40, CAPTION = 22, GAP = 10, SETTLED_MS = 400, SHADES = 1024;
 const NARROW = 480, FLAT = 46, LEAST_HIGH = 60;  // px: where colour bars lie beneath the maps, how high one is then
+const TITLED = 136;  // px that a title takes with its range: a map that is less wide stands apart from the next one
 
 const make = (name, className = "", text = "") => {
   const made = document.createElement(name);
@@ -233,19 +234,22 @@ class Board {
     const most = Math.min(Math.max(wide / columns * (v1 - v0) / (u1 - u0), LEAST_HIGH), data.most);
     const scale = Math.max(Math.min(wide / columns / (u1 - u0), most / (v1 - v0)), 1e-9);
     this.w = Math.max((u1 - u0) * scale, 24);
+    this.pitch = Math.max(this.w, Math.min(wide / columns, TITLED));
     this.h = Math.max((v1 - v0) * scale, 16);
     const whole = rows * (this.h + CAPTION + GAP) - GAP - CAPTION, foot = CAPTION + whole + FOOT + 2;
     board.style.height = `${foot + (this.narrow ? FLAT * this.bars.length : 0)}px`;
     const lowest = (one) => !this.shown.some((p) => p.column === one.column && p.row > one.row);
     const first = (one) => !this.shown.some((p) => p.row === one.row && p.column < one.column);
+    const room = this.room = Math.floor(Math.min((this.pitch - this.w) / 2, 24));  // for a number under either end
     for (const made of this.shown) {
       const { figure } = made;
-      made.left = first(made) ? LEFT : 0;
+      made.first = first(made);
+      made.left = made.first ? LEFT : room;
       made.foot = lowest(made) ? FOOT : 0;
-      const x = LEFT + made.column * (this.w + GAP) - made.left, y = made.row * (this.h + CAPTION + GAP);
-      Object.assign(figure.style, { left: `${x}px`, top: `${y}px`, width: `${this.w + made.left + 2}px` });
+      const x = LEFT + made.column * (this.pitch + GAP) - made.left, y = made.row * (this.h + CAPTION + GAP);
+      Object.assign(figure.style, { left: `${x}px`, top: `${y}px`, width: `${this.pitch + made.left + 2}px` });
       figure.querySelector("figcaption").style.paddingLeft = `${made.left}px`;
-      made.context = this.sized(made.canvas, this.w + made.left + 2, this.h + made.foot + 2);
+      made.context = this.sized(made.canvas, this.w + made.left + room + 2, this.h + made.foot + 2);
     }
     if (this.narrow) {
       this.bars.forEach((bar, n) => {
@@ -254,7 +258,7 @@ class Board {
       });
       return;
     }
-    const right = LEFT + columns * this.w + (columns - 1) * GAP + 10;
+    const right = LEFT + columns * this.pitch + (columns - 1) * GAP + 10;
     const long = over ? (whole - 24 * (this.bars.length - 1)) / this.bars.length : whole;
     this.bars.forEach((bar, n) => {
       const top = CAPTION - 6 + (over ? n * (long + 24) : 0);
@@ -374,7 +378,7 @@ class Board {
       pixels[(nv - 1 - j) * nu + i] = code ? found[Math.min(Math.max(Math.floor(code * a + b), 0), SHADES - 1)] : 0;
     }
     off.getContext("2d").putImageData(image, 0, 0);
-    c.clearRect(0, 0, w + left + 4, h + made.foot + 4);
+    c.clearRect(0, 0, w + left + this.room + 4, h + made.foot + 4);
     c.save();
     c.translate(left, 0);
     c.fillStyle = this.hatch(c);
@@ -470,7 +474,7 @@ class Board {
       c.textAlign = "center";
       c.fillText(`${data.u.letter}, ${data.unit}`, w / 2, h + 22);
     }
-    if (made.left) {
+    if (made.first) {
       c.textBaseline = "middle";
       c.textAlign = "right";
       const fits = data.v.ticks.filter((_, n) => h >= 18 * data.v.ticks.length || n % Math.ceil(18 * data.v.ticks.length / h) === 0);
@@ -562,7 +566,7 @@ class Board {
     const put = (canvas, x, y) => c.drawImage(canvas, x, y, canvas.width / (window.devicePixelRatio || 1), canvas.height / (window.devicePixelRatio || 1));
     for (const { figure, canvas, panel, note, left } of this.shown) {
       this.font(c, 12.5, this.data.colours.text);
-      c.fillText(`${panel.title}  ${note.textContent}`, figure.offsetLeft + left, figure.offsetTop + 14, this.w);
+      c.fillText(`${panel.title}  ${note.textContent}`, figure.offsetLeft + left, figure.offsetTop + 14, this.pitch);
       put(canvas, figure.offsetLeft, figure.offsetTop + CAPTION);
     }
     for (const { canvas } of this.bars) put(canvas, canvas.offsetLeft, canvas.offsetTop);

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from robomill.arrays import FloatArray
+from robomill.compliance.posture import posture_notes
 from robomill.errors import WorkspaceError
 from robomill.paper import Point
 from robomill.quantities import quantities
@@ -70,11 +71,9 @@ def controls(robot: Robot, view: MapView) -> None:
         pieces.note(f"This arm moves in one plane: only {next(iter(known.values()))} can be shown.")
     else:
         declared.seen("maps.normal", options=known, at=None)
-    if robot.n > 6:
-        pieces.note(
-            f"This arm has {robot.n} axes and holds a place in many postures: a map shows one of them. How far the "
-            "compliance ranges over the others is said at the selected point of the page Compliance."
-        )
+    for note in posture_notes(robot):
+        beside = "the compliance ranges over the others is said at the selected point of the page Compliance."
+        pieces.note(note.sentence + (f" How far {beside}" if robot.n > 6 else ""))
 
 
 def tilt_note(robot: Robot) -> str:

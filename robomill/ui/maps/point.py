@@ -20,15 +20,13 @@ from robomill.units import (
     from_si,
     unit_label,
 )
-from robomill.viz import solids
 from robomill.viz.arm import ArmScene, displacement_scale
-from robomill.viz.chart import Chart
-from robomill.viz.ellipsoid import ellipsoid_scale, ellipsoid_traces
 from robomill.viz.shares import share_bars
 from robomill.viz.theme import joint_colours
 from robomill.wording import lowered
 
 AXES = "XYZ"
+ASPECT = 1.1  # of the arm's frame: it is whole in the narrowest column
 
 
 def headline(found: InHand, moved: Moved, unit: str) -> str:
@@ -83,22 +81,18 @@ def _arm(pose: PoseReport, moved: Moved, unit: str) -> None:
         frames=pose.frames,
         joints=pose.robot.joint_numbers,
         force=moved.push.F,
-        displacement=delta,
+        displacement=delta if moved.moves else None,
         force_label=moved.push.size,
         displacement_label=format_si(moved.size, unit),
+        C=pose.C,
+        aspect=ASPECT,
     )
-    size = solids.yardstick(pose.frames)
-
-    def finish(fig: Chart, dark: bool) -> None:
-        times = ellipsoid_scale(pose.C, 0.16 * size)
-        fig.add_traces(ellipsoid_traces(pose.C, pose.T_MT[:3, 3], times, dark=dark, width=0.0065 * size, away=delta))
-
     caption = (
         f"Brown body: where the tip goes under one force in every direction. Blue: {moved.push.words}. Orange: the "
         f"displacement, shown {format_times(displacement_scale(delta, pose.frames))}."
     )
     alt = "The arm at this pose with the compliance ellipsoid at the tip."
-    arm(scene, "point-arm", (caption, alt), 520, 0.95, (pose.C, finish))
+    arm(scene, "point-arm", (caption, alt), 440)
 
 
 def bars(found: InHand, old: PoseReport, unit: str) -> None:

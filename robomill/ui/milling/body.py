@@ -60,6 +60,9 @@ def _spin_words(result: SimulationResult, unit: str) -> str:
     ends = pieces.attempt(cached.over_spin, result.setup)
     if ends is None or not np.isfinite(ends.range).all():
         return ""
+    low, high = (format_si(float(end), unit) for end in ends.range)
+    if low == high:
+        return ""
     return f"{format_many(ends.range, unit, between=' to ', with_unit=False)}: spin about the tool"
 
 

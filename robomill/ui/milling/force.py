@@ -21,8 +21,10 @@ from robomill.quantities import declared_types
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui import pieces, session
 from robomill.ui.entry import declared, inputs
+from robomill.ui.entry.box import declared as declaration_box
 from robomill.ui.entry.rows import others, rows
 from robomill.ui.milling import materials as material_panel
+from robomill.ui.project import read_field
 from robomill.ui.work import cached, running
 from robomill.ui.work.job import Underway
 from robomill.units import format_count
@@ -54,8 +56,16 @@ def inputs_panel() -> None:
         if force.stated:
             pieces.note(pieces.sourced(setup.provenance.get("force", force.provenance)))
     if force is not None and force.follows_cut and _speed_unsaid(setup):
-        declared.field("source.n_s")
+        _speed(setup)
     _process_switches(force is not None and force.follows_cut)
+
+
+def _speed(setup: SimulationSetup) -> None:
+    """How fast the spindle turns, empty until somebody says it."""
+    name = "source.n_s"
+    box = declaration_box(setup, name, optional=True, placeholder="needed")
+    write = inputs.into_setup(name, name)
+    inputs.value(name, box, read_field(setup, name) or None, lambda n_s: write(n_s or 0.0))
 
 
 def _speed_unsaid(setup: SimulationSetup) -> bool:

@@ -128,7 +128,7 @@ def alloy_table(result: SimulationResult, i: int, spread: AlloySpread | None) ->
         off = format_si(float(largest[row]), unit)
         mark = pieces.badge(material.provenance.kind) + (" in force" if row == 0 else "")
         rows.append((material.title, feed, normal, axial if known else "not given", off, mark))
-    head = ("Row", *(f"{name}, N" for name in COMPONENTS.values()), "tip off, max", "")
+    head = ("Published coefficients", *(f"{name}, N" for name in COMPONENTS.values()), "tip off, max", "")
     pieces.table(rows, " nnnn ", head, strong=0)
     if not all(spread.axial):
         pieces.note("A row that gives no axial force has no part in its range: there it counts as the row in force.")

@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 import streamlit as st
 
+from robomill.csv_text import csv_text
 from robomill.io.meshes import FEW_TRIANGLES, FORMATS, MOST_TRIANGLES, absent, mesh_bytes
-from robomill.report.tables import csv_text
 from robomill.simulation.enlarged import so_far, tip_drawn
 from robomill.simulation.result import SimulationResult
 from robomill.surface.zmap import ZMap

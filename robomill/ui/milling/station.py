@@ -98,7 +98,7 @@ def dial(
     )
     words = "Seen from the spindle. Orange: the arc that cuts, blue: the mean force"
     words += ", pale blue: the peak of a turn" if worst_turn is not None else ""
-    words += ", rings: the alloy's other rows" if others is not None else ""
+    words += ", rings: by other published coefficients of the alloy" if others is not None else ""
     assumed = "" if result.setup.engagement else " The arc is a full slot, as assumed."
     pieces.figure(
         fig,

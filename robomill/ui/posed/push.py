@@ -26,6 +26,7 @@ from robomill.wording import listed
 from robomill.workspace.fields import ComplianceMap
 from robomill.workspace.reach import ReachBox
 
+STILL = 1e-9  # m: a displacement that is no more than this is none
 NAMED = 0.08  # a joint with a smaller share is not named
 
 
@@ -75,7 +76,12 @@ class Moved:
     @property
     def shares(self) -> FloatArray:
         """(n,) of the displacement, along it."""
-        return shares_along(self.delta_joint, self.delta)
+        return shares_along(self.delta_joint, self.delta) * self.moves
+
+    @property
+    def moves(self) -> bool:
+        """Whether the tip is displaced by more than the rounding of a sum."""
+        return self.size > STILL
 
     def stiffer(self, factors: FloatArray) -> Moved:
         """The same push with the stiffness of each joint multiplied by ``factors`` (n,)."""
@@ -83,12 +89,12 @@ class Moved:
         return replace(self, delta=self.delta + (scaled - self.delta_joint).sum(axis=0), delta_joint=scaled)
 
     def components(self, unit: str) -> str:
-        """ "+0.230 mm in Y, −0.102 mm in Z"."""
-        return ", ".join(f"{far} {unit_label(unit)} in {axis}" for axis, far in by_axis(self.delta, unit))
+        """ "+0.230 mm along Y, −0.102 mm along Z"."""
+        return ", ".join(f"{far} {unit_label(unit)} along {axis}" for axis, far in by_axis(self.delta, unit))
 
     def sentence(self, unit: str) -> str:
         """What pushes, and where the tip goes."""
-        if not self.size > 0:
+        if not self.moves:
             return f"{self.push.words} does not move the tip."
         return f"{self.push.words} moves the tip by {self.components(unit)}."
 

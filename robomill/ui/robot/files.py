@@ -109,8 +109,8 @@ def _came_with(opened: Opened, tips: Tips) -> None:
     for i, joint in enumerate(moving, 1):
         unit = length if joint.type == "prismatic" else "deg"
         limits = "turns on" if joint.limits is None else format_many(joint.limits, unit, 1, between=" to ")
-        rows.append((f"{i}", joint.name, {"prismatic": "slides"}.get(joint.type, "turns"), limits))
-    pieces.table(rows, "sww ", ("", "Joint", "", "Limits"))
+        rows.append((f"{i} {joint.name} {'slides' if joint.type == 'prismatic' else 'turns'}", limits))
+    pieces.table(rows, "qn", ("Joint", "Limits"))
     folded = len(chain) - len(moving)
     fixed = f" {folded} fixed joint{'s are' if folded != 1 else ' is'} part of the links." if folded else ""
     pieces.note(

@@ -125,7 +125,7 @@ def scene(now: PoseReport, old: PoseReport | None, moved: Moved, unit: str) -> A
         ghost=ghost(now, old),
         aspect=ASPECT,
         force=moved.push.F,
-        displacement=moved.delta,
+        displacement=moved.delta if moved.moves else None,
         force_label=moved.push.size,
         displacement_label=format_si(moved.size, unit),
     )
@@ -226,5 +226,5 @@ def share_bars(now: Moved, dark: bool) -> None:
     rows = [(f"joint {n}", pieces.bar(abs(part) / top, colour), f"{said} %") for n, part, colour, said in each]
     pieces.table(rows, "sbn")
     rest = 1.0 - float(share.sum())
-    if now.size > 0 and abs(rest) > 0.005:
+    if now.moves and abs(rest) > 0.005:
         pieces.note(f"Beside the joints: {format_percent(rest)}.")

@@ -7,14 +7,15 @@ file of the server, and is refused in one sentence.
 import base64
 import json
 import re
-import tomllib
 import zlib
 from collections.abc import Mapping
+from decimal import Decimal
 from typing import Any
 
 import tomli_w
 
 from robomill.errors import ProjectError
+from robomill.io.tables import parse_toml
 from robomill.ui.project import DEFAULT_PRESET, Project, preset_setup, presets, project_from_toml, project_to_toml
 
 PRESET, EDITS = "preset", "edits"
@@ -23,19 +24,17 @@ VERSION = "1"
 MOST = 2000  # characters of the edits: addresses of all browsers and mailers hold them
 LARGEST = 200_000  # bytes of edits when they are unpacked
 SHOWN = 8  # of the fingerprint, by which an example that has changed since is noticed
-ADD, DROP, IN = "+", "-", "~"
+ADD, DROP, IN, DIGITS = "+", "-", "~", "#"
 DAMAGED = "This link is damaged or cut off; ask for it once more, or for the project's file."
 
 
 def packed(project: Project) -> dict[str, str] | None:
     """The parameters of an address that ``opened`` makes the same project of; None where its edits are too long."""
     base = _base(project.preset if project.preset in presets() else DEFAULT_PRESET)
-    file = project_to_toml(project)
-    changed = _difference(tomllib.loads(project_to_toml(base)), tomllib.loads(file))
+    changed = _difference(_tables(base), _tables(project))
     if not changed:
         return {PRESET: base.preset}
-    shown = project_from_toml(file).digest()[:SHOWN]  # a number that no decimal meets is its neighbour in a file
-    text = json.dumps([shown, changed], separators=(",", ":"))
+    text = json.dumps([project.digest()[:SHOWN], changed], separators=(",", ":"), default=_exact)
     data = zlib.compress(text.encode(), 9, wbits=-15)
     edits = VERSION + base64.urlsafe_b64encode(data).decode().rstrip("=")
     return {PRESET: base.preset, EDITS: edits} if len(edits) <= MOST else None
@@ -53,7 +52,7 @@ def opened(said: Mapping[str, str]) -> Project:
         return base
     shown, changed = _unpacked(edits)
     try:
-        text = tomli_w.dumps(_changed(tomllib.loads(project_to_toml(base)), changed))
+        text = tomli_w.dumps(_changed(_tables(base), changed))
     except (TypeError, ValueError, RecursionError):
         raise ProjectError(DAMAGED) from None
     project = project_from_toml(text)
@@ -67,6 +66,19 @@ def opened(said: Mapping[str, str]) -> Project:
 
 def _base(name: str) -> Project:
     return Project(preset_setup(name), preset=name)
+
+
+def _tables(project: Project) -> dict[str, Any]:
+    return parse_toml(project_to_toml(project), "project", exact=True)
+
+
+def _exact(number: Decimal) -> dict[str, str]:
+    """A number with more digits than a float holds, as JSON carries it."""
+    return {DIGITS: str(number)}
+
+
+def _read(table: dict[str, Any]) -> Any:
+    return Decimal(table[DIGITS]) if {*table} == {DIGITS} else table
 
 
 def _unpacked(edits: str) -> tuple[str, dict[str, Any]]:
@@ -83,8 +95,8 @@ def _unpacked(edits: str) -> tuple[str, dict[str, Any]]:
         data = stream.decompress(base64.urlsafe_b64decode(body + "=" * (-len(body) % 4)), LARGEST)
         if not stream.eof:  # cut off, or more than any project of this length has
             raise ValueError
-        shown, changed = json.loads(data)
-    except (ValueError, TypeError, RecursionError, zlib.error):
+        shown, changed = json.loads(data, object_hook=_read)
+    except (ValueError, TypeError, ArithmeticError, RecursionError, zlib.error):
         raise ProjectError(DAMAGED) from None
     if not isinstance(shown, str) or not isinstance(changed, dict):
         raise ProjectError(DAMAGED)
@@ -98,10 +110,14 @@ def _difference(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any
         if key in old and isinstance(value, dict) and isinstance(old[key], dict):
             if inner := _difference(old[key], value):
                 within[key] = inner
-        elif key not in old or json.dumps(old[key]) != json.dumps(value):  # as written: 0 is not -0
+        elif key not in old or _written(old[key]) != _written(value):  # as written: 0 is not -0
             added[key] = value
     dropped = [key for key in old if key not in new]
     return {mark: part for mark, part in ((ADD, added), (DROP, dropped), (IN, within)) if part}
+
+
+def _written(value: Any) -> str:
+    return json.dumps(value, default=_exact)
 
 
 def _changed(old: Mapping[str, Any], by: Any) -> dict[str, Any]:

@@ -44,8 +44,9 @@ def shared(project: Project) -> None:
         pieces.error(exc)
         return
     for title, words, language in (("Command", said.command, "bash"), ("Python", said.python, "python")):
-        pieces.note(title)
-        st.code(words, language=language, wrap_lines=True)
+        if words:
+            pieces.note(title)
+            st.code(words, language=language, wrap_lines=True)
     if said.by_file or link is None:
         pieces.note(f"Run it in the folder in which {file} stands.")
         pieces.download("Save the file", project_to_toml(project), file, "share.file", icon=":material/save:")

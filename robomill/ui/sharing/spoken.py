@@ -5,17 +5,19 @@ Both begin with the example that the project began with, where it can be said wh
 
 import shlex
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from typing import Any
 
 import numpy as np
 
+import robomill
 from robomill.arrays import digest
 from robomill.errors import RobomillError
 from robomill.io.robot.robots import load_robot, robot_names
 from robomill.io.tables import exactly
 from robomill.simulation.setup import SimulationSetup
 from robomill.ui.project import Project, preset_setup, presets
+from robomill.ui.sharing.questions import question
 
 LONGEST = 1500  # characters of Python that anyone reads
 MOST = 64  # numbers of an array that are written out
@@ -29,7 +31,8 @@ SLOTS = ("name", "description", "provenance")  # of a set-up what no number depe
 
 @dataclass(frozen=True)
 class Spoken:
-    """A command and Python that give the screen's numbers; ``by_file`` where one of them names the project's file."""
+    """A command and Python that give the screen's numbers; ``by_file`` where one of them names the project's file. No
+    command: "", where it takes more than options can say."""
 
     command: str
     python: str
@@ -44,6 +47,10 @@ def spoken(project: Project, page: str, file: str) -> Spoken:
         options = [file]
     code = _code(project)
     begin = code or (f'setup = rm.load_setup("{file}")',)
+    asked = question(project, page)
+    if asked is not None:
+        command = shlex.join(["robomill", *asked.words]) if asked.words else ""
+        return Spoken(command, "\n".join(["import robomill as rm", "", *begin, *asked.lines]), not code)
     python = "\n".join(["import robomill as rm", "", *begin, *OF_PYTHON[verb]])
     return Spoken(shlex.join(["robomill", verb, *options]), python, options == [file] or not code)
 
@@ -111,6 +118,8 @@ class _UnsaidError(Exception):
 
 def _said(old: Any, new: Any, name: str) -> tuple[str, Any]:
     """Python for ``new``, where ``name`` is what ``old`` is called, and its value. Raises _UnsaidError."""
+    if isinstance(new, str) and "\n" in new:
+        raise _UnsaidError
     if new is None or isinstance(new, bool | int | str) or (isinstance(new, float) and np.isfinite(new)):
         return repr(new), new
     if isinstance(new, np.ndarray) and new.size <= MOST and new.dtype.kind in "fi" and np.isfinite(new).all():
@@ -124,7 +133,28 @@ def _said(old: Any, new: Any, name: str) -> tuple[str, Any]:
         was: Any = old
         said = ", ".join(f"{each}={words}" for each, (words, _) in changed.items())
         return f"{name}.replace({said})", was.replace(**{each: value for each, (_, value) in changed.items()})
-    raise _UnsaidError
+    if isinstance(new, tuple):
+        items = [_said(None, each, "") for each in new]
+        return f"({''.join(f'{words}, ' for words, _ in items)})", tuple(value for _, value in items)
+    return _made(new)
+
+
+def _made(new: Any) -> tuple[str, Any]:
+    """Python that makes a value of a public class, and the value. Raises _UnsaidError."""
+    kind = type(new)
+    if not is_dataclass(new) or getattr(robomill, kind.__name__, None) is not kind:
+        raise _UnsaidError
+    given = {
+        each.name: _said(None, getattr(new, each.name), "")
+        for each in fields(new)
+        if each.init and each.name not in SLOTS and digest(getattr(new, each.name)) != digest(_default(each))
+    }
+    said = ", ".join(f"{name}={words}" for name, (words, _) in given.items())
+    return f"rm.{kind.__name__}({said})", kind(**{name: value for name, (_, value) in given.items()})
+
+
+def _default(each: Field[Any]) -> Any:
+    return () if each.default is MISSING else each.default  # no field holds nothing where something is needed
 
 
 def _names(value: Any) -> list[str]:

@@ -1,5 +1,7 @@
 """Where the part zero {W} lies in the robot's frame {M}: by numbers, or by three touched points."""
 
+import math
+
 import numpy as np
 import pandas as pd
 import streamlit as st
@@ -15,7 +17,8 @@ from robomill.ui.entry.cells import Cells
 from robomill.units import format_si, unit_label
 from robomill.vectors import angle_between
 
-TOUCHED = "toolpath.touched"
+TOUCHED, TURNED = "toolpath.touched", "toolpath.turned"
+SAME = 1e-9  # rad
 WAYS = {"numbers": "By numbers", "points": "By three points"}
 NAMES = ("zero", "on +x", "on the +y side")
 TOUCH_ERROR = 0.1e-3
@@ -34,7 +37,11 @@ def _by_numbers() -> None:
     T_MW = session.project().setup.T_MW
     with st.container(key="toolpath-zero"):
         declared.draw(PART_ZERO, "toolpath.zero", T_MW[:3, 3], _put)
-    declared.draw(PART_TURN, "toolpath.turn", float(np.round(np.arctan2(T_MW[1, 0], T_MW[0, 0]), 12)), _turn)
+    turn = float(np.round(np.arctan2(T_MW[1, 0], T_MW[0, 0]), 12))
+    declared.draw(PART_TURN, "toolpath.turn", turn, _turn)
+    typed = session.kept(TURNED, turn)
+    if abs(typed - turn) > SAME and abs(math.remainder(typed - turn, math.tau)) < SAME:
+        pieces.note(f"A turn by {format_si(typed, 'deg')} is one by {format_si(turn, 'deg')}.")
     tilt = tilt_of(T_MW)
     if tilt > 1e-6:
         pieces.note(
@@ -48,6 +55,7 @@ def _put(zero: FloatArray) -> None:
 
 
 def _turn(angle: float) -> None:
+    session.keep(TURNED, angle)
     session.change(T_MW=part_frame(session.project().setup.T_MW[:3, 3], angle))
 
 

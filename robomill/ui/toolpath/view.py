@@ -102,7 +102,7 @@ def tiles(
         return found
     noticed = findings(path, result)
     alarming = sum(f.count for f in noticed if f.level in ("error", "warning", "suspicious"))
-    words = finding_words(worst_first(noticed)[0]) if noticed else "every word understood"
+    words = finding_words(worst_first(noticed)[0], most=110) if noticed else "every word understood"
     crashes = () if result is None else (*result.rapids, *result.early_rapids)
     if crashes:
         alarming, words = alarming + len(crashes), f"a rapid runs through material (line {crashes[0]})"

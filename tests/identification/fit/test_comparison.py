@@ -56,8 +56,8 @@ def test_a_fifth_of_hidden_model_error_does_not_upset_the_ranking(seed):
 
 @pytest.mark.slow
 def test_the_ranking_holds_in_at_least_nineteen_of_twenty_data_sets():
-    right = sum(ranks_of(seed, 0.2) == ["joints+bending", "joints", "constant"] for seed in range(100, 160))
-    assert right >= 57, right
+    right = sum(ranks_of(seed, 0.2) == ["joints+bending", "joints", "constant"] for seed in range(100, 120))
+    assert right >= 19, right
 
 
 def test_joint_only_values_absorb_the_bending_and_it_is_said():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 
 import numpy as np
@@ -9,6 +10,7 @@ import pandas as pd
 import pytest
 
 import robomill as rm
+from robomill.identification.fit.treatment import Choices, Treatment
 from robomill.io.samples import samples_dir
 
 LOAD_TESTS = samples_dir() / "load_tests"
@@ -125,3 +127,27 @@ def test_what_a_file_declares_in_remarks_a_dataframe_declares_in_attrs(robot):
         if line.startswith("#") and key in ("frame", "angles", "provenance"):
             frame.attrs[key] = value
     np.testing.assert_array_equal(rm.read_load_tests(frame, arm).theta, rm.read_load_tests(text, arm).theta)
+
+
+@pytest.mark.parametrize(
+    ("choice", "said"),
+    [
+        ({"bending": 2}, "bending: found 2, expected joint numbers"),
+        ({"bending": [2.5]}, "bending: found [2.5], expected joint numbers"),
+        ({"bending": "2,3"}, "bending: found '2,3', expected joint numbers"),
+        ({"exclude": 3}, "exclude: found 3, expected numbers of rows"),
+        ({"robust": "yes"}, "robust: found 'yes', expected True or False"),
+        ({"robst": True}, "did you mean robust?"),
+    ],
+)
+def test_a_choice_of_another_kind_is_refused(robot, choice, said):
+    with pytest.raises(rm.RobomillError) as refused:
+        rm.identify(robot, "nine_points", **choice)
+    assert said in str(refused.value)
+
+
+def test_every_choice_is_told_in_the_help_and_to_type_checkers():
+    told = {line.split(" : ")[0].strip() for line in (rm.identify.__doc__ or "").splitlines() if " : " in line}
+    fields = {each.name for each in dataclasses.fields(Treatment)}
+    assert fields <= told
+    assert fields == set(Choices.__annotations__)

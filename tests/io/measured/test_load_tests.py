@@ -293,3 +293,57 @@ def test_a_hundred_thousand_rows_are_read_in_two_seconds():
     start = time.process_time()
     assert len(read_load_tests(text)) == 100_000
     assert time.process_time() - start < 2.0
+
+
+RAIL = rm.Robot.from_dh(
+    d_mm=[0, 750, 0],
+    a_mm=[0, 350, 1250],
+    alpha_deg=[90, -90, 0],
+    prismatic=[True, False, False],
+    limits_mm=[(-500, 500), None, None],
+    C_theta=[4e-8, 2.6e-7, 1.5e-7],
+)
+
+
+def test_a_joint_that_slides_gives_by_its_force_and_one_that_turns_by_no_displacement():
+    """40 nm/N: 0.02 mm under 500 N. Of a joint that turns a displacement says nothing: at which lever arm?"""
+    found = rm.identify(RAIL, read_load_tests("joint,torque_N,angle_mm\n1,500,0.02\n1,-500,-0.02\n", RAIL))
+    assert found.C_theta[0] == pytest.approx(0.02e-3 / 500)
+    for header, column in (("torque_N,angle_mrad", "torque_N"), ("torque_Nm,angle_um", "angle_um")):
+        text = f"joint,{header}\n1,500,0.2\n2,500,0.2\n"
+        with pytest.raises(LoadTestError, match=f"Row 3, column {column}: joint 2 turns"):
+            read_load_tests(text, RAIL)
+        with pytest.raises(LoadTestError, match="read the tests with it"):
+            read_load_tests(text)
+
+
+@pytest.mark.parametrize(
+    ("columns", "refused"),
+    [
+        ("theta1_mm,theta2_deg,theta3_rad", None),
+        ("theta1_deg,theta2_deg,theta3_deg", "column theta1: this joint slides; give theta1_mm"),
+        ("theta1_m,theta2_mm,theta3_deg", "column theta2: this joint turns; give theta2_deg"),
+    ],
+)
+def test_a_joint_coordinate_is_a_length_where_the_joint_slides_and_an_angle_where_it_turns(columns, refused):
+    """10 degrees are no 0.17 m of a rail, nor are 10 mm a hundredth of a rad; whether the arm is known on reading, or
+    only when it is identified."""
+    row = [0.01 if name.endswith("_m") else 0.5 if name.endswith("rad") else 10 for name in columns.split(",")]
+    text = f"{columns},Fx_N,Fy_N,Fz_N,dx_mm,dy_mm,dz_mm\n" + ",".join(map(str, row)) + ",100,0,0,0.1,0.01,0.02\n"
+    if refused is None:
+        np.testing.assert_allclose(read_load_tests(text, RAIL).theta[0], [0.01, np.radians(10), 0.5])
+        return
+    with pytest.raises(LoadTestError, match=refused):
+        read_load_tests(text, RAIL)
+    with pytest.raises(LoadTestError, match=refused):
+        identify(RAIL, read_load_tests(text))
+
+
+def test_a_sheet_for_an_arm_on_a_rail_says_its_place_in_millimetres():
+    theta = np.array([[0.25, 0.3, -0.4], [-0.1, 1.0, 0.2]])
+    F = np.array([[100.0, 0.0, 50.0], [0.0, 200.0, -50.0]])
+    text = load_tests_to_csv(simulated_tests(RAIL, theta, F).with_joints(RAIL))
+    header, first = [line.split(",") for line in text.splitlines() if not line.startswith("#")][:2]
+    assert float(first[header.index("theta1_mm")]) == 250.0
+    assert float(first[header.index("theta2_deg")]) == pytest.approx(np.degrees(0.3), abs=1e-5)
+    np.testing.assert_allclose(read_load_tests(text, RAIL).theta, theta, atol=1e-7)

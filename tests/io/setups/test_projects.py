@@ -13,11 +13,12 @@ from robomill.compliance.gravity import LinkMasses
 from robomill.compliance.springs.joint_bending import JointBending
 from robomill.compliance.springs.spindle import SpindleSpring
 from robomill.compliance.springs.tool_bending import ToolBending
+from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import ProjectError, RobomillError
 from robomill.identification.measured_field import MeasuredField
-from robomill.io.beside import Beside
+from robomill.io.beside import ALONE, Beside
 from robomill.io.measured.identified import identify
 from robomill.io.programs import program_from_bytes
 from robomill.io.robot.robots import load_robot
@@ -27,6 +28,9 @@ from robomill.io.setups.projects import load_setup, open_project, setup_from_tom
 from robomill.io.tables import parse_toml
 from robomill.provenance import Provenance
 from robomill.simulation.origin.doubts import known_notes
+from robomill.study.described import load_study, study_from_toml
+from robomill.study.writing import study_to_toml
+from robomill.surface.stock import Stock
 from robomill.toolpath.sketch import Sketch
 from robomill.toolpath.sketch_presets import preset
 from robomill.toolpath.source import GCodeSource, LinesSource, SketchSource
@@ -363,3 +367,28 @@ def test_a_file_whose_compliances_were_changed_by_hand_knows_nothing_of_these(se
     assert note.code == "other-compliances"
     assert "of others than are in force" in note.sentence
     assert known_notes(setup) == ()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_numbers_of_any_kind_survive_saving(setup, seed: int) -> None:
+    """In SI, as code has them: two of a hundred are no number of millimetres that a float holds."""
+    rng = np.random.default_rng(seed)
+    start, end = rng.uniform(-0.05, 0.05, (2, 9, 3))
+    low = rng.uniform(-0.2, -0.1, 3)
+    one = setup.replace(
+        source=LinesSource(start, end, rng.uniform(0.01, 0.1, 9), rng.uniform(100.0, 300.0)),
+        stock=Stock(low, low + rng.uniform(0.1, 0.5, 3)),
+        cutter=Cutter("bull", rng.uniform(3e-3, 20e-3), rng.uniform(1e-4, 1e-3), 3),
+        force=PathForce(*rng.uniform(-200.0, 200.0, 3)),
+        part_zero=rng.uniform(-0.2, 0.2, 3) - [0.0, 1.3, 0.0],
+        part_rotation_z=rng.uniform(-3.0, 3.0),
+        tolerance=rng.uniform(1e-4, 1e-3),
+        springs=(ToolBending(rng.uniform(3e-3, 20e-3), rng.uniform(0.02, 0.1)),),
+        links=LinkMasses(rng.uniform(1.0, 500.0, 5), rng.uniform(-0.5, 0.5, (5, 3))),
+    )
+    text = setup_to_toml(one)
+    again = setup_from_toml(text)
+    assert again.digest() == one.digest()
+    assert setup_to_toml(again) == text
+    study = load_study({"setup": one, "parameters": {"cutter.diameter_mm": {"values": [6.0, 8.0]}}})
+    assert study_from_toml(study_to_toml(study), "study", ALONE).digest() == study.digest()

@@ -61,3 +61,36 @@ def test_a_raster_of_grooves_that_moves_aside_keeps_its_roots(apart):
     rows = [(f"G0 X-20 Y{k * apart:g} Z5", "G0 Z-2", "G1 X20 F900", "G0 Z5") for k in range(6)]
     bent = pushed(run(*(line for row in rows for line in row), cutter=cone), left=0.2e-3, up=0.1e-3)
     np.testing.assert_allclose(bent.gauge.floors.error, 0.1e-3, atol=1e-8)
+
+
+DEEPER = {
+    "across": ["G0 X0.37 Y-3", "G0 Z-3", "G1 Y3"],
+    "askew": ["G0 X-3 Y-1", "G0 Z-3", "G1 X3 Y1.3"],
+    "0.5 mm beside": ["G0 X-4 Y0.5", "G0 Z-3", "G1 X4"],
+    "0.8 mm beside": ["G0 X-4 Y0.8", "G0 Z-3", "G1 X4"],
+}
+
+
+@pytest.mark.parametrize("step", [2.0, 0.05])
+@pytest.mark.parametrize("other", DEEPER)
+def test_each_of_two_grooves_that_meet_is_off_by_its_own_root_or_has_none_left(other, step):
+    """Two roots are lines that move with their tips: whatever the sides of the other groove cover, no place of either
+    is off by anything but what its own tip is off, upwards."""
+    cone = Cutter("chamfer", 2 * R, tip_angle=np.radians(60.0))
+    made = run("F900", "G0 X-5 Y0 Z5", "G0 Z-2", "G1 X5", "G0 Z5", *DEEPER[other], cutter=cone, step=step * 1e-3)
+    first = np.isclose(made.path.p[:, 2], -2e-3)
+    for left, up in (((0.2, 0.2), (0.1, -0.1)), ((0.2, -0.1), (0.1, 0.05)), ((-0.15, 0.2), (-0.05, 0.1))):
+        aside, lift = (np.where(first, *pair) * 1e-3 for pair in (left, up))
+        floors = pushed(made, left=aside, up=lift).gauge.floors
+        np.testing.assert_allclose(floors.error, lift[floors.sample], atol=1e-8)
+        assert (~first[floors.sample]).any()
+
+
+@pytest.mark.parametrize("diameter", [0.5e-3, 2e-3, 8e-3])
+def test_the_groove_of_a_ball_is_as_deep_as_its_bottom_line_however_small_the_ball(diameter):
+    """Pushed aside its bottom is a line beside the told one, over which its side stands."""
+    made = run("F900", "G0 X-5 Y0 Z5", "G0 Z-0.4", "G1 X5", cutter=Cutter("ball", diameter, flutes=2), cell=1e-4)
+    for left, up in ((0.15e-3, 0.05e-3), (-0.2e-3, -0.05e-3), (0.15e-3, 0.0)):
+        floors = pushed(made, left=left, up=up).gauge.floors
+        assert len(floors.error) > 5
+        np.testing.assert_allclose(floors.error, up, atol=1e-8)

@@ -30,7 +30,7 @@ def ramp(degrees: float, cutter: Cutter = MILL) -> tuple[CutConditions, Toolpath
 
 def steep_of(told: CutConditions, path: Toolpath, tips: FloatArray, lift: float) -> FloatArray:
     """How steeply ends sink whose tips go there, where whole ends lift them by so much, m."""
-    return np.array(sinking(told, path, tips, lambda: np.full_like(tips, lift) * [0.0, 0.0, 1.0]).steep)
+    return np.array(sinking(told, path, tips, None, lambda: np.full_like(tips, lift) * [0.0, 0.0, 1.0]).steep)
 
 
 def never() -> FloatArray:
@@ -40,7 +40,7 @@ def never() -> FloatArray:
 @pytest.mark.parametrize("degrees", [0.2, 0.5, 3.0])
 def test_a_ramp_that_the_tip_follows_is_cut_as_it_is_told_once_it_goes_on_for_the_tools_width(degrees):
     told, path = ramp(degrees)
-    steep = sinking(told, path, path.p, never).steep
+    steep = sinking(told, path, path.p, None, never).steep
     assert told_to_sink(told)[21:].all()
     np.testing.assert_allclose(steep[29:], told.sinks[29:], atol=1e-9)
     assert (np.diff(steep[20:]) >= -1e-9).all()  # taken up by and by
@@ -50,21 +50,45 @@ def test_a_ramp_that_the_tip_follows_is_cut_as_it_is_told_once_it_goes_on_for_th
 def test_an_end_that_is_told_down_as_its_arm_is_pushed_up_meets_nothing(degrees):
     told, path = ramp(degrees)
     level = path.p * [1.0, 1.0, 0.0] + [0.0, 0.0, -1e-3]
-    assert not sinking(told, path, level, never).steep.any()
+    assert not sinking(told, path, level, None, never).steep.any()
     assert not clear(told).sinks.any()
 
 
 def test_where_a_cut_rises_or_goes_level_or_the_tool_has_no_end_nothing_is_asked():
     for told, path in (ramp(-2.0), ramp(0.0), ramp(2.0, Cutter("ball", 8e-3, flutes=2))):
         assert not told_to_sink(told).any()
-        assert sinking(told, path, path.p, never) is told
+        assert sinking(told, path, path.p, None, never) is told
 
 
 def test_half_of_the_slope_taken_back_leaves_the_other_half():
     told, path = ramp(0.4)
     half = path.p * [1.0, 1.0, 0.5] + [0.0, 0.0, -0.5e-3]
     expected = ramp(np.degrees(np.arctan(0.5 * np.tan(np.radians(0.4)))))[0].sinks
-    np.testing.assert_allclose(sinking(told, path, half, never).steep[29:], expected[29:], atol=1e-4)
+    np.testing.assert_allclose(sinking(told, path, half, None, never).steep[29:], expected[29:], atol=1e-4)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.9, 1.5])
+def test_what_a_nose_lifts_its_own_tip_by_takes_nothing_off(share: float) -> None:
+    """A bull nose whose tip sinks by less than it is told, or even rises, as its own fall lifts it: as told."""
+    told, path = ramp(0.6, Cutter("bull", 8e-3, corner_radius=1e-3, flutes=3))
+    fall = -np.diff(path.p[:, 2], prepend=path.p[0, 2])
+    tips = path.p + np.outer(np.cumsum(share * fall), [0.0, 0.0, 1.0])
+    steep = sinking(told, path, tips, lambda: share * fall, lambda: np.zeros_like(tips)).steep
+    np.testing.assert_allclose(steep[29:], told.sinks[29:], atol=1e-9)
+
+
+def test_a_nose_that_is_told_down_as_its_arm_is_pushed_up_meets_nothing() -> None:
+    """Level, though its own fall lifts it by a third of that; and by half of the slope beside its own lift, half."""
+    told, path = ramp(0.4, Cutter("bull", 8e-3, corner_radius=1e-3, flutes=3))
+    fall = -np.diff(path.p[:, 2], prepend=path.p[0, 2])
+    own, none = 0.3 * fall, np.zeros_like(path.p)
+    level = path.p * [1.0, 1.0, 0.0] + [0.0, 0.0, -1e-3]
+    assert not sinking(told, path, level, lambda: own, lambda: none).steep.any()
+    half = path.p * [1.0, 1.0, 0.35] + [0.0, 0.0, -0.65e-3]
+    expected = ramp(np.degrees(np.arctan(0.5 * np.tan(np.radians(0.4)))))[0].sinks
+    np.testing.assert_allclose(
+        sinking(told, path, half, lambda: own, lambda: none).steep[29:], expected[29:], atol=1e-4
+    )
 
 
 @pytest.mark.parametrize("rise", [0.0, 0.2e-3, 0.4e-3, 0.5e-3, 0.51e-3, 0.53e-3, 0.6e-3])

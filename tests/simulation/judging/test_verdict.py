@@ -8,6 +8,8 @@ import itertools
 import numpy as np
 import pytest
 
+import robomill as rm
+from robomill.identification.measured_field import MeasuredField
 from robomill.simulation.judging.gauge import Gauge, Readings
 from robomill.simulation.judging.verdict import decided, judge
 from robomill.simulation.result import SimulationResult
@@ -113,3 +115,33 @@ def test_where_nothing_is_judged_nothing_is_read(result: SimulationResult) -> No
         assert reading.worst == -1
         assert np.isnan(reading.value)
     assert np.isnan(found.share)
+
+
+@pytest.mark.parametrize(
+    ("wall", "floor", "feed", "level"),
+    [
+        (0.1, 0.05, 0.01, "tight"),
+        (0.1 - 1e-7, 0.05, 0.01, "out"),
+        (0.1, 0.05 - 1e-7, 0.01, "out"),
+        (0.1, 0.05, 0.01 - 1e-7, "out"),
+        (0.125 + 1e-6, 0.0625 + 1e-6, 0.0125 + 1e-6, "ok"),
+    ],
+)
+def test_what_is_exactly_on_its_limit_is_within_it(wall: float, floor: float, feed: float, level: str) -> None:
+    """1 um/N across and 2 um/N along the tool, 10 N along the feed, 100 N across it and 25 N into the part: the wall is
+    0.1 mm off, the floor 0.05 mm too deep and the tip 0.01 mm ahead, whatever the last bits of a subtraction say."""
+    p = [[x, -1.3, z] for x in (-0.1, 0.1) for z in (-0.1, 0.1)]
+    setup = rm.SimulationSetup(
+        robot=rm.load_robot("slavkovic_5r"),
+        source=rm.Toolpath.from_points(p_mm=[[-30, 0, 5], [-30, 0, -2], [30, 0, -2]], feed_mm_min=[0, 0, 1800]),
+        part_zero_mm=(0, -1300, 0),
+        cutter=rm.Cutter("flat", diameter_mm=8, flutes=3),
+        force=rm.PathForce(10.0, 100.0, -25.0),
+        measured_map=MeasuredField(p, np.tile(np.diag([1e-6, 1e-6, 2e-6]), (4, 1, 1))),
+        stock=rm.Stock(lower_mm=[-20, -20, -10], upper_mm=[40, 20, 0]),
+        tolerance_mm=(wall, floor, feed),
+        step_mm=5,
+    )
+    run = rm.simulate(setup)
+    assert run.verdict.level == level
+    assert (run.area_out[0] > 0.0) == (wall < 0.1 or floor < 0.05)

@@ -108,3 +108,15 @@ def test_a_block_that_nothing_has_is_told() -> None:
     with pytest.raises(rm.RobomillError, match="no 'foo'; it takes geometry"):
         setup.robot.replace(provenance={"foo": said})
     assert setup.replace(provenance={"geometry": said}).provenance["geometry"] is said
+
+
+def test_every_tolerance_that_something_is_judged_by_is_told() -> None:
+    def told(**changes) -> str:
+        return next(row.value for row in sources(PAPER.replace(**changes)) if row.what == "Tolerance")
+
+    given = {"tolerance_mm": 0.25, "floor_tolerance_mm": 0.125, "feed_tolerance_mm": 0.4375}
+    for chosen in ([0], [0, 1], [0, 2], [0, 1, 2]):
+        some = dict([list(given.items())[i] for i in chosen])
+        for key, value in given.items():
+            assert (str(value) in told(**some)) == (key in some)
+    assert told(tolerance_mm=0.25, floor_tolerance_mm=0.25) == told(tolerance_mm=0.25)

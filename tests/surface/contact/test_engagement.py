@@ -283,3 +283,20 @@ def test_what_a_ball_takes_off_a_wall_is_narrower_than_a_piece_of_its_nose(bite:
 @pytest.mark.parametrize("aside", [-2.0, -2.5, -3.0, -3.3])
 def test_an_edge_of_the_stock_that_a_leaning_ball_takes_off(aside: float) -> None:
     assert finishing(BALL10, axis(B=18), [(aside, -1.4)], 0.1) < 0.05
+
+
+@pytest.mark.parametrize("point", [60.0, 90.0, 118.0])
+def test_a_point_that_widens_a_hole_cuts_the_ring_that_is_left_at_its_top(point: float) -> None:
+    """Of a cone on its way down into a hole of radius r a ring is in the material, from r to where its flank passes the
+    top: so wide, all round. Rings are as narrow as 0.02 mm, where the hole has just been met."""
+    hole, half = 3 * MM, np.radians(point / 2)
+    cone = Cutter("chamfer", 16 * MM, tip_angle=2 * half)
+    wide = np.array([0.02, 0.05, 0.08, 0.13, 0.2, 0.33, 0.5, 0.8]) * MM
+    tips = np.append(1 * MM, -(hole + wide) / np.tan(half))
+    z = np.concatenate([[1 * MM, -19 * MM], tips])
+    p = np.column_stack([0 * z, 0 * z, z])
+    made = Tooling((Cutter("flat", 2 * hole), cone), np.repeat([0, 1], [2, len(tips)]))
+    block = Stock((-0.01, -0.01, -0.02), (0.01, 0.01, 0.0))
+    part = engage(block, 2 * CELL, made, p, None, [False, True, False, *np.ones(len(wide), dtype=bool)]).part
+    length = part.of(0.0)[3:, 7] / (2 * np.pi * np.cos(half))  # of edge, the mean over a turn
+    np.testing.assert_allclose(length, wide / np.sin(half), rtol=0.02, atol=2e-6)

@@ -146,7 +146,9 @@ def block_world(layers=1, dx=0.5 * MM):
 
 def fed_at(depth, along=0.0, axis=(0.0, 0.0, 1.0)):
     v = np.array([math.sqrt(1.0 - along**2), 0.0, along])
-    return step_at(np.array([0, 0, -depth]), np.array(axis), v, np.array([1.0, 0.0, 0.0]), (float(sinks(along)), 1))
+    return step_at(
+        np.array([0, 0, -depth]), np.array(axis), v, np.array([1.0, 0.0, 0.0]), (float(sinks(along)), 1), np.zeros(3)
+    )
 
 
 @pytest.mark.parametrize("name", CUTTERS)
@@ -244,7 +246,12 @@ def met(cutter, depth, along=0.0, low=-1.0, high=1.0, turn=0):
     way = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)][turn])
     v = np.append(math.sqrt(1.0 - along**2) * way, along)
     step = step_at(
-        np.array([0, 0, -depth]), np.array([0.0, 0.0, 1.0]), v, np.array([1.0, 0.0, 0.0]), (float(sinks(along)), 1)
+        np.array([0, 0, -depth]),
+        np.array([0.0, 0.0, 1.0]),
+        v,
+        np.array([1.0, 0.0, 0.0]),
+        (float(sinks(along)), 1),
+        np.zeros(3),
     )
     if turn in (1, 2):  # the left of Y is -X, that of -X is -Y
         low, high = -high, -low
@@ -356,7 +363,9 @@ def test_a_leaning_tool_fed_anywhere_meets_what_its_surface_has_in_the_material(
     world, halves = block_world(layers=6, dx=0.2 * MM), 2 if along < 0.0 else 1
     tip = np.array([2.0, -3.0, -depth / MM]) * MM
     total, sectors = np.zeros(2 * MOMENTS + REST), np.zeros(4 * 4 * PANELS * halves, dtype=np.float32)
-    add_part(room_for(halves), world, shape, step_at(tip, k, v, f, (float(sinks(along)), 1)), total, sectors)
+    add_part(
+        room_for(halves), world, shape, step_at(tip, k, v, f, (float(sinks(along)), 1), np.zeros(3)), total, sectors
+    )
 
     phi = (np.arange(720) + 0.5) * np.pi / 360
     e = np.sin(phi)[:, None] * f + np.cos(phi)[:, None] * left

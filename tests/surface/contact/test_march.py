@@ -61,6 +61,17 @@ def test_each_step_meets_the_part_with_its_own_cutter():
     assert found.a_e[n + n // 2] == pytest.approx(R, rel=1e-2)
 
 
+def test_a_step_is_looked_at_beside_where_it_is_cut():
+    """Raised by 0.5 mm each step of a slot of 2 mm meets 1.5 mm; it is cut all the same: there is no more in it."""
+    p, cutting = passes(along(0.0, 0.002), along(0.0, 0.002))
+    looked = np.zeros_like(p)
+    looked[: len(p) // 2, 2] = 0.5e-3
+    found = engage(March(STOCK, 2e-4, TOOLS["flat"], p, None, cutting, looked=looked))
+    n = len(p) // 2
+    np.testing.assert_allclose(found.a_p[10:n], 1.5e-3, rtol=1e-3)
+    assert not found.part.touches[n:].any()
+
+
 def faces(low, high):
     x, y, z = zip(low, high, strict=True)
     v = np.array([[a, b, c] for a in x for b in y for c in z])

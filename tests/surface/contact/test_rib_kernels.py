@@ -118,7 +118,7 @@ def looking(k: Floats, v: Floats, tip: Floats) -> tuple[World, Step, FloatArray]
     """An uncut block, a step in it and the rows of both half turns."""
     p = np.array([[-50.0, 0.0, 0.0], [50.0, 0.0, 0.0]]) * MM
     world, room = March(Stock(LOW, HIGH), 0.5 * MM, FLAT, p, k)._stepwise
-    return world, step_at(tip, k, v, np.zeros(3), (0.0, 1)), room.rows
+    return world, step_at(tip, k, v, np.zeros(3), (0.0, 1), np.zeros(3)), room.rows
 
 
 def walking(world: World, circle: tuple[float, float], plain: bool) -> Walk:

@@ -17,7 +17,7 @@ def test_a_step_has_its_place_and_a_frame_on_the_axis():
     for _ in range(20):
         tip, k, v = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3)
         k, v = k / np.linalg.norm(k), v / np.linalg.norm(v)
-        step = step_at(tip, k, v, np.zeros(3), (0.3, 5))
+        step = step_at(tip, k, v, np.zeros(3), (0.3, 5), np.zeros(3))
         feed, left, axis = np.array(step[3:6]), np.array(step[6:9]), np.array(step[9:12])
         np.testing.assert_allclose(step[:3], tip)
         np.testing.assert_allclose(axis, k)
@@ -35,7 +35,7 @@ def test_straight_along_the_axis_the_heading_stands_for_the_feed(k):
     k = np.array(k)
     heading = np.cross(k, [0.3, -0.5, 0.7])
     heading /= np.linalg.norm(heading)
-    step = step_at(np.zeros(3), k, -k, heading, (1.0, 0))
+    step = step_at(np.zeros(3), k, -k, heading, (1.0, 0), np.zeros(3))
     assert (step.across, step.along) == pytest.approx((0.0, -1.0))
     frame = np.column_stack([step[3:6], step[6:9], k])
     np.testing.assert_allclose(step[3:6], heading, atol=1e-12)
@@ -52,7 +52,7 @@ def test_the_columns_asked_for_lie_under_the_rim_one_beside_the_other(monkeypatc
     heights, names = SimpleNamespace(name="heights"), SimpleNamespace(name="names")
     dexels, R = Dexels(heights, names, None, 0.013, -0.021, 2e-4, 4e-4, 0.0), 3e-3
     k = np.array([np.sin(lean), 0.0, np.cos(lean)])
-    step = step_at(np.array([0.0213, -0.0052, -1e-3]), k, np.array([0.6, 0.8, 0.0]), np.zeros(3), (0.0, 1))
+    step = step_at(np.array([0.0213, -0.0052, -1e-3]), k, np.array([0.6, 0.8, 0.0]), np.zeros(3), (0.0, 1), np.zeros(3))
     ask_for_rim(dexels, step, R, halves)
     cells = np.array([place[1:] for place in asked])
     np.testing.assert_array_equal(cells[::2], cells[1::2])

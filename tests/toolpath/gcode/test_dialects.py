@@ -37,6 +37,10 @@ TOLD = [
     ("O123\nG0 X1\n", "linuxcnc"),
     ("M98 P100\n", "fanuc"),
     ("IF [#1 EQ 2] GOTO 5\n", "fanuc"),
+    ("#1=2\nIF[#1EQ2]GOTO900\nN900\n", "fanuc"),
+    ("#1=2\nWHILE[#1GT2]DO1\nEND1\n", "fanuc"),
+    ("#1=2\no1 while [#1 GT 2] (do it)\no1 endwhile\n", "linuxcnc"),
+    ("G68.2 I0 J0 K0\n", "fanuc"),
     ("G28 U0 W0\n", "fanuc"),
     ("(G65 $H and M17)\n; G710\nG0 X1\n", "linuxcnc"),
     ("G0 X1" + " " * LONGEST + "G65\n", "linuxcnc"),
@@ -347,3 +351,19 @@ def test_what_macros_print_moves_nothing() -> None:
     program = interpret("%\nO1234\nG21 G90 G0 X0 Y0 Z0\n#1=2.\nPOPEN\nDPRNT[X#1[53]*Y]\nPCLOS\nG1 X#1 F9\nM30\n%\n")
     assert program.end[-1, 0] == pytest.approx(2e-3)
     assert sum(f.count for f in program.findings if f.code == "harmless-g") == 3
+
+
+def test_a_spline_with_a_leading_zero_is_not_fanucs_smoothing() -> None:
+    text = "G21 G90 F99\nG0 X0 Y0\n{} I3 J3 P0 Q-3 X9 Y0\nM2\n"
+    spline = interpret(text.format("G05"))
+    assert spline.dialect == "linuxcnc"
+    assert np.array_equal(spline.end, interpret(text.format("G5")).end)
+    assert interpret("G21 G90\nG05 P10000\nG0 X1.\nM30\n").dialect == "fanuc"
+
+
+def test_the_limits_of_the_machine_are_no_move() -> None:
+    """G22 X Y Z I J K: where the tool must not go, or must stay within."""
+    program = interpret(
+        "G21 G90 S1 M3\nG0 X5.\nG22 X100. Y100. Z100. I0 J0 K0\nG22 X9. Y9. Z9.\nG23\n", dialect="fanuc"
+    )
+    assert (program.end * 1e3).tolist() == [[5.0, 0.0, 0.0]]

@@ -53,6 +53,17 @@ def test_a_second_table_is_asked_for() -> None:
     assert not [f for f in read_gcode(text.format("C45"), table="A").findings if f.code == "rotary-asked"]
 
 
+@pytest.mark.parametrize(
+    ("line", "asked"), [("B30 C20", ["C"]), ("C20", []), ("B30", []), ("A-5 B3 C-170", ["C"]), ("B100 C20", ["B", "C"])]
+)
+def test_c_beside_a_lean_is_asked_for_at_any_angle(line: str, asked: list[str]) -> None:
+    """A head or table that turns by C leads the lean aside; about the tool's own axis C changes nothing."""
+    text = f"G21 G90 G0 X0 Y0 Z30\nG1 Z20 F100\nX10 {line}\nM30\n"
+    assert [f.message[0] for f in read_gcode(text).findings if f.code == "rotary-asked"] == asked
+    back = [f"G21 F9\nG0 X9 B30 C20\n{way} B0 C0\nG1 X5\nM2\n" for way in ("G0", "G1")]
+    assert [any(f.code == "rotary-asked" for f in read_gcode(each).findings) for each in back] == [False, True]
+
+
 def test_a_few_whole_numbers_with_a_point_show_how_a_program_writes_them() -> None:
     text = "G21 G90\nG0 X10. Y20.\nG1 Z-5. F100.\nX2000\nX30.5\nM30\n"
     assert [f.line for f in interpret(text).findings if f.code == "no-point"] == [4]

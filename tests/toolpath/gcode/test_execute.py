@@ -71,3 +71,9 @@ def test_diameters_are_halved_until_radii_count_again() -> None:
 def test_no_input_is_ever_read_and_5399_says_so():
     """LinuxCNC: #5399 is -1 where an input was waited for in vain."""
     assert interpret("G21\nG0 X5\nM66 P0 L0\nG0 X#5399\nM2\n").end[:, 0].tolist() == pytest.approx([5e-3, -1e-3])
+
+
+def test_m72_ends_and_renews_the_shift_of_g92() -> None:
+    """As rs274 moves: M72 does G92.2 where G92 came behind M70, and G92.3 where G92.2 did."""
+    program = interpret("G21 G90\nG0 X1\nM70\nG92 X11\nM72\nG0 X5\nG92.3\nM70\nG92.2\nG0 X6\nM72\nG0 X6\nM2\n")
+    assert (program.end[:, 0] * 1e3).round(9).tolist() == [1, 5, 6, -4]

@@ -30,6 +30,8 @@ READ = {"GOTO", "TRANS", "ROT", "IF", "MCALL", "R1=", "X="}
         ("TOOL CALL 1 Z S1000", "TOOL", "Heidenhain"),
         ("G1 X10 FMAX", "FMAX", "Heidenhain"),
         ("G1 X10 SOFTLY", "SOFTLY", ""),
+        ("BSPLINE X1 Y2 PW=2", "BSPLINE", "Sinumerik's splines"),
+        ("G6.2 P4 K0. X0. Y0.", "G6.2", ""),
         ("G0 X[FOO[1]]", "FOO", ""),
     ],
 )
@@ -52,7 +54,16 @@ def test_a_word_of_another_language_is_named(line: str, word: str, language: str
         ("MODULE Mill\n", 1, "ABB RAPID"),
         ("/PROG  MILL\n/ATTR\n/MN\n1:J P[1] 100% FINE ;\n", 1, "Fanuc's robot language (TP)"),
         ("def mill():\n  movel(p[0,0,0,0,0,0])\nend\n", 1, "URScript"),
-        ("%PART G71 *\nN10 G30 G17 X+0 Y+0 Z-20*\n", 1, "Heidenhain's DIN/ISO"),
+        ("! part\nPROC main()\n  MoveAbsJ home, v100, fine, tool0;\n", 3, "ABB RAPID"),
+        ("/JOB\n//NAME TEST\n//POS\n", 1, "Yaskawa's INFORM"),
+        (".PROGRAM test()\n  HOME\n", 1, "Kawasaki's AS"),
+        ("1 MOV P1\n2 MVS P2\n", 1, "Mitsubishi's MELFA"),
+        ("PROGRAM mill\nVAR p1: POSITION\nBEGIN\n", 1, "a robot's PDL2 or KAREL"),
+        ("begin\n  movel(p1, tTool, mSpeed)\nend\n", 2, "URScript or VAL3"),
+        ("$PART.MIN%\nO1\nG15 H1\n", 1, "Okuma's OSP"),
+        ("O1 (PART)\nN1 G90 G15 H1 X0 Y0\nG56 Z50. H1\n", 2, "Okuma's OSP"),
+        ("M104 S200\nG28\nG1 X10 E0.5 F1200\n", 1, "a 3D printer's G-code"),
+        ("G21\nG92 E0.0\nG1 X10 E0.5 F1200\n", 2, "a 3D printer's G-code"),
         ("IN;SP1;PU0,0;PD10,10;\n", 1, "HPGL"),
         ("  0\nSECTION\n  2\nHEADER\n", 1, "a DXF drawing"),
         ("solid part\nfacet normal 0 0 1\n", 1, "an STL surface"),
@@ -64,3 +75,29 @@ def test_a_file_of_another_language_is_named_by_it_on_its_first_line(text: str, 
         interpret(text)
     assert str(caught.value).startswith(f"Line {line}: this is {name}")
     assert "expected G-code, Heidenhain's dialogue or APT" in str(caught.value)
+
+
+@pytest.mark.parametrize("dialect", ["auto", "fanuc", "linuxcnc"])
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("G0 X0 Y0 E1", "E chooses a fixture .Fadal. or feeds filament"),
+        ("L100", "L100 alone begins or calls a subprogram .Fadal, Sinumerik."),
+        ("G71 P46 Q55 U0.005 W0 D0.025 F0.01", "G71 is not known; a lathe's cycle"),
+        ("G72 P1 Q2 U1 W0 D1", "G72 is not known; a lathe's cycle"),
+    ],
+)
+def test_words_that_must_not_be_left_out_are_named(line: str, says: str, dialect: str) -> None:
+    with pytest.raises(GCodeError, match=f"Line 2: {says}"):
+        interpret(f"G21 G90 F100\n{line}\nG1 X5\nM2\n", dialect=dialect)
+
+
+@pytest.mark.parametrize("dialect", ["fanuc", "sinumerik", "grbl"])
+def test_m70_to_m73_are_the_machine_makers_but_on_linuxcnc(dialect: str) -> None:
+    """A vise that M70 closes and M72 opens keeps no G90, and there need be no M70 before."""
+    kept = interpret("G21 G90\nM70\nG91\nG0 X5\nM72\nX5\nM30\n", dialect=dialect)
+    assert (kept.end[:, 0] * 1e3).tolist() == pytest.approx([5, 10])
+    assert {(f.code, f.line) for f in kept.findings} >= {("unknown-m", 2), ("unknown-m", 5)}
+    assert len(interpret("G21 G90\nM72\nG0 X5\nM30\n", dialect=dialect)) == 1
+    linuxcnc = interpret("G21 G90\nM70\nG91\nG0 X5\nM72\nX5\nM30\n", dialect="linuxcnc")
+    assert (linuxcnc.end[:, 0] * 1e3).tolist() == pytest.approx([5, 5])

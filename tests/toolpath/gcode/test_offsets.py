@@ -216,7 +216,6 @@ def test_further_systems_that_nobody_has_placed_lie_over_one_another() -> None:
         ("G54.1 X5", "G54.1 needs P"),
         ("G54.1 P0 X5", "P0 is no coordinate system"),
         ("G7", "G7 of a Fanuc control is not read"),
-        ("M98 P2 Q3", "M98 has Q3, which is a line on some controls"),
     ],
 )
 def test_words_that_mean_something_else_on_a_fanuc_are_refused(code: str, says: str) -> None:
@@ -259,3 +258,13 @@ def test_further_systems_of_a_sinumerik_are_called_as_there() -> None:
     program = interpret("G71 G90 F9\nG505\nG1 X1\nM30\n", dialect="sinumerik")
     (said,) = (f.message for f in program.findings if f.code == "zero-taken")
     assert said.startswith("part zero is taken to be that of G505")
+
+
+@pytest.mark.parametrize(("first", "then"), [("G92 X0", "G52 X1."), ("G52 X1.", "G92 X0")])
+def test_g52_and_g92_are_two_shifts_on_a_fanuc_control(first: str, then: str) -> None:
+    """LinuxCNC keeps one of them alone; a control adds them, which is not read."""
+    text = f"G21 G90\nG0 X10.\n{first}\nG0 X5.\n{then}\nG0 X2.\nM30\n"
+    with pytest.raises(GCodeError, match=rf"Line 5: {then[:3]} on top of {first[:3]}, as a control adds them"):
+        interpret(text, dialect="fanuc")
+    interpret(text, dialect="linuxcnc")
+    interpret(text.replace(first, "G52 X0"), dialect="fanuc")

@@ -1,5 +1,6 @@
 """Programs whose moves are led elsewhere: what is written, read by the interpreter, goes there, whatever its words."""
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -276,6 +277,27 @@ def test_a_program_with_calls_keeps_its_number_and_the_ends_of_its_tape() -> Non
     assert (lines[:3], lines[-2:]) == (["%", "O0100 (MAIN)", "N1 G21 G90"], ["N5 M30", "%"])
     assert not any("200" in line for line in lines)
     np.testing.assert_allclose(cuts(interpret(found.text.encode(), tools=TOOLS)), cuts(program) + SHIFT, atol=0.3e-6)
+
+
+REMARKS = {
+    "auto": (
+        "O0100 (MAIN)\nG21 G90\nG0 X0 Y0 Z5\nM98 P200 L2 (THE POCKET)\n#1=2 (TWO)\n"
+        "WHILE [#1 GT 0] DO1 (DOWN)\n#1=#1-1 (ONE)\n"
+        "G91 G1 X1. (CUT)\nEND1 (UP)\nG90 G0 Z9\nM30\nO0200\nG91 G1 Z-6 F300\nG0 Z6\nG90\nM99 (BACK)\n",
+        ["(MAIN)", "(THE POCKET)", "(BACK)", "(TWO)", "(DOWN)", "(ONE)", "(CUT)", "(UP)", "(CUT)"],
+    ),
+    "sinumerik": (
+        "G71 G90\nG0 X0 Y0 Z5\nL100 P2 ; pocket\nM30\n%_N_L100_SPF\nG91 G1 Z-1 F100\nG90\nM17 ; back (home)\n",
+        ["; pocket", "; back (home)"],
+    ),
+}
+
+
+@pytest.mark.parametrize("dialect", REMARKS)
+def test_what_a_line_says_to_people_is_kept_where_the_line_is_written_out(dialect: str) -> None:
+    text, said = REMARKS[dialect]
+    found, _ = rewritten(text, dialect, SHIFT)
+    assert re.findall(r";.*|\([A-Z ]+\)", found.text) == said
 
 
 @pytest.mark.parametrize("length", [0.0, 30e-3])

@@ -51,6 +51,32 @@ SINUMERIK = [
 ]
 
 
+BEGUN = {
+    "P2 Q20": ([2], "call-begins"),
+    "P2 Q20 L2": ([2, 3], "call-begins"),
+    "P2 H20": ([2], "call-begins"),
+    "P2 Q2": ([11, 12, 22, 23], "call-counts"),
+    "P2": ([11, 12], ""),
+    "H50 L2": ([6, 11], ""),
+}
+"""What is behind X1 by G91: N10 adds 10, N20 adds 1, N50 adds 5."""
+
+
+@pytest.mark.parametrize("call", BEGUN)
+def test_q_of_a_call_is_the_line_where_it_begins_or_a_count_where_there_is_none(call: str) -> None:
+    text = f"O1\nG21 G90 G1 F100 X1.\nM98 {call}\nM30\nN50 G91 X5.\nG90 M99\nO2\nN10 G91 X10.\nN20 G91 X1.\nG90 M99\n"
+    places, code = BEGUN[call]
+    assert xs(text, "auto") == [1, *places]
+    said = {f.code for f in interpret(text).findings} & {"call-begins", "call-counts"}
+    assert said == ({code} if code else set())
+
+
+@pytest.mark.parametrize("call", ["P2 Q3 L2", "P2 H30", "P2 Q1.5", "P2 Q0"])
+def test_a_line_that_a_call_names_and_that_is_not_there_is_refused(call: str) -> None:
+    with pytest.raises(GCodeError, match=r"^Line 2: [QH][\d.]+ of M98 names a line"):
+        interpret(f"O1\nM98 {call}\nM30\nO2\nN10 G91 X10.\nM99\nN30 X9\n")
+
+
 @pytest.mark.parametrize(("text", "places"), SINUMERIK)
 def test_calls_by_name_are_followed_on_a_sinumerik(text: str, places: list[float]) -> None:
     for head in ("", "%_N_MAIN_MPF\n;$PATH=/_N_WKS_DIR\n"):
@@ -59,7 +85,7 @@ def test_calls_by_name_are_followed_on_a_sinumerik(text: str, places: list[float
 
 REFUSED = [
     (HEAD + "M97 P1000\nM30\n%\n", "fanuc", "Line 4: M97 calls line N1000, but no line has that number"),
-    (HEAD + "M98 P7 Q3\nM30\nO7\nM99\n%\n", "fanuc", "Line 4: M98 has Q3, which is a line on some controls"),
+    (HEAD + "M98 P7 Q3\nM30\nO7\nM99\n%\n", "fanuc", "Line 4: Q3 of M98 names a line of what it calls"),
     (HEAD + "M98\nM30\n%\n", "fanuc", "Line 4: M98 needs P, the number of the program to call"),
     (HEAD + "M97\nM30\n%\n", "fanuc", "Line 4: M97 needs P, the line to call"),
     (HEAD + "M198 P55\nM30\n%\n", "fanuc", "Line 4: M198 calls O55, but there is no O55 in the program; paste it in"),

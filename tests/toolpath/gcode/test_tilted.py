@@ -42,9 +42,76 @@ def test_g68_2_turns_by_eulers_angles_about_its_origin(angles: tuple[float, ...]
     i, j, k = angles
     head = f"{FANUC}G68.2 X10. Y-20. Z3. I{i}. J{j}. K{k}.\nG53.1\n"
     fits(read_gcode(f"{head}{MOVES}M30\n%\n"), Rotation.from_euler("ZXZ", angles, degrees=True), (10, -20, 3))
-    back = read_gcode(f"{head}{MOVES}G69\nG0 X1. Y2. Z50.\nG1 Z7.\nM30\n%\n")
+    back = read_gcode(f"{head}{MOVES}G69\nG0 A0 X1. Y2. Z50.\nG1 Z7.\nM30\n%\n")
     np.testing.assert_allclose(back.p[-1] * 1e3, [1, 2, 7], atol=1e-9)
     np.testing.assert_allclose(back.k[-2:], [[0, 0, 1], [0, 0, 1]], atol=1e-12)
+
+
+def test_cuts_with_a_leaning_tool_keep_their_lean_beside_a_tilted_plane() -> None:
+    """A turns about X: at 30 degrees the tool leans to (0, -sin 30, cos 30), whatever planes come before or after."""
+    lean = "G1 A30. X10. F90.\nX20.\nG0 Z50.\nA0\n"
+    plane = "G68.2 I0 J-20. K0\nG53.1\nG0 X5. Y6.\nZ10.\nG1 Z0. F100.\nG69\nG0 A0 X0. Y0. Z50.\n"
+    for body in (lean + plane, plane + lean, lean):
+        path = read_gcode(f"{FANUC}{body}M30\n%\n", dialect="fanuc")
+        line = FANUC.count("\n") + body[: body.index("X20.")].count("\n") + 1
+        (row,) = np.flatnonzero(path.block == line)
+        np.testing.assert_allclose(path.p[row] * 1e3, [20, 0, 50], atol=1e-9)
+        np.testing.assert_allclose(path.k[row], [0, -0.5, 0.75**0.5], atol=1e-12)
+        np.testing.assert_allclose(path.k[-1], [0, 0, 1], atol=1e-12)
+        turns = np.degrees(np.arccos(np.clip((path.k[1:] * path.k[:-1]).sum(axis=1), -1.0, 1.0)))
+        assert turns.max() < 2.001
+
+
+HOME = "G91 G28 Z0\nG28 X0 Y0\nG90 G28 A0 C0\n"
+
+
+@pytest.mark.parametrize("end", [HOME, "G0 A0. C0.\n", "M1\n"])
+def test_axes_turned_before_g68_2_lean_no_tool(end: str) -> None:
+    """Posts turn the axes to where G53.1 will, which changes no cut: the same path as without, plane after plane."""
+    euler = [(-90, 15, 90), (-15, 90, 0)]
+    first, second = (f"G68.2 X0 Y0 Z0 I{i}. J{j}. K{k}.\nG53.1\n{MOVES}Z20.\nG69\n" for i, j, k in euler)
+    before = f"{FANUC}G0 A-15. C90.\n{first}{end}G0 A-90. C165.\n{second}{HOME}M30\n%\n"
+    program = interpret(before, dialect="fanuc")
+    assert not program.rotary.any()
+    assert not program.rotary0.any()
+    assert "rotary-asked" not in {finding.code for finding in program.findings}
+    path = to_toolpath(program)
+    for angles, line in zip(euler, ("X20.", "X20.")):
+        turn = Rotation.from_euler("ZXZ", angles, degrees=True)
+        at = [n for n, text in enumerate(before.split("\n"), 1) if text == line][euler.index(angles)]
+        (row,) = np.flatnonzero(path.block == at)
+        np.testing.assert_allclose(path.p[row] * 1e3, turn.apply([20, 6, 0]), atol=1e-9)
+        np.testing.assert_allclose(path.k[row], turn.apply([0, 0, 1]), atol=1e-12)
+    plain = read_gcode(f"{FANUC}{first}{HOME}{second}{HOME}M30\n%\n", dialect="fanuc")
+    np.testing.assert_allclose(plain.p[plain.cutting.nonzero()], path.p[path.cutting.nonzero()], atol=1e-12)
+
+
+def test_axes_stand_after_g69_where_they_stood_before_the_plane() -> None:
+    """A stands at 30 degrees again: a cut that then says C alone leans by A."""
+    body = "G0 A30.\nG68.2 I0 J30. K0\nG53.1\nG0 X5. Y6. Z9.\nG1 Z0 F9.\nG69\nG0 C0. X0 Y0 Z50.\nG1 X7.\n"
+    program = interpret(f"{FANUC}{body}M30\n%\n", dialect="fanuc")
+    np.testing.assert_allclose(np.degrees(program.rotary[-1]), [30, 0, 0], atol=1e-9)
+    np.testing.assert_allclose(to_toolpath(program).k[-1], [0, -0.5, 0.75**0.5], atol=1e-12)
+
+
+def test_axes_turned_before_cycle800_lean_no_tool() -> None:
+    """As a post writes it: turned, swivelled to the same, and after CYCLE800() in five axes from there."""
+    body = (
+        'G0 A30 C=DC(0)\nCYCLE800(0,"",0,27,0,0,0,0,0,30,0,0,0,1,,0)\nG0 X5 Y6\nCYCLE800()\nTRAORI\n'
+        "G0 X1 Y2 Z3 A30 C=DC(0)\nG1 X9 F100\nG0 A0 C0\nG1 X0\nM30\n"
+    )
+    program = interpret(f"{SIEMENS}{body}", dialect="sinumerik")
+    leans = np.degrees(program.rotary)[:, 0]
+    np.testing.assert_allclose(leans, [0, 0, 0, 30, 30, 0, 0], atol=1e-9)
+    np.testing.assert_allclose(program.end[-4:] * 1e3, [[1, 2, 3], [9, 2, 3], [9, 2, 3], [0, 2, 3]], atol=1e-9)
+    with pytest.raises(GCodeError, match="Line 7: the end of the plane leaves the tool as it was turned"):
+        read_gcode(f"{SIEMENS}{body[: body.index('TRAORI')]}G1 X9 Y9 Z9 F100\nM30\n", dialect="sinumerik")
+
+
+def test_an_upright_plane_leaves_the_tool_upright() -> None:
+    body = "G68.2 I0 J0 K30.\nG53.1\nG0 X5. Y6. Z9.\nG69\nG0 X0 Y0 Z9.\nG1 Z0 F9.\n"
+    path = read_gcode(f"{FANUC}{body}M30\n%\n", dialect="fanuc")
+    np.testing.assert_allclose(path.p[-1], [0, 0, 0], atol=1e-12)
 
 
 @pytest.mark.parametrize(("mode", "axes"), [(57, "XYZ"), (27, "ZYX"), (54, "YXZ"), (45, "XZY")])
@@ -56,7 +123,7 @@ def test_cycle800_turns_axis_by_axis(mode: int, axes: str) -> None:
         cycle = f'N20 CYCLE800(1,"TC1",{state},{mode},10,20,-5,30,-50,70,1,2,3,-1,100,1)\n'
         path = read_gcode(f"{SIEMENS}{cycle}{MOVES}M30\n", dialect="sinumerik")
         fits(path, turn, (10, 20, -5), (1, 2, 3))
-    back = f"{SIEMENS}{cycle}{MOVES}CYCLE800()\nG0 X1 Y2 Z50\nG1 Z7\nM30\n"
+    back = f"{SIEMENS}{cycle}{MOVES}CYCLE800()\nG0 X1 Y2 Z50 A0\nG1 Z7\nM30\n"
     np.testing.assert_allclose(read_gcode(back, dialect="sinumerik").p[-1] * 1e3, [1, 2, 7], atol=1e-9)
 
 
@@ -67,6 +134,76 @@ def test_plane_spatial_turns_about_the_upright_axes_x_y_z(behaves: str) -> None:
     path = read_gcode(f"{KLARTEXT}{plane}{L_MOVES}END PGM A MM\n")
     fits(path, Rotation.from_euler("xyz", (30, -50, 70), degrees=True))
     fits(path, Rotation.from_euler("ZYX", (70, -50, 30), degrees=True))
+
+
+def test_cycle800_takes_angles_in_space_about_z_and_then_y() -> None:
+    turn = Rotation.from_euler("ZY", (30, -50), degrees=True)
+    for mode in (64, 121):
+        cycle = f'CYCLE800(1,"TC1",0,{mode},10,20,-5,30,-50,0,1,2,3,-1,100,1)\n'
+        path = read_gcode(f"{SIEMENS}{cycle}{MOVES}M30\n", dialect="sinumerik")
+        fits(path, turn, (10, 20, -5), (1, 2, 3))
+
+
+X_WAY, NORMAL = (0.6, 0.0, -0.8), (0.48, 0.8, 0.36)
+"""Of length 1 and at right angles: 0.6 x 0.48 = 0.8 x 0.36."""
+SAID = {
+    "PLANE EULER EULPR30 EULNU-50 EULROT70": Rotation.from_euler("ZXZ", (30, -50, 70), degrees=True),
+    "PLANE VECTOR BX+0.6 BY+0 BZ-0.8 NX+0.48 NY+0.8 NZ+0.36": Rotation.from_matrix(
+        np.column_stack([X_WAY, np.cross(NORMAL, X_WAY), NORMAL])
+    ),
+    "PLANE VECTOR BX1.2 BY0.0003 BZ-1.6 NX4.8 NY8 NZ3.6": Rotation.from_matrix(
+        np.column_stack([X_WAY, np.cross(NORMAL, X_WAY), NORMAL])
+    ),
+    "PLANE SPATIAL SPA+0 SPB+20 SPC+0 TURN\nPLANE RELATIV SPA-35": Rotation.from_euler("YX", (20, -35), degrees=True),
+    "PLANE RELATIV SPC+35": Rotation.from_euler("z", 35, degrees=True),
+}
+
+
+@pytest.mark.parametrize("plane", SAID)
+def test_planes_by_eulers_angles_vectors_and_steps(plane: str) -> None:
+    """Euler's about Z, X and Z as each has left them; a plane by vectors has X along B and Z along N."""
+    path = read_gcode(f"{KLARTEXT}{plane} TURN FMAX\n{L_MOVES}END PGM A MM\n")
+    p, k = cuts(path)
+    near = 1e-9 if "0003" not in plane else 0.01
+    np.testing.assert_allclose(p, SAID[plane].apply(PLACES), atol=near)
+    np.testing.assert_allclose(k, np.tile(SAID[plane].apply([0, 0, 1]), (4, 1)), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("plane", "turned"),
+    [
+        ("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+30 B-50 C+70\n", "L A+Q120 B+Q121 C+Q122 R0 FMAX\n"),
+        ("CYCL DEF 19.0\nCYCL DEF 19.1 A+30 B-50 C+70 F5000 ABST50\n", ""),
+    ],
+)
+def test_cycle_19_turns_as_plane_spatial_and_ends_by_zero(plane: str, turned: str) -> None:
+    program = f"{KLARTEXT}{plane}{turned}{L_MOVES}"
+    path = read_gcode(f"{program}END PGM A MM\n")
+    fits(path, Rotation.from_euler("xyz", (30, -50, 70), degrees=True))
+    assert "cycle-19" in {finding.code for finding in path.findings}
+    for last in ("A+0 B+0 C+0", ""):
+        back = f"CYCL DEF 19.0\nCYCL DEF 19.1 {last}\nL A0 B+Q121 C0 FMAX\nL X1 Y2 Z50 FMAX\nL Z7 F99\n"
+        np.testing.assert_allclose(read_gcode(f"{program}{back}END PGM A MM\n").p[-1] * 1e3, [1, 2, 7], atol=1e-9)
+    if turned:
+        with pytest.raises(GCodeError, match=r"^Line 6: the plane leaves the tool"):
+            read_gcode(f"{KLARTEXT}{plane}{L_MOVES}")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "PLANE VECTOR BX1 BY0 BZ1 NX0 NY0 NZ1 STAY",
+        "PLANE VECTOR BX0 BY0 BZ0 NX0 NY0 NZ1 STAY",
+        "PLANE AXIAL B-45 TURN FMAX",
+        "PLANE PROJECTED PROPR+24 PROMIN+24 ROT+0 TURN",
+        "PLANE POINTS P1X+0 P1Y+0 P1Z+0",
+        "CYCL DEF 19.1 A+Q1 X5",
+        "PLANE EULER EULPR30",
+    ],
+)
+def test_planes_that_only_a_machine_or_nobody_knows_are_refused(line: str) -> None:
+    with pytest.raises(GCodeError, match=r"^Line 4: "):
+        read_gcode(f"{KLARTEXT}{line}\nL X1 F9\nEND PGM A MM\n")
 
 
 def test_a_face_at_the_side_of_a_part_is_drilled_along_its_own_axis() -> None:
@@ -108,7 +245,9 @@ def test_arcs_lie_in_the_plane_and_the_way_there_turns_the_tool_evenly() -> None
         ("G68.2 X1. Y2.\n", "Line 5: G68.2 is read with Euler's angles"),
         ("G53.1\n", "Line 5: G53.1 is not known"),
         ("G68 X0 Y0 R5.\nG68.2 I0 J30. K0\nG53.1\n", "Line 7: G68.2 while coordinates are turned"),
-        ("G1 A30. F9.\nG68.2 I0 J30. K0\nG53.1\n", "Line 7: G68.2 while A, B or C stand elsewhere than at 0"),
+        ("G92 C9.\nG0 A30.\nG68.2 I0 J30. K0\nG53.1\n", "Line 8: G68.2 while A, B or C stand elsewhere than at 0"),
+        ("G68.2 I0 J30. K0\nG53.1\nG69\nG0 X1. Y1. Z9.\nG1 Z0 F9.\n", "Line 9: the end of the plane leaves the tool"),
+        ("G68.2 I0 J30. K0\nG53.1\nG69\nG81 X1. Z0 R2. F9.\n", "Line 8: the end of the plane leaves the tool"),
         ("G68.2 I0 J30. K0\nG53.1\nG0 X0 Y0 Z9.\nG1 A3. F9.\n", "Line 8: A, B or C in a tilted plane is not read"),
         *(
             (f"G68.2 I0 J30. K0\nG53.1\n{line}\n", f"Line 7: {line.split(' ')[0]} in a tilted plane is not read")
@@ -145,14 +284,14 @@ PLANE = "PLANE SPATIAL SPA+30 SPB+0 SPC+0"
 @pytest.mark.parametrize(
     ("body", "says"),
     [
-        (f"{PLANE} STAY\nL X1 F9\n", "Line 5: PLANE with STAY leaves the tool as it stands"),
+        (f"{PLANE} STAY\nL X1 F9\n", "Line 5: the plane leaves the tool as it stands"),
         (f"{PLANE} TURN FMAX\nCYCL DEF 7.1 X5\n", "Line 5: a datum shift or rotation in a tilted plane"),
         (f"{PLANE} TURN FMAX\nCYCL DEF 8.1 X\n", "Line 5: a mirror image in a tilted plane"),
         (f"CYCL DEF 7.1 X5\n{PLANE} TURN FMAX\nCYCL DEF 7.1 X0\nL Z3 F9\n", "Line 7: the datum shift has ended in"),
         (f"CYCL DEF 10.1 ROT5\n{PLANE} TURN FMAX\n", "Line 5: PLANE inside of a rotation"),
         (f"{PLANE} TURN FMAX\nPLANE RESET STAY\nL X0 Y0 Z1 F9\n", "Line 6: the tool still leans"),
         (f"{PLANE} JUMP\n", "Line 4: found 'JUMP' behind PLANE"),
-        ("PLANE EULER EULPR1 EULNU2 EULROT3\n", "Line 4: PLANE EULER EULPR1 is of Heidenhain's"),
+        ("PLANE EULER EULPR1 EULNU2\n", "Line 4: PLANE EULER EULPR1 is of Heidenhain's"),
     ],
 )
 def test_what_is_not_read_of_a_heidenhain_is_refused(body: str, says: str) -> None:

@@ -6,8 +6,9 @@ import numpy as np
 
 import robomill as rm
 from robomill.improve.remedies import REMEDIES
+from robomill.provenance import Provenance
 from robomill.ui.improve.opened import OPENED, level_words, over_spin
-from robomill.ui.improve.remedies import FINDS, SHOWN, shown
+from robomill.ui.improve.remedies import FINDS, SHOWN, Found, as_it_is, sentence, shown
 
 
 def test_a_wall_to_the_right_is_as_large_as_one_to_the_left() -> None:
@@ -55,3 +56,18 @@ def test_a_map_of_spins_shows_only_what_is_judged_and_its_best_spin_inside() -> 
 def test_a_level_is_named_only_where_it_is_drawn() -> None:
     assert level_words(np.array([[40.0, np.nan, 120.0]])) == "White line: all of the tolerance is used."
     assert level_words(np.array([[40.0, np.nan, 90.0]])) == level_words(np.array([[np.nan]])) == ""
+
+
+def test_a_place_that_is_no_better_is_not_recommended_though_nothing_is_judged() -> None:
+    """The best place is where the part lies: nobody is told to move it from 0.231 mm to 0.231 mm."""
+    carried = {"force": Provenance("measured", "dynamometer").carried("another part")}
+    setup = rm.load_setup("paper_flute").replace(step_mm=5, cell_mm=0.5, provenance=carried)
+    run = rm.simulate(setup)
+    assert run.verdict.level == "unjudged"
+    place = rm.place(setup, x_mm=(-100, 100), y_mm=(-1400, -1300), candidates=20)
+    remedy = next(each for each in REMEDIES if each.code == "place")
+    now = as_it_is(run, "mm")
+    stays = Found(remedy, shown=shown(remedy, dataclasses.replace(place, best=place.now), run, "mm"))
+    moved = Found(remedy, shown=shown(remedy, place, run, "mm"))
+    assert remedy.title not in sentence([stays], run, now, "mm")
+    assert sentence([moved], run, now, "mm").startswith(f"{remedy.title}: ")

@@ -38,7 +38,7 @@ def test_headline_words(found: PoseReport) -> None:
     moved = Moved.at(found, push)
     said = headline(in_hand(found.robot, POINT, 0.0, 0.0), moved, "mm")
     assert said.startswith("100 N along Y moves the tip by ")
-    numbers = [float(v.replace("−", "-")) for v in re.findall(r"([+−][\d.]+) mm in", said)]
+    numbers = [float(v.replace("−", "-")) for v in re.findall(r"([+−][\d.]+) mm along", said)]
     np.testing.assert_allclose(numbers, found.C[:, 1] * 100e3, atol=6e-4)
     far = in_hand(found.robot, (0.0, -9.0, 0.0), 0.0, 0.0)
     nowhere = Moved.at(far.pose, push)

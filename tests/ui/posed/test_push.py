@@ -51,7 +51,7 @@ def test_the_place_is_that_of_the_verdict(flute: rm.SimulationResult) -> None:
     assert cut is not None
     assert (cut.line, cut.in_hand().point) == (7, pytest.approx((cut.in_hand().point[0], -1.3, 0.0)))
     np.testing.assert_allclose(rm.tool_pose(ROBOT, cut.theta)[:3, 3], cut.in_hand().point, atol=1e-5)
-    assert cut.moved.sentence("mm") == "100 N on the tool moves the tip by +0.230 mm in Y, −0.102 mm in Z."
+    assert cut.moved.sentence("mm") == "100 N on the tool moves the tip by +0.230 mm along Y, −0.102 mm along Z."
     assert cut.moved.blame("mm") == "Of these 0.251 mm, 70 % come from joint 3 and 30 % from joint 5."
     along_y = np.outer([0.5, 0.15, 0.3, 0.05, 0.0], [0.0, 1.0, 0.0])
     three = dataclasses.replace(cut.moved, delta=along_y.sum(axis=0), delta_joint=along_y)
@@ -82,3 +82,16 @@ def test_a_rigid_arm_is_not_moved() -> None:
     moved = Moved.at(rigid, Push.along("x"))
     assert moved.sentence("mm") == "100 N along X does not move the tip."
     assert moved.blame("mm") == ""
+
+
+def test_a_straight_arm_pushed_along_its_links_is_not_said_to_move() -> None:
+    """Of what a sum rounds to nobody is to blame: 63 % of 0.000 mm came from joint 1."""
+    arm = rm.load_robot("planar_2r")
+    theta = np.array([0.1, 0.0])
+    along = np.array([np.cos(0.1), np.sin(0.1), 0.0])
+    moved = Moved.at(at_pose(arm, theta), Push(100.0 * along))
+    assert moved.size < 1e-12
+    assert not moved.moves
+    assert moved.blame("mm") == ""
+    assert (moved.shares == 0.0).all()
+    assert Moved.at(at_pose(arm, theta), Push.along("y")).moves

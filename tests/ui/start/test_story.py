@@ -20,7 +20,7 @@ def test_shares_in_whole_per_cent_sum_to_what_they_are(shares: tuple[float, ...]
 
 def test_the_cause_is_told_of_the_groove() -> None:
     assert cause(simulate(preset_setup("paper_flute")), "mm") == (
-        "100 N on the tool moves the tip by +0.230 mm in Y, −0.102 mm in Z. "
+        "100 N on the tool moves the tip by +0.230 mm along Y, −0.102 mm along Z. "
         "Of these 0.251 mm, 70 % come from joint 3 and 30 % from joint 5."
     )
 

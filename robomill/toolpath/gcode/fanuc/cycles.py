@@ -16,6 +16,7 @@ from robomill.toolpath.plane import axes, polar
 _THOUSANDTHS = 100.0
 """Nobody pecks so deep: controls count a Q without a point in steps of 0.001 mm (0.0001 in)."""
 MOST_BOLTS = 10_000
+_SHIFT, _CLAMP = 920, 500
 _FINE_BORING, _BORING, _BACK_BORING = 760, 860, 870
 
 
@@ -28,6 +29,16 @@ def as_bored(machine: Machine, block: Block) -> None:
         block.g[modal.MOTION] = _BORING
         words.pop("q", None)
         machine.note("fine-boring", "info", "G76 is read as boring (G86); its step aside in the hole is left out")
+
+
+def clamps(machine: Machine, block: Block) -> None:
+    """G92 S and G50 S are the fastest that the spindle may turn, and neither its speed nor a place."""
+    words, shifts = block.words, block.g.get(modal.NON_MODAL) == _SHIFT
+    if "s" in words and (shifts or _CLAMP in block.unknown_g) and words.keys().isdisjoint("xyzabc"):
+        del words["s"]
+        if shifts:
+            del block.g[modal.NON_MODAL]
+        machine.note("harmless-g", "ignored", "S beside G92 or G50 is the fastest that the spindle may turn; left out")
 
 
 def bolt_holes(machine: Machine, block: Block, code: int) -> bool:

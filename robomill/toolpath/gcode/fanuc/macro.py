@@ -17,6 +17,7 @@ _LOOP = re.compile(
 _SUM = re.compile(
     r"^([ \t]*/?[ \t]*(?:N\d+)?[ \t]*#\s*(?:\d+|\[[^\]=]*\])\s*=)([^=;(]*?)\s*(\(.*|;.*)?$", re.IGNORECASE
 )
+_TURN = re.compile(r"(?:do|end)\d")
 _OPERATOR = re.compile(r"[\]\d.]\s*(?:[-+*/]|MOD|AND|OR|XOR)", re.IGNORECASE)
 
 
@@ -58,6 +59,7 @@ class MacroB(Subprograms):
 
     def _go_to_line(self, reader: Reader) -> None:
         number = reader.integer("The line that GOTO goes to")
+        self._alone(reader)
         target = self.line_numbered(number)
         if target is None:
             raise reader.refuse(f"GOTO {number} leads nowhere: no line has the number N{number}.")
@@ -74,12 +76,23 @@ class MacroB(Subprograms):
         partner = self._loops.get(index)
         if partner is None:
             raise reader.refuse("WHILE ... DO and END do not match here; each DO1 needs its END1, and they nest.")
+        over = False
         if reader.text.startswith("end", reader.at):
             self.pc = partner
         elif reader.text.startswith("while", reader.at):
             reader.at += 5
-            if reader.value() == 0.0:
-                self.pc = partner + 1
+            over = reader.value() == 0.0
+        turn = _TURN.match(reader.text, reader.at)
+        reader.at = reader.at if turn is None else turn.end()
+        self._alone(reader)
+        if over:
+            self.pc = partner + 1
+
+    def _alone(self, reader: Reader) -> None:
+        """Raise GCodeError where words stand behind GOTO, DO or END on their line: nothing would execute them."""
+        rest = reader.text[reader.at :].strip()
+        if rest and rest[0] not in "(;":
+            raise reader.refuse(f"found {reader.rest()!r} behind GOTO, DO or END; put it on a line of its own.")
 
     @cached_property
     def _loops(self) -> dict[int, int]:

@@ -12,6 +12,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.fanuc.macro import MacroB
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.scan import COMMENT
 from robomill.toolpath.gcode.subprograms import LOCALS
 from robomill.toolpath.gcode.words import Block
 
@@ -24,7 +25,6 @@ _ARGUMENTS = dict(
 _SETS = 10
 """I, J and K can be given so many times."""
 _CALL = re.compile(r"g(65|66|67)(?![\d.])")
-_LEFT_OUT = re.compile(r"\([^()]*\)|;.*")
 _WORD = re.compile(r"([A-FH-MP-Z])\s*[-+]?\s*#\s*(\d+)(?![\d\s]*[-+*/])", re.IGNORECASE)
 _ASKS = re.compile(r"#(\d+)\s*(EQ|NE)\s*(#0(?!\d)|[-+]?[\d.]+)|#0\s*(EQ|NE)\s*#(\d+)", re.IGNORECASE)
 _COPIES = re.compile(r"\s*(?:/\s*)?(?:N\d+\s*)?#\s*(\d+)\s*=\s*#\s*(\d+)\s*")
@@ -52,7 +52,7 @@ class MacroCalls(MacroB):
         """The line without words whose variable is empty, and with what it asks of empty ones answered."""
         if not self.machine.is_fanuc or "#" not in raw:
             return raw
-        machine, code = self.machine, _LEFT_OUT.sub("", raw)
+        machine, code = self.machine, COMMENT.sub("", raw)
         if _ALARM.search(code):
             said = _SAYS.search(raw)
             raise GCodeError.at(line, f"the program stops here with an alarm (#3000){f': {said[1]}' if said else ''}.")

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import codes as modal
-from robomill.toolpath.gcode.klartext.values import NUMBER, KlartextValues
-from robomill.toolpath.gcode.offsets import compensation_on
+from robomill.toolpath.gcode.cutters import compensation_on
+from robomill.toolpath.gcode.klartext.patterns import KlartextPatterns
+from robomill.toolpath.gcode.klartext.values import NUMBER
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
 from robomill.toolpath.gcode.rules.motion_rules import MINUTE
 from robomill.toolpath.gcode.words import Block
@@ -47,7 +48,7 @@ class _Said:
     feed: float | None
 
 
-class KlartextApproach(KlartextValues):
+class KlartextApproach(KlartextPatterns):
     """Leads the tool to contours and away from them."""
 
     side = "0"

@@ -11,21 +11,23 @@ from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
 from robomill.toolpath.gcode.dialects import plain_numbers
-from robomill.toolpath.gcode.klartext.planes import KlartextPlanes
+from robomill.toolpath.gcode.klartext.iso import KlartextIso
+from robomill.toolpath.gcode.klartext.planes import WORD, Words
 from robomill.toolpath.gcode.klartext.values import NUMBER
+from robomill.toolpath.gcode.scan import behind_remark
 from robomill.toolpath.gcode.sinumerik.lines import named_tool
 from robomill.toolpath.gcode.tool_axis import angles_of
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.plane import axes, centre_by_radius, polar
 
 _NUMBERED = re.compile(r"^\s*(/?)\s*(?:N?\d+(?![\d.,])\s*)?(/?)\s*")
-_LABEL = re.compile(r"^[ \t]*N?\d*[ \t]*LBL[ \t]+(\"[^\"\n]+\"|\d+)", re.MULTILINE | re.IGNORECASE)
-_WORD = re.compile(rf"(?<![A-Z])(I?)(PR|PA|T[XYZ]|[XYZABC])[ \t]*({NUMBER})")
+_LABEL = re.compile(r"^[ \t]*N?\d*[ \t]*(?:LBL[ \t]+|G98[ \t]*L[ \t]*)(\"[^\"\n]+\"|\d+)", re.MULTILINE | re.IGNORECASE)
 _FEED = re.compile(rf"(?<![A-Z])F(U?)[ \t]*(MAX|AUTO|{NUMBER})")
 _RADIUS = re.compile(rf"(?<![A-Z])R[ \t]*({NUMBER})")
 _NORMAL = re.compile(rf"N[XYZ] ?{NUMBER}")
 _WITH_M = re.compile(
-    rf"(M128|M140 ?MB ?(?:MAX|{NUMBER})|M120|M124|M103|M138)(?: ?(?:F|LA|T) ?(?:MAX|{NUMBER})| [ABC]\b)*"
+    rf"(M118(?: ?[XYZABC] ?{NUMBER})*|M128|M140 ?MB ?(?:MAX|{NUMBER})|M120|M124|M103|M138)"
+    rf"(?: ?(?:F|LA|T) ?(?:MAX|{NUMBER})| [ABC]\b)*"
 )
 _SIDE = re.compile(r"(?<![A-Z])R(0|L|R)(?![\d.,])")
 _SENSE = re.compile(r"DR[ \t]*([-+])")
@@ -45,11 +47,7 @@ _KEPT_M = (0, 1, 2, 3, 4, 5, 7, 8, 9, 30)
 _PAIRS = {13: "M3 M8", 14: "M4 M8"}
 
 
-Words = dict[str, tuple[str, float]]
-"""By letter: "I" where it counts as a step, and the value."""
-
-
-class Klartext(KlartextPlanes):
+class Klartext(KlartextIso):
     """Reads what stands in a dialogue; what is left of a line goes on to the reader of words."""
 
     heading: tuple[float, float] | None = None
@@ -65,6 +63,11 @@ class Klartext(KlartextPlanes):
             self.machine.findings.add("block-delete", "info", line, "block delete (/) is off: these lines are executed")
         if not code or code[0] in "*(":
             return None
+        said = self.iso_lines(code, line) if self.is_iso else [code]
+        return " ".join(filter(None, [self._dialogue_line(each, index) for each in said])) or None
+
+    def _dialogue_line(self, code: str, index: int) -> str | None:
+        line = index + 1
         if (code[:5] == "PLANE" or self.leans or self.machine.stuck) and self.plane_line(code, line):
             return None
         first = code.split(" ", 1)[0]
@@ -100,7 +103,7 @@ class Klartext(KlartextPlanes):
             name = " ".join(code.split(" ")[:2])
             self.machine.findings.add("harmless-word", "ignored", line, f"{name} is left out: it moves nothing")
             return None
-        if self.values_line(code, line):
+        if self.pattern_line(code, line) or self.values_line(code, line):
             return None
         if code.startswith("CALL PGM"):
             text = f'{code[:40]} calls another program; paste it in behind M30 as LBL "NAME" ... LBL 0, and call that.'
@@ -109,11 +112,11 @@ class Klartext(KlartextPlanes):
 
     def joined_block(self, index: int) -> tuple[str, int, bool]:
         """The block at ``index`` in capitals, without number and comment; what comes next; whether / stands before."""
-        lines, skipped = self.file.lines, False
+        lines, skipped, found = self.file.lines, False, None
         parts: list[str] = []
         while index < len(lines):
             raw = plain_numbers(lines[index], index + 1, self.machine.findings)
-            text = raw.partition(";")[0].rstrip().removesuffix("~")
+            text = (self.iso_text(raw) if self.is_iso else raw.partition(";")[0].rstrip()).removesuffix("~")
             if not parts:
                 found = _NUMBERED.match(text)
                 skipped = found is not None and "/" in found[0]
@@ -124,6 +127,8 @@ class Klartext(KlartextPlanes):
                 raise GCodeError.at(index, f"a block is over {MAX_CODE} characters or {MAX_LINES} lines; split it.")
             if not raw.rstrip().endswith("~"):
                 break
+            if parts == [""] and found is not None and found[0].strip("/ \t"):
+                return "", behind_remark(lines, index), skipped
         code = re.sub(r"(?<=[-+\dXYZABC]),(?=\d)", ".", " ".join(parts).upper())
         return " ".join(code.split()), index, skipped
 
@@ -138,7 +143,7 @@ class Klartext(KlartextPlanes):
     def set_pole(self, code: str, line: int) -> None:
         """CC: a centre or pole in the plane of its two axes; one that is not given stays, without any it is here."""
         at, said = self.here(), {}
-        for step, letter, value in _WORD.findall(code):
+        for step, letter, value in WORD.findall(code):
             axis = "XYZABC".find(letter)
             said[axis] = self.number(value, line) + (at[axis] if step else 0.0)
         plane, old = (17, None) if self.pole is None else (self.pole[0], self.pole[1:])
@@ -171,7 +176,7 @@ class Klartext(KlartextPlanes):
         rest = _WITH_M.sub(lambda found: found[1][:4], code)
         feed, side = _FEED.search(rest), _SIDE.search(rest)
         self._check_left_over(kind, rest, line)
-        words = {letter: (step, self.number(value, line)) for step, letter, value in _WORD.findall(rest)}
+        words = self.words_of(kind, rest, line)
         codes = [int(number[:6]) for number in _M.findall(rest)]
         where, arc = self._end(kind, words, rest, line)
         out = [self._compensated(side[1] if side else self.side, line)]
@@ -205,7 +210,7 @@ class Klartext(KlartextPlanes):
     def _check_left_over(self, kind: str, code: str, line: int) -> None:
         """Refuse what no rule of a line that moves has a use for."""
         left = code.removeprefix(kind)
-        for pattern in (_FEED, _SENSE, _SIDE, _WORD, _NORMAL, _M, *((_RADIUS,) if kind == "CR" else ())):
+        for pattern in (_FEED, _SENSE, _SIDE, WORD, _NORMAL, _M, *((_RADIUS,) if kind == "CR" else ())):
             left = pattern.sub("", left)
         if left.strip():
             raise GCodeError.at(line, f"found {left.strip()[:20]!r} in a line that begins with {kind}; {_LET}.")
@@ -296,8 +301,7 @@ class Klartext(KlartextPlanes):
         plane, *pole = self._pole(line)
         first, second, _ = axes(plane)
         self.leaving = (-turn * (end[1] - pole[1]), turn * (end[0] - pole[0])) if plane == 17 else None
-        centre = f"{'IJK'[first]}{pole[0] - at[first]:.12f} {'IJK'[second]}{pole[1] - at[second]:.12f}"
-        out = f"G{plane} {name} {centre}"
+        out = f"G{plane} {name} {'IJK'[first]}{pole[0] - at[first]:.12f} {'IJK'[second]}{pole[1] - at[second]:.12f}"
         if "PA" in words and words["PA"][0]:
             step = words["PA"][1]
             if step * turn < 0.0:

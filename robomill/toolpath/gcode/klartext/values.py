@@ -2,7 +2,6 @@
 
 import math
 import re
-from dataclasses import replace
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode.expressions import Reader
@@ -13,12 +12,12 @@ from robomill.toolpath.gcode.program import TRAVERSE
 from robomill.toolpath.gcode.sinumerik.holes import Hole
 from robomill.toolpath.gcode.sinumerik.procs import SinumerikProcs
 from robomill.toolpath.gcode.words import Block, normalise
-from robomill.toolpath.plane import polar, turned
 
 NUMBER = r"[-+]? ?(?:\d+(?:\.\d*)?|\.\d+|Q[LR]?\d+)"
 FIRST_Q = {"Q": 1000, "QL": 3000, "QR": 4000}
 MOST_Q = {"Q": 1999, "QL": 499, "QR": 499}
-MOST_HOLES = 10_000
+_FEEDS = ("Q206", "Q207", "Q208")
+"""Feeds of cycles, which AUTO makes that of TOOL CALL."""
 RAPID_OUT = 99_999.0
 """Q208 from which on a tool leaves its hole at rapid; what MAX and FMAX stand for."""
 _Q = re.compile(r"(Q[LR]?)(\d+)")
@@ -169,7 +168,7 @@ class KlartextValues(SinumerikProcs):
     def cycle_words(self, code: str, line: int) -> str | None:
         """CYCL DEF, CYCL CALL and TRANS DATUM."""
         if code.startswith("CYCL CALL"):
-            return self._cycle_call(code, line)
+            return self.cycle_call(code, line)
         if code.startswith("TRANS DATUM"):
             reset = "RESET" in code
             self._shift({} if reset else self._axes_of(code, line), line, every=reset)
@@ -185,11 +184,14 @@ class KlartextValues(SinumerikProcs):
                 if name == "Q208" and value in ("MAX", "FMAX"):
                     self.set_q(name, RAPID_OUT, line)
                     continue
+                if value in ("AUTO", "FAUTO") and name in _FEEDS:
+                    self.set_q(name, self.rate("AUTO", line) * self.tenth, line)
+                    continue
                 if not re.fullmatch(NUMBER, value):
                     raise GCodeError.at(line, f"CYCL DEF {number} has {name}={value}, which is not read.")
                 self.set_q(name, self.number(value, line), line)
             if number in _PATTERNS:
-                self._pattern(number, line)
+                self.pattern(number, line)
             return None
         return self._other_cycle(number, part, rest.strip(), line)
 
@@ -207,19 +209,25 @@ class KlartextValues(SinumerikProcs):
             found = re.search(rf"({NUMBER}) ?$", rest)
             return f"G4 P{max(self.number(found[1], line), 0.0):.6f}" if found else None
         elif number == 247:
-            preset = float(next(iter(re.findall(r"Q339 ?= ?\+?(\d+)", rest)), "0"))
-            if self.preset is not None and self.preset != preset:
-                raise GCodeError.at(line, "CYCL DEF 247 chooses a second preset; split the program there.")
-            self.preset = preset
+            self._choose_preset(float(next(iter(re.findall(r"Q339 ?= ?\+?(\d+)", rest)), "0")), line)
         elif number == 8 and part != "0":
             self._mirror(rest, line)
-        elif number in (19, 11) and part != "0":
-            values = [float(v) for v in re.findall(r"[-+]?[\d.]+", rest)]
-            if any(v != (1.0 if number == 11 else 0.0) for v in values):
-                raise GCodeError.at(line, f"CYCL DEF {number}.{part} {rest[:20]} tilts or scales: not read.")
+        elif number == 11 and part != "0":
+            if any(float(v) != 1.0 for v in re.findall(r"[-+]?(?:\d+\.?\d*|\.\d+)", rest)):
+                raise GCodeError.at(line, f"CYCL DEF 11.{part} {rest[:20]} scales: not read.")
         elif number not in (7, 8, 9, 10, 11, 13, 19, 32, 247, *_TUNING):
             raise GCodeError.at(line, f"CYCL DEF {number} {rest[:20]} is a cycle that is not read; {_LET}.")
         return None
+
+    def _choose_preset(self, preset: float, line: int) -> None:
+        """CYCL DEF 247, which also ends a datum shift, a rotation and a mirror image."""
+        if self.preset is not None and self.preset != preset:
+            raise GCodeError.at(line, "CYCL DEF 247 chooses a second preset; split the program there.")
+        self.preset = preset
+        if self.machine.scale is not None:
+            self._mirror("", line)
+        if frame_of(self.machine) != ([0.0] * 3, 0.0):
+            self._see([0.0] * 3, 0.0, line)
 
     def _axes_of(self, text: str, line: int) -> dict[str, tuple[bool, float]]:
         return {letter.lower(): (bool(step), self.number(value, line)) for step, letter, value in _AXIS.findall(text)}
@@ -270,50 +278,15 @@ class KlartextValues(SinumerikProcs):
             raise GCodeError.at(line, "FAUTO is the feed of TOOL CALL, which has none; write F there.")
         return self.tool_feed
 
-    def _pattern(self, number: int, line: int) -> None:
-        """CYCL DEF 220 and 221 drill at once, on a circle or in lines."""
-        if self.drill == 0:
-            text = f"CYCL DEF {number} repeats a cycle, but none is defined; write CYCL DEF 200 before."
-            raise GCodeError.at(line, text)
-        if number == 220:
-            count = self._asked(241, number, line)
-            first, last, step = self.q(245), self.q(246), self.q(247)
-            if step == 0.0:
-                whole = abs(abs(last - first) - 360.0) < 1e-6
-                step = (last - first) / max(count if whole else count - 1, 1)
-            angles = [math.radians(first + k * step) for k in range(count)]
-            radius = 0.5 * abs(self.q(244))
-            points = [polar(radius, t, self.q(216), self.q(217)) for t in angles]
-        else:
-            columns, rows = self._asked(242, number, line), self._asked(243, number, line)
-            t = math.radians(self.q(224))
-            points = []
-            for row in range(rows):
-                for column in range(columns) if row % 2 == 0 else reversed(range(columns)):
-                    u, v = column * self.q(237), row * self.q(238)
-                    points.append(turned(u, v, t, self.q(225), self.q(226)))
-        if len(points) > MOST_HOLES:
-            raise GCodeError.at(line, f"CYCL DEF {number} has more than {MOST_HOLES} holes; split it.")
-        hole = self._hole_of(line)
-        if self.machine.p[2] < hole.retract and not self.machine.away[2]:
-            self._to(TRAVERSE, line, hole.retract)
-        low = replace(hole, retract=hole.clear) if self.q(301, 1.0) == 0.0 else hole
-        self.drill_at(points[:-1], low, line)
-        self.drill_at(points[-1:], hole, line)
+    def pattern(self, number: int, line: int) -> None:
+        """CYCL DEF 220 and 221."""
+        raise NotImplementedError
 
-    def _asked(self, number: int, cycle: int, line: int) -> int:
-        value = self.q(number)
-        if not 1.0 <= value <= MOST_HOLES:
-            raise GCodeError.at(line, f"CYCL DEF {cycle} has Q{number}={value:g} repeats; expected 1 to {MOST_HOLES}.")
-        return round(value)
-
-    def _cycle_call(self, code: str, line: int) -> str | None:
+    def cycle_call(self, code: str, line: int) -> str | None:
         rest = code.removeprefix("CYCL CALL").strip()
-        if rest.startswith("PAT"):
-            raise GCodeError.at(line, "CYCL CALL PAT calls at a pattern, which is not read; write CYCL CALL POS.")
         if rest.startswith("POS"):
             return self._cycle_at(rest.removeprefix("POS").strip(), line)
-        return self._called(rest, line)
+        return self.called(rest, line)
 
     def _cycle_at(self, rest: str, line: int) -> str | None:
         """CYCL CALL POS: in the plane first, where the tool is above; its Z shifts the cycle's heights."""
@@ -322,11 +295,11 @@ class KlartextValues(SinumerikProcs):
         if step:
             raise GCodeError.at(line, "CYCL CALL POS has IZ, which is not read; its Z shifts the cycle: give Z.")
         machine = self.machine
-        if self.drill and not machine.away[2] and machine.p[2] < (high := self._hole_of(line)).clear:
+        if self.drill and not machine.away[2] and machine.p[2] < (high := self.hole_of(line)).clear:
             self._to(TRAVERSE, line, high.retract)
-        return self._called(re.sub(rf"Z ?{NUMBER}", "", rest), line)
+        return self.called(re.sub(rf"Z ?{NUMBER}", "", rest), line)
 
-    def _called(self, rest: str, line: int) -> str:
+    def called(self, rest: str, line: int) -> str:
         """A line that does what stands behind CYCL CALL, and drills then."""
         text = self.straight(f"L {' '.join(rest.split())}".strip(), line) or "G17"
         self.due = True
@@ -342,16 +315,16 @@ class KlartextValues(SinumerikProcs):
             self.due = False
             if self.drill == 0:
                 raise block.refuse("a cycle is called, but none is defined; write CYCL DEF 200 before.")
-            hole, self.raised = self._hole_of(block.line), 0.0
+            hole, self.raised = self.hole_of(block.line), 0.0
             self.drill_here(hole, block.line)
 
-    def _hole_of(self, line: int) -> Hole:
+    def hole_of(self, line: int) -> Hole:
         number = self.drill
         surface, safety, depth = self.q(203) + self.raised, abs(self.q(200)), self.q(201)
         if number == 240 and self.q(343) != 0.0:
             raise GCodeError.at(line, "CYCL DEF 240 counts by its diameter (Q343=1), which is not read; give Q201.")
-        if depth >= 0.0 or safety == 0.0:
-            raise GCodeError.at(line, f"CYCL DEF {number} needs Q200 above 0 and Q201, its depth, below 0; mend them.")
+        if depth >= 0.0:
+            raise GCodeError.at(line, f"CYCL DEF {number} needs Q201, its depth, below 0; mend it.")
         if self.q(379) != 0.0:
             raise GCodeError.at(line, f"CYCL DEF {number} starts below the surface (Q379), which is not read; give 0.")
         if self.per_turn:

@@ -28,9 +28,9 @@ class Hole:
     """A drilling cycle: heights along Z in program units, dwells in s, feeds.
 
     A ``feed`` of 0 is the one in force, so is an ``out`` of infinity; an ``out`` of 0 is a rapid. A tap goes by its
-    ``pitch``, or ``taps`` by a feed, in a chuck that gives. ``first`` is by how much the first depth is gone to slower.
-    The tool waits for ``dwell`` at the bottom, for ``between`` at each depth before it and for ``above`` when it has
-    come out of the hole in between.
+    ``pitch`` at its own ``turns`` in and out (1/min; 0: S), or ``taps`` by a feed, in a chuck that gives. ``first`` is
+    by how much the first depth is gone to slower. The tool waits for ``dwell`` at the bottom, for ``between`` at each
+    depth before it and for ``above`` when it has come out of the hole in between.
     """
 
     retract: float
@@ -42,6 +42,7 @@ class Hole:
     pecks: tuple[Peck, ...]
     pitch: float
     taps: bool = False
+    turns: tuple[float, float] = (0.0, 0.0)
     first: float = 1.0
     between: float = 0.0
     above: float = 0.0
@@ -61,11 +62,14 @@ class Holes(MacroCalls):
             raise block.refuse("a drilling cycle needs a feed rate; give an F word above 0 first.")
         down = hole.feed * machine.factor / MINUTE if hole.feed else None
         out = hole.out * machine.factor / MINUTE if 0.0 < hole.out < math.inf else None
+        before = machine.motion, machine.speed
         if hole.pitch:
-            if machine.speed == 0.0:
+            turns = [each or machine.speed for each in hole.turns]
+            if 0.0 in turns:
                 raise block.refuse("CYCLE84 needs a spindle speed; give an S word first.")
-            down = out = hole.pitch * machine.factor * machine.speed / MINUTE
-        before, machine.motion = machine.motion, 840 if hole.pitch or hole.taps else machine.motion
+            down, out = (hole.pitch * machine.factor * each / MINUTE for each in turns)
+            machine.speed = turns[0]
+        machine.motion = 840 if hole.pitch or hole.taps else machine.motion
         self._to(TRAVERSE, line, hole.clear)
         begin = down if hole.first == 1.0 else hole.first * (feed_speed(machine) if down is None else down)
         for n, peck in enumerate(hole.pecks):
@@ -81,7 +85,7 @@ class Holes(MacroCalls):
         if hole.out or hole.pitch:
             self._to(FEED, line, hole.clear, out)
         self._to(TRAVERSE, line, hole.retract)
-        machine.motion = before
+        machine.motion, machine.speed = before
 
     def _wait(self, seconds: float) -> None:
         if seconds:
@@ -104,19 +108,28 @@ def drilling_cycle(kind: str, given: list[float], factor: float, line: int) -> H
         raise GCodeError.at(line, f"CYCLE{kind} needs RTP, RFP and DP or DPR, as in CYCLE{kind}(50,0,2,-10).")
     if kind in "8182" and not math.isnan(given[6]) and given[6] != 0.0:
         raise GCodeError.at(line, f"CYCLE{kind} counts its depth by the diameter (_GMODE), which is not read; give DP.")
-    bottom = reference - abs(below) if math.isnan(bottom) else bottom
+    if math.isnan(bottom) or abs(below) > 0.0:  # where both are given DPR counts
+        bottom = reference - abs(below)
     clear = reference + (0.0 if math.isnan(safety) else abs(safety))
     if bottom >= clear or retract < clear:
         raise GCodeError.at(line, f"CYCLE{kind}: expected RTP above RFP + SDIS, and the depth below; mend them.")
-    wait = given[8] if kind == "83" else given[5] if kind not in ("81", "87") else math.nan
-    pitch = abs(given[8]) if kind == "84" else 0.0
-    if kind == "84" and not pitch > 0.0:
-        raise GCodeError.at(line, "CYCLE84 needs PIT, its pitch, which MPIT does not say here; give it.")
+    wait = given[8] if kind == "83" else given[5] if kind != "87" else math.nan
+    pitch, turns = _tapped(given, factor, line) if kind == "84" else (0.0, (0.0, 0.0))
     feeds = [0.0 if math.isnan(v) else abs(v) for v in (given[6], given[7])] if kind == "85" else [0.0, 0.0]
     feeds[1] = math.inf if kind == "89" else feeds[1]
     seconds = 0.0 if math.isnan(wait) else max(wait, 0.0)
-    hole = Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], (), pitch)
+    hole = Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], (), pitch, turns=turns)
     return _pecked(hole, given, reference, factor, line) if kind == "83" else hole
+
+
+def _tapped(given: list[float], factor: float, line: int) -> tuple[float, tuple[float, float]]:
+    """CYCLE84: its pitch, in program units or by _PITA in mm, and turns (1/min) in and out: SST, and SST1 or SST."""
+    _, pitch, _, going_in, out, _, unit = (0.0 if math.isnan(each) else abs(each) for each in given[7:14])
+    if pitch == 0.0:
+        raise GCodeError.at(line, "CYCLE84 needs PIT, its pitch, which MPIT does not say here; give it.")
+    if unit not in (0.0, 1.0):
+        raise GCodeError.at(line, f"CYCLE84 has its pitch by _PITA {unit:g}; expected 0 or 1, a length.")
+    return pitch * (1e-3 / factor if unit else 1.0), (going_in, out or going_in)
 
 
 def _pecked(hole: Hole, given: list[float], reference: float, factor: float, line: int) -> Hole:

@@ -29,6 +29,7 @@ _EXPONENT = re.compile(rf"({_NUMBER})EX([-+]?\d{{1,3}})\b", re.IGNORECASE)
 _PLACE = re.compile(rf"\b([XYZABCIJK])[ \t]*=[ \t]*(AC|IC)[ \t]*\([ \t]*({_NUMBER})[ \t]*\)", re.IGNORECASE)
 _VECTOR = re.compile(rf"\b([ABC])3[ \t]*=[ \t]*({_NUMBER})", re.IGNORECASE)
 _ORIENTATION = re.compile(r"\b(?:([ABC])([24-7])[ \t]*=|(LEAD|TILT|THETA|AN[23])[ \t]*=)", re.IGNORECASE)
+_NOT_READ = re.compile(r"\b(FB|[IJK]1)[ \t]*=", re.IGNORECASE)
 _SWIVEL = re.compile(r"\bCYCLE800[ \t]*\(([^()]*)\)", re.IGNORECASE)
 _TURNS = re.compile(r"\b(G0?4)[ \t]+S[ \t]*=?[ \t]*([.\d]+)", re.IGNORECASE)
 _TURN = re.compile(r"\bTURN\s*=\s*(\d+)", re.IGNORECASE)
@@ -89,6 +90,10 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = re.sub(r"\b(G0?4)\s+F\s*=?", r"\1 P", code, flags=re.IGNORECASE)
     code = re.sub(r"\bCR\s*=", "R", code, flags=re.IGNORECASE)
     code = _TURN.sub(lambda found: _whole_turns(found[1], number), code)
+    if (other := _NOT_READ.search(code)) is not None:
+        feed = other[1].upper() == "FB"
+        why = "is the feed of its block alone" if feed else "is a point on the arc of CIP; G2 and G3 need I=, J= or CR="
+        raise GCodeError.at(number, f"{other[1].upper()}= {why}{', which is not read; write F' if feed else ''}.")
     code = re.sub(r"\b([XYZABCIJKFS])1?\s*=\s*([-+.\d]+)", r"\1\2", code, flags=re.IGNORECASE)
     code = re.sub(r"\b(?:M17|RET)\b", "M2", code, flags=re.IGNORECASE)
     code = _TOOL.sub(lambda found: named_tool(found[1], number, machine), code)
@@ -100,21 +105,27 @@ def _unswivelled(found: re.Match[str], number: int, machine: Machine) -> str:
     """CYCLE800 whose places and angles are all 0 swivels nothing, and back what is swivelled; others tilt the plane.
 
     _MODE names the axes that _A, _B and _C turn about, each as the turns before have left it, by two bits each: 1 X, 2
-    Y, 3 Z, from the lowest on (0 and others: no sequence of axes, but other angles). _X0 to _Z0 are the place that is
+    Y, 3 Z, from the lowest on. 64 and on are angles in space, _A about Z and then _B about Y as that has left it; 128
+    and on (angles of projection, places of the machine's axes) are not read. _X0 to _Z0 are the place that is
     turned about, _X1 to _Z1 lead to the new zero along the new axes.
     """
     said = [each.strip() for each in found[1].split(",")] + [""] * 16
     if not any(each.strip("0.+-") for each in said[4:13]):
         if machine.tilted is None:
             machine.findings.add("harmless-word", "ignored", number, "CYCLE800 by 0 is left out: it swivels nothing")
-        upright(machine)
+        upright(machine, stays=not found[1].strip())
         return ""
     if not all(re.fullmatch(rf"(?:{_NUMBER})?", each) for each in (said[2], said[3], *said[4:14])):
         raise GCodeError.at(number, "CYCLE800 is read with numbers alone; write them out.")
     state, mode = (int(float(said[at] or "0")) for at in (2, 3))
     axes = "".join(" XYZ"[mode >> 2 * place & 3] for place in range(3))
-    if mode >> 6 or " " in axes or len(set(axes)) < 3:
-        raise GCodeError.at(number, f"CYCLE800 is read axis by axis (_MODE 57, 27 ...), found {mode}; write that.")
+    if mode >> 6 == 1:
+        axes = "ZY"
+    elif mode >> 6 or " " in axes or len(set(axes)) < 3:
+        text = (
+            f"CYCLE800 is read axis by axis (_MODE 57, 27 ...) and by angles in space (64), found {mode}; write that."
+        )
+        raise GCodeError.at(number, text)
     if state % 10 or (said[13] and float(said[13]) == 0.0):
         text = "CYCLE800 is read as a new plane (_ST ends in 0) to which the tool is swivelled (_DIR -1 or 1) alone."
         raise GCodeError.at(number, text)
@@ -236,7 +247,7 @@ def named_tool(name: str, number: int, machine: Machine) -> str:
     found = [tool.number for tool in (tools or {}).values() if tool.name and tool.name.lower() == name.lower()]
     if found:
         return f"T{found[0]}"
-    machine.tool_name = name
+    machine.tool_name, machine.selected = name, 0
     if tools is None:
         text = f'tool "{name[:40]}" is of unknown size: there is no tool table'
         machine.findings.add("named-tool", "info", number, text)

@@ -32,7 +32,7 @@ _FRAME = re.compile(r"(A?TRANS|A?ROT)\b(.*)")
 _ALONE = re.compile(r"\bA?(?:TRANS|ROT)\b")
 _FRAME_WORD = re.compile(r"\b(X|Y|Z|RPL)[ \t]*(?:=|(?=[-+.\d]))")
 _CYCLE = re.compile(r"(MCALL\b[ \t]*)?(?:CYCLE(8[1-9])[ \t]*\(([^()]*)\))?[ \t]*")
-_CORNER = re.compile(r"\b(RNDM?|CHF|CHR|FRCM?)[ \t]*=[ \t]*(\d+(?:\.\d*)?|\.\d+)")
+_CORNER = re.compile(r"\b(RNDM?|CHF|CHR|FRCM?)[ \t]*=[ \t]*(-?(?:\d+(?:\.\d*)?|\.\d+))")
 _KINDS = {"RND": ROUND, "CHF": BEVEL, "CHR": LEGS}
 _IDENTIFIER = re.compile(r"\b[A-Z_]{1,2}\w+\b")
 _TWO = re.compile(r"\b(?:POT[ \t]*\(((?:[^()]|\([^()]*\))*)\)|ATAN2[ \t]*\(((?:[^()]|\([^()]*\))*)\))")
@@ -81,6 +81,9 @@ class SinumerikWords(Holes):
         code = self._values(code, line)
         said = {corner[1]: float(corner[2]) for corner in _CORNER.finditer(code)}
         if said:
+            name, least = min(said.items(), key=lambda each: each[1])
+            if least < 0.0:
+                raise GCodeError.at(line, f"{name}={least:g} is below 0; expected the size of a corner, or its feed.")
             code = _CORNER.sub("", code)
             self._corner(said)
         return code if code.strip() else None
@@ -97,8 +100,9 @@ class SinumerikWords(Holes):
                 machine.corner = Corner(kind, said[name], feed)
 
     def drill_modal(self, block: Block) -> None:
-        """Drill where a line has moved to in X or Y, while MCALL holds."""
-        if self.modal_hole is not None and block.motion in (0, 10) and block.words.keys() & {"x", "y"}:
+        """Drill where a line has moved to, be it along Z alone, while MCALL holds."""
+        moves = block.motion in (0, 10, 20, 30) and block.words.keys() & set("xyzabcij")
+        if self.modal_hole is not None and moves:
             self.drill_here(self.modal_hole, block.line)
 
     def _hole(self, kind: str, text: str, line: int) -> Hole:

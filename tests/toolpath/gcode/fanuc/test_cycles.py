@@ -190,3 +190,11 @@ def test_pecks_of_haas_fall(dialect: str, cycle: str, back: int) -> None:
 def test_pecks_that_do_not_fall_so_are_refused(body: str, says: str) -> None:
     with pytest.raises(GCodeError, match=says):
         read(body)
+
+
+@pytest.mark.parametrize("line", ["G92 S3000", "G50 S3000.", "G92S3000 M8"])
+def test_the_fastest_speed_of_the_spindle_is_not_its_speed(line: str) -> None:
+    text = f"O1\nG21 G90\nS600 M3\n{line}\nG0 X1. Y2.\nG1 X5. F100.\nM30\n"
+    program = interpret(text, dialect="fanuc")
+    assert program.n_s[-1] == pytest.approx(10.0)
+    assert (program.end * 1e3).tolist() == [pytest.approx([1, 2, 0]), pytest.approx([5, 2, 0])]

@@ -58,6 +58,9 @@ def test_a_control_cuts_to_the_whole_number_nearer_to_zero_or_farther_from_it(va
         ("IF [1 EQ 1] X5\n", "Line 4: found 'x5' after the condition of IF; expected GOTO or THEN"),
         ("IF [1 EQ 1] THEN X5\n", "Line 4: THEN sets variables"),
         ("WHILE [1 EQ 1] DO1\nX5\n", "Line 4: WHILE ... DO and END do not match here"),
+        ("#1=1\nWHILE [#1 GT 0] DO1 #1=#1-1\nX1\nEND1\n", "Line 5: found '#1=#1-1' behind GOTO, DO or END"),
+        ("WHILE [0 EQ 1] DO1 X5\nEND1\n", "Line 4: found 'x5' behind GOTO, DO or END"),
+        ("GOTO 7 X5\nN7 X1\n", "Line 4: found 'x5' behind GOTO"),
         ("X1\nEND1\n", "Line 5: WHILE ... DO and END do not match here"),
         ("IF [#0 LT 1] GOTO 5\nN5\n", "#0 does not exist"),
         (

@@ -247,7 +247,7 @@ def test_tool_axes_and_m_words() -> None:
     [
         ("FL X+1 R5 RL\n", "FL X.1 R5 is of Heidenhain's and is not read"),
         ("FL AN+45\n", r"FL AN\+45 is of"),
-        ("PLANE VECTOR BX1 BY0 BZ0 NX0 NY0 NZ1 TURN\n", "PLANE VECTOR BX1 is of Heidenhain's"),
+        ("PLANE AXIAL B-45 TURN\n", "PLANE AXIAL is not read"),
         ("CALL PGM TNC:\\SUB.H\n", "CALL PGM TNC"),
         ("L X+1 FZ0.1\n", "found 'FZ0.1' in a line that begins with L"),
         ("C X+1 Y+1 DR+ F9\n", "need their centre"),
@@ -304,3 +304,24 @@ def test_a_line_of_digits_is_refused_at_once() -> None:
     with pytest.raises(GCodeError, match="a block is over"):
         interpret(f"BEGIN PGM A MM\nCYCL DEF 200 E Q1{'1' * 98_000}\nEND PGM A MM\n")
     assert time.process_time() - began < 2.0
+
+
+def test_the_reach_of_the_handwheel_is_no_place() -> None:
+    """TNC 640, M118: L X+0 Y+38.5 RL F125 M118 X1 Y1 lets the wheel move the axes by 1 mm beside the move."""
+    program = read("L X+7 Y+38.5 R0 F125 M118 X1 Y1\nL Z+4 FMAX M118 Z2\nM118\n")
+    assert (program.end[-2:] * 1e3).tolist() == [pytest.approx([7, 38.5, 0]), pytest.approx([7, 38.5, 4])]
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("L X+5 F99 X+6", "a place is said twice in this line"),
+        ("L X+5 IX+6", "a place is said twice in this line"),
+        ("L PR+5 PA+30", "PR and PA stand in LP and CP, not in L"),
+        ("PLANE SPATIAL SPA+30 SPB+0 SPC+0 TURN FMAX\nL X+0 Y+0 Z+0 FMAX\nL X+7 F99 M130", "M130 gives a place"),
+    ],
+)
+def test_places_that_count_otherwise_are_refused(line: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=says):
+        read(f"{line}\n")
+    assert len(read("L X+7 R0 F99 M130\n")) > 0

@@ -73,3 +73,36 @@ def test_what_angles_cannot_say_is_refused(body: str, says: str) -> None:
 
 def test_modes_of_soft_approaches_move_nothing_by_themselves() -> None:
     assert ends("G141 G341\nG1 X20\n") == [[20, 0]]
+
+
+def fanuc_ends(body: str) -> list[list[float]]:
+    program = interpret(f"O1\nG21 G90 G17 F100 S60 M3\nG0 X10. Y0\n{body}M30\n")
+    return (np.round(program.end[1:, :2] * 1e3, 6) + 0.0).tolist()
+
+
+def test_the_angle_of_a_fanuc_control_leads_as_that_of_a_sinumerik() -> None:
+    """From (10, 0): 45 degrees to X20 is (20, 10). From there up, and level to (50, 30): they meet at (20, 30), where a
+    radius of 5 leaves out 5 of both. 45 degrees from (50, 30) and 135 degrees to (50, 50) meet at (60, 40)."""
+    assert fanuc_ends("G1 X20.,A45.\n") == [[20, 10]]
+    assert fanuc_ends("G1X20.,A45.(UP)\nN20 ,A90. ,R5. ; up\n(THEN)\nX50.Y30.,A0\n") == [
+        [20, 10],
+        [20, 25],
+        [25, 30],
+        [50, 30],
+    ]
+    assert fanuc_ends("G1 X50. Y30.\n,A45\nX50. Y50. ,A135.\nG91 X-10.,A180.\n") == [
+        [50, 30],
+        [60, 40],
+        [50, 50],
+        [40, 50],
+    ]
+
+
+@pytest.mark.parametrize(
+    "line", ["G1 ,A45.", "G2 X20.,A45.", "G1 X20.,A90.", "G1 X20. Y30. ,A45.", "G18 G1 X20.,A45.", "G1 X20. ,A"]
+)
+def test_an_angle_that_leads_nowhere_is_refused(line: str) -> None:
+    with pytest.raises(GCodeError, match=r"^Line 4: "):
+        fanuc_ends(f"{line}\nM5\n")
+    with pytest.raises(GCodeError, match=r"^Line 1: found ','"):
+        interpret("G1 X20.,A45. F9\n", dialect="linuxcnc")

@@ -157,6 +157,11 @@ CYCLES = {  # RTP 50, RFP 1, SDIS 2, DP -10: each move's height, feed and dwell,
         *((3, 0, 0), (-6, 50, 0), (3, 0, 0), (-5.4, 0, 0), (-10, 100, 0), (50, 0, 0)),
     ],
     "CYCLE84(50,1,2,-10,,0.5,5,,-1.5)": [(3, 0, 0), (-10, 750, 0), (3, 750, 0.5), (50, 0, 0)],
+    "CYCLE84(50,1,2,-10,,0,5,,.8,0,1000,2000)": [(3, 0, 0), (-10, 800, 0), (3, 1600, 0), (50, 0, 0)],
+    "CYCLE84(50,1,2,-10,,0,5,,.8,0,1000,0,0,1)": [(3, 0, 0), (-10, 800, 0), (3, 800, 0), (50, 0, 0)],
+    "CYCLE81(50,1,2,-10,,0.5)": [(3, 0, 0), (-10, 100, 0), (50, 0, 0.5)],
+    "CYCLE81(50,1,2,-12,9)": [(3, 0, 0), (-8, 100, 0), (50, 0, 0)],
+    "CYCLE81(50,1,2,-10,0)": [(3, 0, 0), (-10, 100, 0), (50, 0, 0)],
     "CYCLE85(50,1,2,-10,,0.5,60,120)": [(3, 0, 0), (-10, 60, 0), (3, 120, 0.5), (50, 0, 0)],
     "CYCLE86(50,1,2,-10,,0.5,3)": [(3, 0, 0), (-10, 100, 0), (50, 0, 0.5)],
     "CYCLE89(50,1,2,-10,,0.5)": [(3, 0, 0), (-10, 100, 0), (3, 100, 0.5), (50, 0, 0)],
@@ -201,9 +206,9 @@ def test_axes_turn_the_short_way_up_or_down(at: float, way: str, to: float, turn
         interpret(f"{HEAD}G1 X={way}(5)\nM30\n", dialect="sinumerik")
 
 
-def test_mcall_drills_behind_every_line_that_moves_in_the_plane_until_it_ends() -> None:
+def test_mcall_drills_behind_every_line_that_moves_until_it_ends() -> None:
     found = places(f"{ABOVE}MCALL CYCLE81(50,0,2,-10)\nX10\nY10\nZ60\nX20 Y20\nMCALL\nX30\n")
-    assert [p[:2] for p in found if p[2] == -10] == [(10, 0), (10, 10), (20, 20)]
+    assert [p[:2] for p in found if p[2] == -10] == [(10, 0), (10, 10), (10, 10), (20, 20)]
     assert found[-1] == (30, 20, 50)
 
 
@@ -231,6 +236,11 @@ def test_corners_are_rounded_and_chamfered() -> None:
         ("CYCLE81(50,0)\n", "Line 2: CYCLE81 needs RTP, RFP and DP or DPR"),
         ("CYCLE81(50,0,2,5)\n", "Line 2: CYCLE81: expected RTP above RFP + SDIS, and the depth below"),
         ("CYCLE84(50,0,2,-10,,0,5,8)\n", "Line 2: CYCLE84 needs PIT"),
+        ("CYCLE84(50,0,2,-10,,0,5,,1,0,90,90,0,2)\n", "Line 2: CYCLE84 has its pitch by _PITA 2"),
+        ("G1 X9 FB=300\n", "Line 2: FB= is the feed of its block alone"),
+        ("G1 X9 FB=R1*2\n", "Line 2: FB= is the feed of its block alone"),
+        ("G2 X20 Y0 I1=10 J1=10\n", "Line 2: I1= is a point on the arc of CIP"),
+        ("G1 X9 RNDM=-.5\n", "Line 2: RNDM=-0.5 is below 0"),
         ("CYCLE83(50,0,2,-10)\n", "Line 2: CYCLE83 needs FDEP or FDPR"),
         ("CYCLE81(50,0,2,-10,,0,1)\n", "Line 2: CYCLE81 counts its depth by the diameter"),
         ("POCKET3(50,0)\n", "POCKET3"),
@@ -388,3 +398,11 @@ def test_fixed_points_are_where_only_the_machine_knows(line: str) -> None:
 def test_a_way_round_the_first_corner_that_is_not_known_is_told() -> None:
     program = interpret(f"{HEAD}NORM\nKONT\nG1 X5\nM30\n", dialect="sinumerik")
     assert [(f.code, f.line) for f in program.findings if f.level == "warning"] == [("approach", 3)]
+
+
+def test_a_cycle_that_mcall_holds_is_made_behind_every_line_that_moves() -> None:
+    """840D sl, Job Planning, MCALL: after each block with a path movement; a Z alone and an arc are such, M is none."""
+    text = f"{HEAD}G0 X0 Y0 Z20\nMCALL CYCLE81(10,0,2,-5)\nX10 Y10\nZ15\nM8\nG2 X20 Y20 CR=10\nMCALL\nG0 Z30\nM30\n"
+    program = interpret(text, dialect="sinumerik")
+    depths = program.end[program.kind == 1] * 1e3
+    np.testing.assert_allclose(depths, [[10, 10, -5], [10, 10, -5], [20, 20, -5]], atol=1e-9)
