@@ -1,4 +1,4 @@
-"""Two pages that go on speaking until they are gone, in a part and as a whole, and one that takes its time to come."""
+"""Pages that go on speaking until they are gone, in a part and as a whole, and one that takes its time to come."""
 
 from __future__ import annotations
 
@@ -41,4 +41,18 @@ def other() -> None:
         st.caption(f"other {number}")
 
 
-st.navigation([st.Page(other, default=True), st.Page(whole), st.Page(part)]).run()
+def clicked() -> None:
+    """A part that speaks, beside a button that is heard by the whole page."""
+    part()
+    count = st.session_state.setdefault("count", 0)
+
+    def more() -> None:
+        st.session_state["count"] += 1
+
+    st.button("more", on_click=more)
+    for number in range(6):
+        time.sleep(0.01)
+        st.caption(f"click {count}, line {number}")
+
+
+st.navigation([st.Page(other, default=True), st.Page(whole), st.Page(part), st.Page(clicked)]).run()

@@ -5,8 +5,14 @@ that looks whether it is drawn, a slider that says its value a moment late. Each
 Streamlit takes it at its word: it draws the old page once more instead of the new one, or a part of it, for which the
 browser puts away what it has of the new one. And what is typed into a part just while the page is drawn anew comes for
 a part that is there no more: Streamlit drops it, with what was typed.
+
+A click beside a part that speaks in the same instant comes as that part's own message: Streamlit runs the part alone,
+and the click, which stands in it, changes nothing that is drawn. And a part that speaks just as the whole page has been
+drawn, while the last of the drawing is still on its way, has that forgotten: Streamlit starts the part's own run, and
+hears nothing more of the run before it. The page then stays as it was, or without its end.
 """
 
+import asyncio
 from collections.abc import Callable
 from functools import wraps
 from typing import Any
@@ -14,31 +20,81 @@ from typing import Any
 from streamlit.runtime.app_session import AppSession
 
 ASKED = "_page_asked_for"
+LEFT = "_parts_registered_before"
+LAST_WORDS_S = 0.002
+CLICKS = ("trigger_value", "string_trigger_value", "chat_input_value", "json_trigger_value")
+
+
+def _was_left(session: Any, part: str) -> bool:
+    """Whether a part was there before the last way to another page, and that page has no such part so far."""
+    return session.has_fragment(part) and part not in session._fragment_storage.ids_registered_after(
+        getattr(session, LEFT, 0)
+    )
+
+
+def _clicked_beside(session: Any, said: Any) -> bool:
+    """Whether a message of a part holds a click on what stands elsewhere on the page."""
+    known = session._session_state._new_widget_state.widget_metadata
+    return any(
+        box.WhichOneof("value") in CLICKS and box.id in known and known[box.id].fragment_id != said.fragment_id
+        for box in said.widget_states.widgets
+    )
 
 
 def heeding_pages(request: Callable[..., None]) -> Callable[..., None]:
     """``request`` (of a session, for a run that a browser asks for), but for what comes from a page that has been left:
     a part of that page is not run any more, and in place of the whole of it the page that was asked for is run. In
-    place of a part that is there no more the whole page is run, so that what was typed into it is heard."""
+    place of a part that is there no more, or in whose message something beside it was clicked, the whole page is run,
+    so that what was typed or clicked is heard."""
 
     @wraps(request)
     def heeded(session: Any, said: Any) -> None:
         if said is not None:
             if not said.fragment_id and not said.widget_states.widgets:  # only a way to another page comes without both
                 setattr(session, ASKED, said.page_script_hash)
+                setattr(session, LEFT, session._fragment_storage.registration_sequence())
             asked = getattr(session, ASKED, "")
             if asked and said.page_script_hash not in ("", asked):
                 if said.fragment_id:
                     return
                 said.page_script_hash = asked
-            if said.fragment_id and not said.is_auto_rerun and not session.has_fragment(said.fragment_id):
+            if said.fragment_id and _was_left(session, said.fragment_id):
+                return
+            gone = said.fragment_id and not said.is_auto_rerun and not session.has_fragment(said.fragment_id)
+            if said.fragment_id and (gone or _clicked_beside(session, said)):
                 said.fragment_id = ""
         request(session, said)
 
     return heeded
 
 
+def awaiting_drawing(create: Callable[..., None]) -> Callable[..., None]:
+    """``create`` (of a session, for a run that needs a runner of its own), but that a part waits for the last words of
+    a run that has ended: they come through the same event loop, and the session lets go of that run behind them."""
+
+    @wraps(create)
+    def awaited(session: Any, wanted: Any) -> None:
+        ended = session._scriptrunner
+        if ended is None or not wanted.fragment_id:
+            create(session, wanted)
+            return
+
+        def later() -> None:
+            now = session._scriptrunner
+            if now is ended:
+                asyncio.get_running_loop().call_later(LAST_WORDS_S, later)
+            elif session.has_fragment(wanted.fragment_id) and (now is None or not now.request_rerun(wanted)):
+                awaited(session, wanted)
+
+        later()
+
+    return awaited
+
+
 def heed_pages() -> None:
     """Have every session of this server heed them; once is enough."""
     if not hasattr(AppSession.request_rerun, "__wrapped__"):
         AppSession.request_rerun = heeding_pages(AppSession.request_rerun)  # type: ignore[method-assign]
+        AppSession._create_scriptrunner = awaiting_drawing(  # type: ignore[method-assign]
+            AppSession._create_scriptrunner
+        )

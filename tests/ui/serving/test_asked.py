@@ -1,9 +1,12 @@
 """What a page that has been left still says calls it back no more; everything else is asked for as before."""
 
+import asyncio
+from types import SimpleNamespace
+
 import pytest
 from streamlit.proto.ClientState_pb2 import ClientState
 
-from robomill.ui.serving.asked import heeding_pages
+from robomill.ui.serving.asked import awaiting_drawing, heeding_pages
 
 
 def said(page: str, boxes: int = 2, part: str = "", tick: bool = False) -> ClientState:
@@ -20,11 +23,20 @@ def link(page: str) -> ClientState:
 
 
 class Session:
-    """The runs that a server was asked for."""
+    """The runs that a server was asked for, of a page whose parts are all drawn anew as it comes."""
 
     def __init__(self, *gone: str) -> None:
         self.runs: list[tuple[str, str, int]] = []
         self.gone = gone
+        self.left: set[str] = set()
+        self._fragment_storage = self
+        self._session_state = SimpleNamespace(_new_widget_state=SimpleNamespace(widget_metadata={}))
+
+    def registration_sequence(self) -> int:
+        return 0
+
+    def ids_registered_after(self, _: int) -> set[str]:
+        return {"map", "bar", "picture", "table"} - self.left
 
     def has_fragment(self, part: str) -> bool:
         return part not in self.gone
@@ -107,3 +119,63 @@ def test_a_message_that_names_no_page_goes_through():
     one = Session()
     one.say(link("robot"))
     assert one.say(said("", boxes=1))[-1] == ("", "", 1)
+
+
+def test_a_part_of_the_page_that_was_left_is_not_run_in_the_new_pages_name_either():
+    """Until the browser has put it away, it speaks as if it were of the new page."""
+    one = Session()
+    one.say(said("start"))
+    before = list(one.say(link("robot")))
+    one.left = {"picture"}
+    assert one.say(said("robot", part="picture")) == before
+    assert one.say(said("robot", part="map"))[-1] == ("robot", "map", 2)
+
+
+@pytest.mark.parametrize(("of", "run"), [(None, ""), ("table", ""), ("map", "map")])
+def test_a_click_beside_a_part_that_speaks_in_the_same_instant_is_heard_by_the_page(of: str | None, run: str):
+    one = Session()
+    one._session_state._new_widget_state.widget_metadata = {"button": SimpleNamespace(fragment_id=of)}
+    what = said("start", part="map")
+    what.widget_states.widgets.add(id="button", trigger_value=True)
+    assert one.say(what)[-1] == ("start", run, 3)
+
+
+class Runner:
+    """A run that has ended (it takes no more), or one that goes on."""
+
+    def __init__(self, ended: bool) -> None:
+        self.ended = ended
+        self.taken: list[object] = []
+
+    def request_rerun(self, wanted: object) -> bool:
+        if not self.ended:
+            self.taken.append(wanted)
+        return not self.ended
+
+
+@pytest.mark.parametrize("then", ["nothing", "another run", "a page without it"])
+def test_a_part_waits_for_the_last_words_of_the_run_before_it(then: str):
+    """Its own runner would have them dropped."""
+    part = SimpleNamespace(fragment_id="map")
+    made: list[object] = []
+    session = SimpleNamespace(_scriptrunner=Runner(ended=True), has_fragment=lambda _: then != "a page without it")
+    create = awaiting_drawing(lambda _, wanted: made.append(wanted))
+    other = Runner(ended=False)
+
+    async def story() -> None:
+        create(session, part)
+        await asyncio.sleep(0.05)
+        assert made == [], "the last words are still on their way"
+        session._scriptrunner = other if then == "another run" else None
+        await asyncio.sleep(0.05)
+
+    asyncio.run(story())
+    assert made == ([part] if then == "nothing" else [])
+    assert other.taken == ([part] if then == "another run" else [])
+
+
+def test_the_whole_page_waits_for_nobody():
+    made: list[object] = []
+    page = SimpleNamespace(fragment_id=None)
+    awaiting_drawing(lambda _, wanted: made.append(wanted))(SimpleNamespace(_scriptrunner=Runner(ended=True)), page)
+    assert made == [page]
