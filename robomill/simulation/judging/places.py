@@ -16,6 +16,9 @@ from robomill.vectors import angle_between
 
 APART = 10e-6  # m: samples that differ by more are looked at in between,
 BETWEEN = (0.25, 0.5, 0.75)  # at these shares of the way
+ON_EDGE = 1e-9  # m: a place as near to the stock's edge is on it, whatever the last digit of its coordinates
+LIFTED = 4e-6  # m: moves on which a nose is lifted or drawn in by more are taken in parts,
+MOST_PARTS = 32  # so many at most
 REACH = 1.5e-3  # m: walls are looked for so far from where they were commanded, and no further than the radius allows
 
 
@@ -129,7 +132,7 @@ class Places:
 def stock_top(setup: SimulationSetup, xy: FloatArray) -> FloatArray:
     """(m,) m: how high the stock stood over points (m, 2) m of the plan; -inf beside it."""
     stock = setup.stock_block
-    inside = ((xy >= stock.lower[:2]) & (xy <= stock.upper[:2])).all(axis=1)
+    inside = ((xy >= stock.lower[:2] - ON_EDGE) & (xy <= stock.upper[:2] + ON_EDGE)).all(axis=1)
     top = np.full(len(xy), float(stock.upper[2]))
     if stock.triangles is not None:
         cells = stock_grid(stock, setup.cell)
@@ -159,10 +162,25 @@ def places(result: Run, most: int | None = None) -> Places:
     tips = path.p + lift
 
     told, left = (np.hstack([p[moves - 1], p[moves]]) for p in (path.p + lift, result.p_machined + lift))
-    outline = Outline(told, left, tooling.cutters, of[moves], reach)
+    rise = np.einsum("mi,mi->m", np.diff((left - told).reshape(-1, 2, 3), axis=1)[:, 0], axes[moves, 2])
+    nosed = tooling.each("nose_height")[moves] > 0.0
+    parts = np.where(nosed, np.clip(np.ceil(np.abs(rise) / LIFTED), 1, MOST_PARTS), 1).astype(np.int64)
+    told, left, made_by = _parted(told, parts), _parted(left, parts), np.repeat(of[moves], parts)
+    outline = Outline(told, left, tooling.cutters, made_by, reach)
     feed, left_of, axial = np.moveaxis(axes[i], 1, 0)
     c = share * tips[i] + (1.0 - share) * tips[before]
     return Places(result, i, share[:, 0] < 1.0, c, feed, left_of, axial, d, tooling.cutters, of[i], outline)
+
+
+def _parted(ends: FloatArray, parts: IntArray) -> FloatArray:
+    """Moves (p, 6) m of which each one (m, 6) m is as many ``parts`` (m,) of equal length: an outline has each move at
+    the height of its middle, where the side of a nose that is lifted or drawn in on its way is another."""
+    move = np.repeat(np.arange(len(parts)), parts)
+    begun = ((np.arange(len(move)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[move])[:, None]
+    ended = np.minimum(begun + 1.0 / parts[move][:, None], 1.0)
+    start, way = ends[move, :3], (ends[:, 3:] - ends[:, :3])[move]
+    whole = (parts == 1)[move][:, None]
+    return np.where(whole, ends[move], np.hstack([start + begun * way, start + ended * way]))
 
 
 def _chosen(s: FloatArray, off: FloatArray, most: int) -> IntArray:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from robomill.cutting.tool import Cutter
+from robomill.simulation.judging.places import stock_top
 from tests.simulation.judging.test_gauge import R, pushed, run
 
 NOSES = {"ball": R, "bull": 1.5e-3}
@@ -68,3 +71,46 @@ def test_a_cone_is_read_below_a_rim_that_another_pass_has_cut_away() -> None:
     result = run(*lines, cutter=cutter)
     off = np.where(np.abs(result.path.p[:, 1]) < 1e-3, 0.1e-3, 0.0)
     assert abs(pushed(result, left=off, up=off).verdict.wall.value) == pytest.approx(np.sqrt(2.0) * 0.1e-3, rel=0.02)
+
+
+def ball_wall(p: np.ndarray, x: float, z: float, side: float) -> float:
+    """How far from the axis of the path the wall of a ball stands at (x, z), m: where its sphere is widest there, of
+    all places that its tip ``p`` (n, 3) goes through in straight lines."""
+    share = np.linspace(0.0, 1.0, 1001)[:, None]
+    tips = np.concatenate([a + share * (b - a) for a, b in pairwise(p) if abs(a[0] - x) < 2.0 * R])
+    square = R * R - (z - tips[:, 2] - R) ** 2 - (x - tips[:, 0]) ** 2
+    return float((side * tips[:, 1] + np.sqrt(np.maximum(square, 0.0)))[square > 0.0].max())
+
+
+@pytest.mark.parametrize("before", [0.2, 0.5, 1.0])
+def test_where_a_tool_is_lifted_as_it_enters_the_stock_the_wall_is_that_of_its_way(before: float) -> None:
+    """Within one step it is pushed aside and then up: a nose has other sides at each height, and moves that were taken
+    at the height of their middle read 0.063 mm at the stock's edge where 0.023 mm are."""
+    lines = (f"G0 X{-36 - before} Y0 Z5", "G0 Z-1.5", "G1 X36 F1800")
+    result = run(*lines, cutter=Cutter("ball", 2 * R))
+    x = result.path.p[:, 0]
+    rises = np.searchsorted(x, -31e-3 - 1e-6)
+    sample = np.arange(len(x))
+    left = np.select([sample < rises, sample == rises], [0.0, 0.144e-3], 0.172e-3)
+    up = np.select([sample < rises, sample == rises], [0.0, 0.038e-3], 0.167e-3)
+    result = pushed(result, left=left, up=up)
+    walls, read = result.gauge.walls, 0
+    for q in np.flatnonzero((walls.place[:, 0] < -28e-3) & (np.abs(walls.out[:, 1]) > 1.0 - 1e-9)):
+        at, side = walls.place[q], np.sign(walls.out[q, 1])
+        cut, told = result.p_machined[result.path.cutting], abs(at[1])
+        aside = np.linspace(-0.2e-3, 0.2e-3, 41)
+        stands = np.array([ball_wall(cut, at[0] + each, at[2], side) for each in aside]) - told
+        straight = stands[20]
+        nearest = np.sign(straight) * np.hypot(stands, aside).min()  # where the wall runs aslant
+        low = R - (at[2] + 1.5e-3)
+        across, along = (np.hypot(told + off, low) - R for off in sorted((nearest, straight)))
+        assert across - 2.5e-6 <= -walls.material_left[q] <= along + 2.5e-6
+        read += 1
+    assert read > 4
+
+
+@pytest.mark.parametrize("digit", [-1e-17, 0.0, 1e-17, 1e-12])
+def test_a_place_on_the_edge_of_the_stock_is_read_whatever_its_last_digit(digit: float) -> None:
+    result = run("G0 X-36 Y0 Z5", "G0 Z-1.5", "G1 X36 F1800", cutter=Cutter("ball", 2 * R))
+    edge = np.array([[-30e-3 - digit, 0.0], [30e-3 + digit, 0.0], [-30e-3 - 2e-9, 0.0]])
+    assert np.isfinite(stock_top(result.setup, edge)).tolist() == [True, True, False]
