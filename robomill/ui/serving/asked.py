@@ -7,9 +7,11 @@ browser puts away what it has of the new one. And what is typed into a part just
 a part that is there no more: Streamlit drops it, with what was typed.
 
 A click beside a part that speaks in the same instant comes as that part's own message: Streamlit runs the part alone,
-and the click, which stands in it, changes nothing that is drawn. And a part that speaks just as the whole page has been
-drawn, while the last of the drawing is still on its way, has that forgotten: Streamlit starts the part's own run, and
-hears nothing more of the run before it. The page then stays as it was, or without its end.
+and the click, which stands in it, changes nothing that is drawn. A part that ticks as something is clicked brings the
+click too, which then comes by itself a moment later: Streamlit does what was asked for twice. And a part that speaks
+just as the whole page has been drawn, while the last of the drawing is still on its way, has that forgotten: Streamlit
+starts the part's own run, and hears nothing more of the run before it. The page then stays as it was, or without its
+end.
 """
 
 import asyncio
@@ -41,6 +43,14 @@ def _clicked_beside(session: Any, said: Any) -> bool:
     )
 
 
+def _without_clicks(said: Any) -> None:
+    """Take out of the message of a tick what was clicked: its own message is on its way."""
+    boxes = [box for box in said.widget_states.widgets if box.WhichOneof("value") not in CLICKS]
+    if len(boxes) < len(said.widget_states.widgets):
+        del said.widget_states.widgets[:]
+        said.widget_states.widgets.extend(boxes)
+
+
 def heeding_pages(request: Callable[..., None]) -> Callable[..., None]:
     """``request`` (of a session, for a run that a browser asks for), but for what comes from a page that has been left:
     a part of that page is not run any more, and in place of the whole of it the page that was asked for is run. In
@@ -60,6 +70,8 @@ def heeding_pages(request: Callable[..., None]) -> Callable[..., None]:
                 said.page_script_hash = asked
             if said.fragment_id and _was_left(session, said.fragment_id):
                 return
+            if said.is_auto_rerun:
+                _without_clicks(said)
             gone = said.fragment_id and not said.is_auto_rerun and not session.has_fragment(said.fragment_id)
             if said.fragment_id and (gone or _clicked_beside(session, said)):
                 said.fragment_id = ""

@@ -140,6 +140,17 @@ def test_a_click_beside_a_part_that_speaks_in_the_same_instant_is_heard_by_the_p
     assert one.say(what)[-1] == ("start", run, 3)
 
 
+def test_a_click_that_a_tick_brings_is_left_to_its_own_message():
+    """Both would have it done: twice."""
+    one = Session()
+    one._session_state._new_widget_state.widget_metadata = {"button": SimpleNamespace(fragment_id=None)}
+    what = said("start", part="bar", tick=True)
+    what.widget_states.widgets.add(id="button", trigger_value=True)
+    what.widget_states.widgets.add(id="box", double_value=2.0)
+    assert one.say(what)[-1] == ("start", "bar", 3)
+    assert [box.id for box in what.widget_states.widgets] == ["box-0", "box-1", "box"]
+
+
 class Runner:
     """A run that has ended (it takes no more), or one that goes on."""
 
