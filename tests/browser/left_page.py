@@ -55,4 +55,20 @@ def clicked() -> None:
         st.caption(f"click {count}, line {number}")
 
 
-st.navigation([st.Page(other, default=True), st.Page(whole), st.Page(part), st.Page(clicked)]).run()
+@st.fragment(run_every=0.01)
+def _ticks() -> None:
+    st.caption("ticking")
+
+
+def ticking() -> None:
+    """A part that ticks, as a progress bar does, beside a button."""
+    _ticks()
+
+    def more() -> None:
+        st.session_state["done"] = st.session_state.get("done", 0) + 1
+
+    st.button("more", on_click=more)
+    st.caption(f"done {st.session_state.get('done', 0)} times")
+
+
+st.navigation([st.Page(other, default=True), st.Page(whole), st.Page(part), st.Page(clicked), st.Page(ticking)]).run()
