@@ -41,15 +41,20 @@ def other() -> None:
         st.caption(f"other {number}")
 
 
+def _clicks() -> int:
+    """A button, and how often what it does was done."""
+
+    def more() -> None:
+        st.session_state["count"] = st.session_state.get("count", 0) + 1
+
+    st.button("more", on_click=more)
+    return int(st.session_state.get("count", 0))
+
+
 def clicked() -> None:
     """A part that speaks, beside a button that is heard by the whole page."""
     part()
-    count = st.session_state.setdefault("count", 0)
-
-    def more() -> None:
-        st.session_state["count"] += 1
-
-    st.button("more", on_click=more)
+    count = _clicks()
     for number in range(6):
         time.sleep(0.01)
         st.caption(f"click {count}, line {number}")
@@ -63,12 +68,7 @@ def _ticks() -> None:
 def ticking() -> None:
     """A part that ticks, as a progress bar does, beside a button."""
     _ticks()
-
-    def more() -> None:
-        st.session_state["done"] = st.session_state.get("done", 0) + 1
-
-    st.button("more", on_click=more)
-    st.caption(f"done {st.session_state.get('done', 0)} times")
+    st.caption(f"done {_clicks()} times")
 
 
 st.navigation([st.Page(other, default=True), st.Page(whole), st.Page(part), st.Page(clicked), st.Page(ticking)]).run()

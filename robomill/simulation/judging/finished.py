@@ -43,7 +43,9 @@ class Spread(ReadOnly):
 
     def histogram(self, edges: FloatArray) -> FloatArray:
         """(bins,) m^2 between ``edges`` (bins + 1,) m; the outer bins hold what is beyond."""
-        return np.histogram(np.clip(self.error, edges[0], edges[-1]), bins=edges, weights=self.area)[0]
+        bins = len(edges) - 1
+        which = np.clip(np.searchsorted(edges, self.error, side="right") - 1, 0, bins - 1)
+        return np.asarray(np.bincount(which, self.area, bins), dtype=np.float64)
 
     @property
     def squares(self) -> float:

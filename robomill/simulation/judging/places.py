@@ -162,7 +162,7 @@ def places(result: Run, most: int | None = None) -> Places:
     tips = path.p + lift
 
     told, left = (np.hstack([p[moves - 1], p[moves]]) for p in (path.p + lift, result.p_machined + lift))
-    rise = np.einsum("mi,mi->m", np.diff((left - told).reshape(-1, 2, 3), axis=1)[:, 0], axes[moves, 2])
+    rise = np.einsum("mi,mi->m", (left - told)[:, 3:] - (left - told)[:, :3], axes[moves, 2])
     nosed = tooling.each("nose_height")[moves] > 0.0
     parts = np.where(nosed, np.clip(np.ceil(np.abs(rise) / LIFTED), 1, MOST_PARTS), 1).astype(np.int64)
     told, left, made_by = _parted(told, parts), _parted(left, parts), np.repeat(of[moves], parts)

@@ -51,6 +51,26 @@ def _without_clicks(said: Any) -> None:
         said.widget_states.widgets.extend(boxes)
 
 
+def _is_run(session: Any, said: Any) -> bool:
+    """Whether what a browser says is to be run; ``said`` becomes what it asks for."""
+    if not said.fragment_id and not said.widget_states.widgets:  # only a way to another page comes without both
+        setattr(session, ASKED, said.page_script_hash)
+        setattr(session, LEFT, session._fragment_storage.registration_sequence())
+    asked = getattr(session, ASKED, "")
+    elsewhere = asked and said.page_script_hash not in ("", asked)
+    if not said.fragment_id:
+        if elsewhere:
+            said.page_script_hash = asked
+        return True
+    if elsewhere or _was_left(session, said.fragment_id):
+        return False
+    if said.is_auto_rerun:
+        _without_clicks(said)
+    elif not session.has_fragment(said.fragment_id) or _clicked_beside(session, said):
+        said.fragment_id = ""
+    return True
+
+
 def heeding_pages(request: Callable[..., None]) -> Callable[..., None]:
     """``request`` (of a session, for a run that a browser asks for), but for what comes from a page that has been left:
     a part of that page is not run any more, and in place of the whole of it the page that was asked for is run. In
@@ -59,23 +79,8 @@ def heeding_pages(request: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(request)
     def heeded(session: Any, said: Any) -> None:
-        if said is not None:
-            if not said.fragment_id and not said.widget_states.widgets:  # only a way to another page comes without both
-                setattr(session, ASKED, said.page_script_hash)
-                setattr(session, LEFT, session._fragment_storage.registration_sequence())
-            asked = getattr(session, ASKED, "")
-            if asked and said.page_script_hash not in ("", asked):
-                if said.fragment_id:
-                    return
-                said.page_script_hash = asked
-            if said.fragment_id and _was_left(session, said.fragment_id):
-                return
-            if said.is_auto_rerun:
-                _without_clicks(said)
-            gone = said.fragment_id and not said.is_auto_rerun and not session.has_fragment(said.fragment_id)
-            if said.fragment_id and (gone or _clicked_beside(session, said)):
-                said.fragment_id = ""
-        request(session, said)
+        if said is None or _is_run(session, said):
+            request(session, said)
 
     return heeded
 
