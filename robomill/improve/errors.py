@@ -87,7 +87,7 @@ def measured(run: SimulationResult) -> Gauge:
 
 def level_of(run: SimulationResult) -> Level:
     """The verdict's level by what was ``measured`` on a run."""
-    return judge(run, measured(run)).level
+    return run.verdict.level if int(run.judged.sum()) <= MEASURED else judge(run, measured(run)).level
 
 
 def errors_of(run: SimulationResult, gauge: Gauge | None = None) -> Errors:

@@ -21,7 +21,7 @@ from robomill.simulation.judging.finished import Finished, finished
 from robomill.simulation.judging.gauge import Gauge, gauge
 from robomill.simulation.judging.seen import Run
 from robomill.simulation.judging.strays import Stray, stray
-from robomill.simulation.judging.verdict import decided, judge, thin_wall_notes
+from robomill.simulation.judging.verdict import decided, judge, resting_on, thin_wall_notes
 from robomill.simulation.judging.verdict_words import Deciding, Verdict
 from robomill.simulation.mapped import map_notes
 from robomill.simulation.meant import corrected_notes, jump_notes
@@ -30,7 +30,7 @@ from robomill.simulation.origin.doubts import frame_notes, known_notes, rigid_to
 from robomill.simulation.posture import posture_notes
 from robomill.simulation.steadiness import steadiness
 from robomill.simulation.tools import feed_notes, tool_notes
-from robomill.simulation.uncoupled import coupling_notes, met_where_pushed, moves_a_reading
+from robomill.simulation.uncoupled import coupling_notes, left_open, met_where_pushed, moves_a_reading
 from robomill.surface.deviation import Deviation, deviation
 from robomill.surface.sections.groove import GrooveSection, GrooveSections, groove_sections
 from robomill.surface.swept import CutPath
@@ -115,15 +115,21 @@ class SimulationResult(Run):
     @cached_property
     def uncoupled(self) -> tuple[Finding, ...]:
         """Whether a green verdict rests on taking the tool to cut where it is told to."""
+        return () if self._pushed is None else coupling_notes(self.as_told, *self._pushed)
+
+    @cached_property
+    def _pushed(self) -> tuple[Verdict, str] | None:
+        """Of a green run without coupling whose readings what the deflected tool meets would move: the verdict of that,
+        and where it is decided."""
         follows = self.setup.engagement and self.setup.force.follows_cut and self.coupling is None
-        if not follows or self.verdict.level not in ("ok", "tight"):
-            return ()
+        if not follows or self.as_told.level not in ("ok", "tight"):
+            return None
         met, F = met_where_pushed(self)
         pushed = replace(self, conditions=met, F=F, delta=self.delta + displacement(self.C, F - self.F))
         if not moves_a_reading(self, pushed):
-            return ()
-        place = f"{self.path.block_name} {self.path.block[pushed.decided.sample]}"
-        return coupling_notes(self.verdict, pushed.verdict, place)
+            return None
+        sample = decided(pushed, pushed.as_told).sample
+        return pushed.as_told, f"{self.path.block_name} {self.path.block[sample]}"
 
     @cached_property
     def steadiness(self) -> tuple[Finding, ...]:
@@ -208,9 +214,16 @@ class SimulationResult(Run):
         return stray(self, self.gauge)
 
     @cached_property
-    def verdict(self) -> Verdict:
-        """Walls and floors against their tolerances, in one sentence."""
+    def as_told(self) -> Verdict:
+        """Walls and floors against their tolerances, by the forces that the run has."""
         return judge(self, self.gauge)
+
+    @cached_property
+    def verdict(self) -> Verdict:
+        """Walls and floors against their tolerances, in one sentence. Of a run without coupling it is open where what
+        the deflected tool meets would clearly make it red."""
+        told = self.as_told
+        return told if self._pushed is None else resting_on(self, told, left_open(told, *self._pushed))
 
     @property
     def decided(self) -> Deciding:

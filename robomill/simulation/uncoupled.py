@@ -7,6 +7,7 @@ from robomill.cutting.conditions import CutConditions
 from robomill.cutting.force import force_on_tool
 from robomill.provenance import Finding
 from robomill.simulation.cut import Led, met_conditions, through_stock
+from robomill.simulation.judging.premise import NONE, Premise
 from robomill.simulation.judging.seen import Run
 from robomill.simulation.judging.verdict_words import Verdict
 from robomill.simulation.meant import LINK
@@ -53,7 +54,19 @@ def coupling_notes(verdict: Verdict, pushed: Verdict, place: str) -> tuple[Findi
         return ()
     text = (
         "Coupling is off, so the tool is taken to cut where it is told to. Where it is pushed to, and after earlier "
-        f"passes that were pushed off, too, about {format_share(there)} of the tolerance would be used ({place}), not "
-        f"{format_share(here)}: switch coupling on."
+        f"passes that were pushed off, too, {_used(pushed, place)}, not {format_share(here)}: switch coupling on."
     )
     return (Finding("warning", text, code="uncoupled"),)
+
+
+def left_open(verdict: Verdict, pushed: Verdict, place: str) -> Premise:
+    """On what the green ``verdict`` of a run without coupling rests where that of what the deflected tool meets would
+    be red: clearly, since it is the first step towards a coupled run only, where ``verdict`` is tight already."""
+    if not pushed.share > (1.0 if verdict.level == "ok" else 1.0 + MORE):
+        return NONE
+    asked = f"Coupling is off, and where the tool is pushed to, {_used(pushed, place)}: switch it on. Not judged."
+    return Premise("if the tool cuts where it is told to", asked)
+
+
+def _used(pushed: Verdict, place: str) -> str:
+    return f"about {format_share(pushed.share)} of the tolerance would be used ({place})"

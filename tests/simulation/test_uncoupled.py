@@ -78,6 +78,19 @@ def test_what_an_earlier_pass_has_left_is_told(kind: str, passes: int, told: boo
         assert math.isclose(run.verdict.share, 0.076, abs_tol=0.006), "by its sphere on its way into the stock"
 
 
+@pytest.mark.parametrize("tolerance_mm", [0.3, 0.1, 0.05])
+def test_what_would_be_red_where_it_is_pushed_is_not_green(tolerance_mm: float) -> None:
+    """Twice along one slot the ball is 0.1 mm off: of 0.3 mm that is green, of half as much nobody should believe 24 %."""
+    run = run_of(rm.Cutter("ball", diameter_mm=8, flutes=3), 2)
+    truth = max(np.abs(off_by_brute_force(run, 2)[1:]))
+    setup = run.setup.replace(tolerance=tolerance_mm * 1e-3)
+    verdict = rm.simulate(setup).verdict
+    assert verdict.red == (truth > 0.9e-3 * tolerance_mm), "0.1 mm is on the limit of what is there"
+    assert verdict.level == ("unjudged" if verdict.red else "ok")
+    assert bool(verdict.premise) == verdict.red
+    assert verdict.wall.value == pytest.approx(run.verdict.wall.value, abs=1e-9), "its numbers are what they were"
+
+
 def test_a_coupled_run_and_a_stated_force_are_told_nothing() -> None:
     ball = rm.Cutter("ball", diameter_mm=8, flutes=3)
     assert not told_of(run_of(ball, 2, coupling=True))

@@ -7,7 +7,7 @@ import numpy as np
 from robomill.arrays import IntArray
 from robomill.provenance import Finding, named
 from robomill.simulation.judging.gauge import Gauge, Readings
-from robomill.simulation.judging.premise import premise
+from robomill.simulation.judging.premise import Premise, premise
 from robomill.simulation.judging.seen import Run
 from robomill.simulation.judging.verdict_words import KINDS, TIP, Deciding, Level, Reading, Verdict, said
 from robomill.simulation.origin.assumed import far_share
@@ -23,7 +23,18 @@ def judge(result: Run, gauge: Gauge) -> Verdict:
         share = result.max_deviation / wall.tolerance
     far = far_share(result, gauge, (wall.tolerance, floor.tolerance, feed.tolerance if feed.stated else float("inf")))
     gone = tuple(result.path.block[gauge.gone].tolist())
-    found = Verdict("ok", share, "", *readings, far, gone, *premise(result, bool(deciding)))
+    return _spoken(result, Verdict("ok", share, "", *readings, far, gone, *premise(result, bool(deciding))))
+
+
+def resting_on(result: Run, verdict: Verdict, premise: Premise) -> Verdict:
+    """The ``verdict`` of a run that rests on the ``premise``, too, where it rests on none."""
+    if verdict.premise or not premise.words:
+        return verdict
+    return _spoken(result, replace(verdict, premise=premise.words, asked=premise.asked))
+
+
+def _spoken(result: Run, found: Verdict) -> Verdict:
+    """What was found, with its level and its sentence."""
     found = replace(found, level=_level(result, found))
     return replace(found, sentence=" ".join(words for words in said(result, found) if words))
 
