@@ -10,7 +10,7 @@ from robomill.errors import GCodeError
 from robomill.rigid import axis_from_tilt
 from robomill.toolpath import arcs
 from robomill.toolpath.gcode import tilted
-from robomill.toolpath.gcode.program import TRAVERSE, Program
+from robomill.toolpath.gcode.program import Program
 from robomill.toolpath.path import Toolpath, far_off
 from robomill.units import to_si
 
@@ -104,7 +104,7 @@ def _ends(program: Program) -> tuple[FloatArray, FloatArray]:
 
 
 def point_counts(program: Program, chord_error: float = arcs.CHORD_ERROR, table: str = "") -> IntArray:
-    """(m,) how many points each move has on the toolpath: none for a first rapid to where the path begins anyway."""
+    """(m,) how many points each move has on the toolpath: none for first ones that stand where it begins anyway."""
     rows = np.flatnonzero(program.is_kind("arc") & ~program.unplaced)
     counts = _pieces(program, rows, chord_error, TABLE_STEP if table else MAX_TILT_STEP)
     counts[program.is_kind("tap")] = 2
@@ -114,16 +114,9 @@ def point_counts(program: Program, chord_error: float = arcs.CHORD_ERROR, table:
                 program.planes, number, *(tool_axis(q[row]) for q in (program.rotary0, program.rotary))
             )
             counts[row] = max(counts[row], math.ceil(turn / MAX_TILT_STEP - 1e-4))
-    if len(program) > 1 and _stays(program):
-        counts[0] = 0
+    if program.still < len(program):
+        counts[: program.still] = 0
     return counts
-
-
-def _stays(program: Program) -> bool:
-    """Whether the first move is a rapid that only names the zero that a path begins at."""
-    still = (program.end[0] == program.start[0]).all() and (program.rotary[0] == program.rotary0[0]).all()
-    unmarked = not (program.dwell[:1].any() or program.lift[:1].any() or program.away[:1].any())
-    return bool(program.kind[0] == TRAVERSE and still and unmarked)
 
 
 def _pieces(program: Program, rows: IntArray, chord_error: float, most: float) -> IntArray:

@@ -10,8 +10,7 @@ from robomill.toolpath.findings import Findings
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
-from robomill.toolpath.gcode.fanuc.cycles import bolt_holes
-from robomill.toolpath.gcode.fanuc.scaling import scales
+from robomill.toolpath.gcode.fanuc.cycles import FANUC_WORDS
 from robomill.toolpath.gcode.foreign import meant_elsewhere
 from robomill.toolpath.gcode.machine import UNITS, Machine
 from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
@@ -215,7 +214,7 @@ class Dialect:
         """Refuse unknown G words (they may move the machine); count unknown M words and harmless G words."""
         for code in block.unknown_g:
             harmless = HARMLESS["fanuc"] if self._is_fanuc_like else HARMLESS[self.name]
-            if self.has_macros and any(do(machine, block, code) for do in (self._turns, _selects, scales, bolt_holes)):
+            if self.has_macros and any(do(machine, block, code) for do in (self._turns, _selects, *FANUC_WORDS)):
                 continue
             if code in (700, 710) and not self.marked and block.words.keys().isdisjoint("pquwrdl"):
                 units = 200 if code == 700 else 210

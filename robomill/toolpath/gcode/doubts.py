@@ -34,8 +34,8 @@ def _coordinate(number: bytes) -> re.Pattern[bytes]:
 _POINTED, _WHOLE = _coordinate(rb"\d{1,9}+\.\d*+"), _coordinate(rb"0*+([1-9]\d{0,8}+)(\.0*+)?+")
 _LATHE_TOOL = re.compile(rb"(?<![A-Za-z0-9])[Tt](\d\d)\1(?![\d.])")
 _CHANGES = re.compile(rb"[Mm]0?6(?![\d.])|(?<![A-Za-z#<])[Yy]\s*[-+.\d#\[]")
-QUARTER = 90.0 + 1e-6
-"""degrees that a tool which leans is led through, or stands from upright, without a doubt."""
+QUARTER, SLACK = 90.0, 1e-6
+"""degrees that a tool which leans is led through, or stands from upright, without a doubt; and of rounding."""
 LONG_DWELL = 60.0
 """s, on average over a program: so long none waits, so the number is in another unit."""
 
@@ -119,8 +119,9 @@ def doubt(machine: Machine, program: Program) -> None:
 
 
 def turned_far(program: Program, table: str = "") -> list[tuple[str, float, int]]:
-    """Axes that cuts turn through more than a quarter, or C at all beside an A or B that is not the ``table``: which,
-    by how many degrees, and from which line on."""
+    """Axes that cuts turn through more than a quarter, or stand a quarter off in, as faces of a part do that a table
+    turns; and C at all beside an A or B that is not the ``table``: which, by how many degrees, and from which line on.
+    """
     cuts = np.flatnonzero(program.at_feed)
     if not len(cuts) or not (program.rotary.any() or program.rotary0.any()):
         return []
@@ -128,7 +129,8 @@ def turned_far(program: Program, table: str = "") -> list[tuple[str, float, int]
     with np.errstate(over="ignore"):
         most = np.degrees(np.maximum(np.abs(angles).max(axis=0), np.ptp(angles, axis=0)))
     found = []
-    least = np.full(3, QUARTER)
+    stands = (program.rotary0[cuts] == program.rotary[cuts]).all(axis=0)
+    least = np.where(stands, QUARTER - SLACK, QUARTER + SLACK)
     leans = [axis for axis in (0, 1) if "ABC"[axis] != table]
     if (angles[:, leans].any(axis=1) & (angles[:, 2] != 0.0)).any():
         least[2] = 0.0  # a head or table that turns the lean aside, but where C is the tool's own turn

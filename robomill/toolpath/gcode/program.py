@@ -110,8 +110,21 @@ class Program:
 
     @cached_property
     def at_feed(self) -> BoolArray:
-        """(m,) True for moves that cut: all but traverses, probes and those whose place is not known."""
-        return frozen((self.kind != TRAVERSE) & (self.kind != PROBE) & ~self.unplaced, bool)
+        """(m,) True for moves that cut: all but traverses, probes, those whose place is not known, and those that go
+        nowhere before any other: a G1 with a feed alone says nothing of where the tool is."""
+        cuts = (self.kind != TRAVERSE) & (self.kind != PROBE) & ~self.unplaced
+        cuts[: self.still] = False
+        return frozen(cuts, bool)
+
+    @cached_property
+    def still(self) -> int:
+        """How many straight moves go nowhere, and wait for nothing, before any other: they stand at the zero that the
+        tool is taken to come from."""
+        if not len(self) or (self.end[0] != self.start[0]).any():
+            return 0
+        stays = (self.end == self.start).all(axis=1) & (self.rotary == self.rotary0).all(axis=1)
+        stays &= (self.kind <= FEED) & (self.dwell == 0.0) & ~self.lift.any(axis=1) & ~self.away.any(axis=1)
+        return len(self) if stays.all() else int(np.argmin(stays))
 
     @cached_property
     def unplaced(self) -> BoolArray:

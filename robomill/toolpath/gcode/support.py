@@ -141,6 +141,14 @@ SUPPORT: tuple[Support, ...] = (
         5,
         dialect="fanuc",
     ),
+    _row(
+        "G100 T",
+        "fetches a tool and brings it to a place (Brother)",
+        "G100 T2 X5 Y4 G43 Z3 L1 H2 S9 M3",
+        (5, 4, 3),
+        2,
+        dialect="fanuc",
+    ),
     _row(",R ,C", "rounded and chamfered corners", "G1 X9 ,R2 F9\nY9", (9, 9, 0), 3, dialect="fanuc"),
     _row(
         "M97",

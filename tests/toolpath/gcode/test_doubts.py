@@ -53,6 +53,13 @@ def test_a_second_table_is_asked_for() -> None:
     assert not [f for f in read_gcode(text.format("C45"), table="A").findings if f.code == "rotary-asked"]
 
 
+@pytest.mark.parametrize(("angle", "asked"), [("B89.9", False), ("B90", True), ("A-90.", True), ("A91", True)])
+def test_a_quarter_is_asked_for(angle: str, asked: bool) -> None:
+    """Two faces of a part on a table: the commonest program with a fourth axis, whose tool would lie on its side."""
+    text = f"G21 G90 S9 M3\nG0 X0 Y0 Z30\nG1 Z20 F100\nG0 Z30\nG0 {angle}\nG1 Z20\nM30\n"
+    assert any(f.code == "rotary-asked" for f in read_gcode(text).findings) == asked
+
+
 @pytest.mark.parametrize(
     ("line", "asked"), [("B30 C20", ["C"]), ("C20", []), ("B30", []), ("A-5 B3 C-170", ["C"]), ("B100 C20", ["B", "C"])]
 )

@@ -101,3 +101,22 @@ def test_kinds_are_told_by_name() -> None:
     assert [programs.KINDS[k] for k in program.kind] == ["traverse", "feed", "arc", "arc", "tap", "probe", "traverse"]
     for name in programs.KINDS:
         np.testing.assert_array_equal(program.is_kind(name), [programs.KINDS[k] == name for k in program.kind])
+
+
+@pytest.mark.parametrize("first", ["G1 F200", "G0", "G1 F9\nG0\nG1 F200", "G1 X0 Y0 Z0 F200"])
+def test_what_goes_nowhere_first_is_no_cut(first: str) -> None:
+    """Posts state a feed with a bare G1: the tool has not been anywhere yet, and nothing is cut at zero."""
+    after = "G0 X50 Y40 Z2\nM3 S900\nG1 Z-1 F200\nX60\nX60\nM2\n"
+    with_it, without = (interpret(f"G21 G90\n{head}{after}") for head in (f"{first}\n", ""))
+    np.testing.assert_array_equal(with_it.extents, without.extents)
+    np.testing.assert_allclose(with_it.extents, [[0.05, 0.04, -0.001], [0.06, 0.04, 0.002]], atol=1e-15)
+    path, told = to_toolpath(with_it), to_toolpath(without)
+    np.testing.assert_array_equal(path.p, told.p)
+    np.testing.assert_array_equal(path.cutting, [False, False, True, True, True])
+    assert [f.code for f in with_it.findings] == [f.code for f in without.findings], "and no spindle stands still"
+
+
+def test_a_program_that_goes_nowhere_cuts_nothing() -> None:
+    program = interpret("G21 G1 F200\nG1 F300\nM2\n")
+    assert (len(program), program.extents, program.at_feed.any()) == (2, None, False)
+    assert not to_toolpath(program).cutting.any()

@@ -1,22 +1,26 @@
 """Canned cycles as Fanuc and Haas count them: K or L times, no time at all, without a dwell, and fine boring (G76).
 
-Haas's G70 and G71 drill the cycle in force around a circle whose centre the tool stands at, or that their line says.
+Haas's G70 and G71 drill the cycle in force around a circle whose centre the tool stands at, or that their line says;
+Brother's G100 fetches a tool.
 """
 
 import math
 
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import P
+from robomill.toolpath.gcode.fanuc.scaling import scales
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.moves import drill
+from robomill.toolpath.gcode.program import TRAVERSE
 from robomill.toolpath.gcode.rules.cycle_rules import is_cycle, pecks, takes_dwell
+from robomill.toolpath.gcode.rules.motion_rules import RAPID
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.plane import axes, polar
 
 _THOUSANDTHS = 100.0
 """Nobody pecks so deep: controls count a Q without a point in steps of 0.001 mm (0.0001 in)."""
 MOST_BOLTS = 10_000
-_SHIFT, _CLAMP = 920, 500
+_SHIFT, _CLAMP, _FETCH = 920, 500, 1000
 _FINE_BORING, _BORING, _BACK_BORING = 760, 860, 870
 
 
@@ -82,3 +86,20 @@ def repeats(machine: Machine, block: Block) -> None:
     elif not given:
         text = "holes in G91 are as deep as was said in G90, as on Fanuc and Haas; LinuxCNC adds R and Z at each anew"
         machine.note("cycle-heights", "suspicious", text)
+
+
+def fetches_tool(machine: Machine, block: Block, code: int) -> bool:
+    """G100 with T (Brother) changes to that tool, up where the machine does, and brings it to the place of its line at
+    rapid; L is the tool to be held ready. False for other words."""
+    if code != _FETCH or "t" not in block.words:
+        return False
+    block.m[modal.TOOL] = 6
+    block.g[modal.MOTION] = RAPID
+    block.words.pop("l", None)
+    machine.set_away((*machine.away[:2], True))
+    machine.go(TRAVERSE, block.line, machine.p)
+    return True
+
+
+FANUC_WORDS = (fetches_tool, scales, bolt_holes)
+"""What follows a G word of ``machine``, ``block`` and its code, and says whether it is its own."""

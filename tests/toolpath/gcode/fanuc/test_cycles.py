@@ -7,6 +7,7 @@ import pytest
 
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import Program, interpret
+from robomill.toolpath.gcode.chords import to_toolpath
 
 
 def read(body: str) -> Program:
@@ -198,3 +199,19 @@ def test_the_fastest_speed_of_the_spindle_is_not_its_speed(line: str) -> None:
     program = interpret(text, dialect="fanuc")
     assert program.n_s[-1] == pytest.approx(10.0)
     assert (program.end * 1e3).tolist() == [pytest.approx([1, 2, 0]), pytest.approx([5, 2, 0])]
+
+
+def test_a_fetched_tool_comes_from_above() -> None:
+    """G100 T of a Brother changes to the tool and goes to X, Y and Z; what it left at depth is not dragged there."""
+    text = (
+        "O1\nG21 G90\nG100 T1 X50. Y40. G43 Z20. L2 H1 S800 M3\nG1 Z-1. F300\nX60.\nG100 T2 X10. Y9. G43 Z20. L1 H2\n"
+    )
+    program = interpret(f"%\n{text}G1 Z-2. F200\nY20.\nM30\n%\n", dialect="fanuc")
+    cuts = program.at_feed
+    np.testing.assert_allclose(program.end[cuts] * 1e3, [[50, 40, -1], [60, 40, -1], [10, 9, -2], [10, 20, -2]])
+    assert program.tool[cuts].tolist() == [1, 1, 2, 2]
+    path = to_toolpath(program)
+    low = path.p[:, 2] < 0.0
+    assert (np.diff(path.p[:, :2], axis=0)[low[:-1] & low[1:] & ~path.cutting[1:]] == 0.0).all(), "no rapid in the part"
+    leaves = np.flatnonzero(program.line == 7)[0]
+    assert program.away[leaves].tolist() == [False, False, True]
