@@ -135,7 +135,7 @@ def converted(value: Any, unit: str, error: type[RobomillError], name: str) -> A
         return None
     if isinstance(value, Mapping):
         return {key: converted(one, unit, error, name) for key, one in value.items()}
-    if isinstance(value, list | tuple) and None in value:
+    if isinstance(value, list | tuple) and any(one is None for one in value):
         return tuple(converted(one, unit, error, name) for one in value)
     try:
         if is_unreal(value):

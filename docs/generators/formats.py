@@ -212,7 +212,8 @@ def _value(each: Quantity) -> str:
         length, *rest = each.shape
         count = "a list of numbers" if length is None and not rest else f"{length} numbers"
         return "rows of " + f"{rest[0]} numbers" if rest else count
-    return each.expected.removesuffix(", or left out")
+    without = "" if each.written_none is None else f"; {each.short(each.written_none)} for none"
+    return each.expected.removesuffix(", or left out") + without
 
 
 def _default(each: Quantity) -> str:

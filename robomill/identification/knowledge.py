@@ -74,6 +74,7 @@ class Knowledge(Said, Value):
         if result.has_joints:
             unseen = np.flatnonzero(~np.isfinite(result.stderr))
             parameters[unseen] = robot.C_theta[unseen]
+            covariance[unseen], covariance[:, unseen] = 0.0, 0.0  # the fit's own value is not the one that is kept
             covariance[unseen, unseen] = robot.C_theta[unseen] ** 2
         error = None if result.band is None else result.band.error
         return cls(result.choice, parameters, covariance, result.dof, source=source, error=error)

@@ -380,3 +380,22 @@ def test_reports_of_one_pose_are_equal_and_show_themselves_in_a_notebook() -> No
 def test_the_base_that_is_assumed_stands_among_what_a_run_rests_on() -> None:
     setup = rm.load_setup("paper_flute").replace(robot=rm.load_robot("kuka_kr270"), part_zero_mm=[1700, 0, 800])
     assert "base frame" in [each.what for each in rm.simulate(setup.replace(step=20e-3)).assumed]
+
+
+A, B = [0.0, 0.0, -2.0], [40.0, 0.0, -2.0]
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda v: rm.Toolpath.from_points(p_mm=[v(A), v(B)], feed_mm_min=1800),
+        lambda v: rm.Toolpath.from_points(p_mm=(v(A), v(B)), feed_mm_min=1800),
+        lambda v: rm.LinesSource(start_mm=[v(A)], end_mm=[v(B)], feed_mm_min=[1800]),
+        lambda v: rm.Element("line", points_mm=[v(A[:2]), v(B[:2])], depth_mm=2, feed_mm_min=1200),
+        lambda v: rm.LinkMasses(mass_kg=[1.0] * 5, centre_mm=[v(A)] * 5),
+        lambda v: rm.Stock(lower_mm=[v(-9), v(-9), v(-5)], upper_mm=v([9, 9, 0])),
+    ],
+)
+def test_numbers_may_stand_in_arrays_within_a_list(made) -> None:
+    """Who builds a path point by point has a list of vectors."""
+    assert made(np.array) == made(lambda value: value)

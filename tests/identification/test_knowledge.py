@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -26,6 +28,24 @@ def test_it_holds_for_exactly_its_compliances():
     changed = arm.replace(C_theta=arm.C_theta * np.array([1, 1, 1 + 1e-12, 1, 1]))
     assert not known.holds_for(changed, springs)
     assert known.holds_for(changed.replace(C_theta=arm.C_theta), springs)
+
+
+def test_what_is_kept_of_an_unseen_joint_goes_with_nothing_else():
+    """Its value is the robot's: what the fit's own went along with is of another number."""
+    stderr = np.where(np.arange(5) == 3, np.inf, FIT.stderr)
+    size = np.sqrt(np.diag(FIT.covariance)[:5]) + 1e-12
+    covariance = np.array(FIT.covariance)
+    covariance[:5, :5] += 1e4 * np.outer(size, size)  # all the fit's numbers go along with one another
+    kept = {name: getattr(FIT, name) for name in ("choice", "parameters", "has_joints", "dof", "band")}
+    known = Knowledge.of(SimpleNamespace(**kept, stderr=stderr, covariance=covariance), ROBOT)
+    assert known.parameters[3] == ROBOT.C_theta[3]
+    assert known.covariance[3, 3] == ROBOT.C_theta[3] ** 2
+    draws = np.random.default_rng(0).multivariate_normal(np.zeros(len(size)), known.covariance[:5, :5], 4000)
+    assert np.abs(np.corrcoef(draws.T)[3, [0, 1, 2, 4]]).max() < 0.1
+    rest = np.flatnonzero(np.arange(len(covariance)) != 3)
+    np.testing.assert_array_equal(known.covariance[np.ix_(rest, rest)], covariance[np.ix_(rest, rest)])
+    scale = np.sqrt(np.maximum(np.diag(known.covariance), 1e-40))
+    assert np.linalg.eigvalsh(known.covariance / np.outer(scale, scale)).min() > -1e-9, "and it is a covariance"
 
 
 @pytest.mark.parametrize(("force", "length"), [(0.0, 0.0), (3.0, 0.0), (0.0, 1e-3), (3.0, 1e-3)])

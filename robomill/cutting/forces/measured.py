@@ -92,7 +92,8 @@ class ForceRecord(Said, Value):
             unit = "per second" if self.axis == "time" else "per metre"
             raise CuttingError(
                 f"{self.source}: {self.rate:.4g} samples {unit} are too few to filter at {cutoff:.4g} {unit}; "
-                f"it takes more than {2.0 * cutoff:.4g} (another unit of {self.axis}?), or leave the filter out.",
+                f"it takes more than {2.0 * cutoff:.4g} (another unit of {self.axis}?), or leave the filter out "
+                "(cutoff_Hz = 0 in a file).",
                 where="cutoff",
             )
         from scipy.signal import butter, sosfiltfilt
@@ -112,7 +113,7 @@ class MeasuredForce(ForceModel):
     """A record laid on the path. ``start`` is the record's time (s) or path length (m) at the start of the first cut.
 
     ``cutoff`` (Hz, None for no filter) applies in time; a path record is filtered at cutoff / feed, with the median
-    feed of the cut.
+    feed of the cut, if it has samples enough for anything faster.
 
     Examples
     --------
@@ -221,6 +222,12 @@ class MeasuredForce(ForceModel):
         found, record = super().findings(conditions), self.record
         if not conditions.cutting.any():
             return found
+        if self._coarse(conditions):
+            text = (
+                "Force: at this feed the record has too few samples for anything faster than its cut-off, so it is used "
+                "as it is, without a filter."
+            )
+            found += (Finding("info", text, code="record-unfiltered"),)
         unit, along = self.start_unit, conditions.t if self.in_time else conditions.s
         began, last = (format_si(v, unit, 3) for v in (self.start, record.x[-1]))
         if self.in_time:
@@ -258,12 +265,19 @@ class MeasuredForce(ForceModel):
                 "record the whole cut or set where the path starts in it.",
                 where="start",
             )
-        if self.cutoff is not None:
+        if self.cutoff is not None and not self._coarse(conditions):
             record = record.low_pass(self.cutoff / self._speed(conditions))
         F = np.stack([np.interp(at, record.x, column) for column in record.F.T], axis=1)
         if record.frame == "W":
             F = F @ self.R_MW.T
         return np.where(conditions.cutting[:, None], F, 0.0)
+
+    def _coarse(self, conditions: CutConditions) -> bool:
+        """Whether a record over path length has too few samples for anything faster than the cut-off: then nothing is
+        to be filtered. (Of a record over time that is a slip: seconds in place of milliseconds.)"""
+        if self.in_time or self.cutoff is None:
+            return False
+        return self.record.rate <= 2.0 * self.cutoff / self._speed(conditions) * (1.0 + ROUNDING)
 
     def _speed(self, conditions: CutConditions) -> float:
         """What turns Hz into the record's own frequency: 1, or the feed for a record over path length."""

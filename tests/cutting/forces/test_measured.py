@@ -104,6 +104,19 @@ def test_short_records_filter_too():
     assert record([1.0, 2.0, 1.0, 2.0], [0, 1e-3, 2e-3, 3e-3]).low_pass(50.0).F.shape == (4, 3)
 
 
+@pytest.mark.parametrize(("spacing", "filtered"), [(0.5e-3, False), (0.1e-3, True)])
+def test_a_record_too_coarse_for_the_cut_off_is_used_as_it_is(spacing: float, filtered: bool) -> None:
+    """50 Hz at 15 mm/s are 3333 per metre: samples each half millimetre hold nothing faster than 1000 per metre."""
+    s = np.arange(0.0, 0.06, spacing)
+    F = np.column_stack([-1e3 * s, 2e3 * s, np.zeros_like(s)]) + 5.0 * np.cos(np.pi * s / spacing)[:, None]
+    conditions = CutConditions.steady(0.015, 200.0, 2e-3, s=[0.0, 0.02, 0.04], t=[0.0, 1.0, 2.0])
+    force = MeasuredForce(ForceRecord(s, F, "path", "path", "a test"), 50.0)
+    found = force.components(conditions)
+    straight = np.column_stack([np.interp(conditions.s, s, column) for column in F.T])
+    assert np.allclose(found, straight) != filtered
+    assert ("record-unfiltered" in [each.code for each in force.findings(conditions)]) != filtered
+
+
 def test_refusals():
     conditions = CutConditions.steady(0.03, 200.0, 2e-3, cutting=[False, True, True], t=[0.0, 1.0, 5.0])
     with pytest.raises(CuttingError, match=r"cuts from 1.000 s to 5.000 s, the record holds 0.000 s to 3.999 s"):
@@ -177,7 +190,7 @@ def test_only_a_record_over_time_laid_on_a_cut_has_a_begin():
     assert [(each.code, each.line) for each in MeasuredForce(noted).findings(air)] == [("force-note", 0)]
     assert [each.code for each in MeasuredForce(noted).findings(cut)][:2] == ["force-note", "record-start"]
     by_length = record(1.0, axis="path", notes=("read with care",))
-    assert [each.code for each in MeasuredForce(by_length).findings(cut)] == ["force-note"]
+    assert [each.code for each in MeasuredForce(by_length, None).findings(cut)] == ["force-note"]
     np.testing.assert_array_equal(MeasuredForce(noted).components(air), np.zeros((2, 3)))
 
 
