@@ -80,7 +80,7 @@ def test_what_an_earlier_pass_has_left_is_told(kind: str, passes: int, told: boo
 
 @pytest.mark.parametrize("tolerance_mm", [0.3, 0.1, 0.05])
 def test_what_would_be_red_where_it_is_pushed_is_not_green(tolerance_mm: float) -> None:
-    """Twice along one slot the ball is 0.1 mm off: of 0.3 mm that is green, of half as much nobody should believe 24 %."""
+    """Twice along one slot the ball is 0.1 mm off: of 0.3 mm that is green, of 0.1 mm it is all of it."""
     run = run_of(rm.Cutter("ball", diameter_mm=8, flutes=3), 2)
     truth = max(np.abs(off_by_brute_force(run, 2)[1:]))
     setup = run.setup.replace(tolerance=tolerance_mm * 1e-3)

@@ -224,8 +224,8 @@ class MeasuredForce(ForceModel):
             return found
         if self._coarse(conditions):
             text = (
-                "Force: at this feed the record has too few samples for anything faster than its cut-off, so it is used "
-                "as it is, without a filter."
+                "Force: at this feed the record has too few samples for anything faster than its cut-off, so it is "
+                "used as it is, without a filter."
             )
             found += (Finding("info", text, code="record-unfiltered"),)
         unit, along = self.start_unit, conditions.t if self.in_time else conditions.s
