@@ -8,6 +8,7 @@ deflection of the step before.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -21,6 +22,9 @@ RESTART = 12  # evaluations after which Broyden's matrix is begun anew from the 
 TURNS = 8  # of the way on which a bracket is halved
 COUPLING = "coupling"
 LONGEST = 0.5e-3  # m: no correction goes further at once
+NARROW = 0.1e-9  # m: to that a jump is found; beside it g may change a thousand times as fast as the tool's place
+Push = Callable[[FloatArray], FloatArray]
+"""Where the force that acts with the tool at a place (3,) m bends it to, (3,) m."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,21 +47,26 @@ class Settled:
         return self.rest <= TOLERANCE
 
 
-def settle(g: Callable[[FloatArray], FloatArray], start: FloatArray, free: FloatArray) -> Settled:
-    """Solve g(x) = x near ``start`` (3,) m, to ``TOLERANCE`` in every component; ``free`` (3,) m is x without a force.
+def settle(g: Push, start: FloatArray, free: FloatArray, axis: FloatArray) -> Settled:
+    """Solve g(x) = x near ``start`` (3,) m, to ``TOLERANCE`` in every component; ``free`` (3,) m is x without a force,
+    ``axis`` (3,) the unit vector along the tool.
 
-    Broyden's method on g(x) - x, whose first step is x <- g(x); where it does not close in, a bracket between
-    where the force bends the tool from ``free`` and from there. A g that is not a number ends it.
+    Broyden's method on g(x) - x, whose first step is x <- g(x). Where it does not close in, the height at which the
+    end of the tool rests, and then a bracket between where the force bends the tool from ``free`` and from there. A g
+    that is not a number ends it.
     """
     found = _by_broyden(g, start)
-    if found.agreed or not np.isfinite(found.rest):
-        return found
-    held = _by_bracket(g, free)
-    better = held if held.rest < found.rest else found
-    return replace(better, evaluations=found.evaluations + held.evaluations, gain=found.gain)
+    gain = found.gain
+    for otherwise in (partial(_by_height, g, free, axis), partial(_by_bracket, g, free)):
+        if found.agreed or not np.isfinite(found.rest):
+            break
+        held = otherwise()
+        better = held if held.rest < found.rest else found
+        found = replace(better, evaluations=found.evaluations + held.evaluations, gain=gain)
+    return found
 
 
-def _by_broyden(g: Callable[[FloatArray], FloatArray], start: FloatArray) -> Settled:
+def _by_broyden(g: Push, start: FloatArray) -> Settled:
     x, H = np.array(start, dtype=float), -np.eye(3)
     f = g(x) - x
     best, gain, count = (x, f), float("nan"), 1
@@ -81,7 +90,47 @@ def _by_broyden(g: Callable[[FloatArray], FloatArray], start: FloatArray) -> Set
     return Settled(x, rest, count, gain, ((x, 1.0),))
 
 
-def _by_bracket(g: Callable[[FloatArray], FloatArray], free: FloatArray) -> Settled:
+def _by_height(g: Push, free: FloatArray, axis: FloatArray) -> Settled:
+    """Where g falls by a jump along ``axis``, as it does where the end of a tool rests on its floor: above it nothing
+    pushes, below it all of the end. The height of the jump is found for a place aside; the shares of its two sides that
+    hold the tool at that height say how far aside they push it, and there the height is found anew."""
+    first = g(free)
+    found = Settled(free, float("nan"), 1, float("nan"), ((free, 1.0),))
+    aside, ends = first, (float(free @ axis), float(first @ axis))
+    for _ in range(TURNS):
+        aside = aside - (aside @ axis) * axis
+        low, high, asked = _around(g, aside, axis, (min(ends), max(ends)))
+        found = replace(found, evaluations=found.evaluations + asked)
+        if not low < high:
+            break
+        after, at_low, at_high = _halved(g, aside + low * axis, (high - low) * axis)
+        nearer = np.isnan(found.rest) or after.rest < found.rest
+        found = replace(after if nearer else found, evaluations=found.evaluations + after.evaluations)
+        if found.agreed or not np.isfinite(after.rest):
+            break
+        share, height = after.mix[0][1], float(after.x @ axis)
+        aside, ends = share * at_low + (1.0 - share) * at_high, (height - TOLERANCE, height + TOLERANCE)
+    return found
+
+
+def _around(g: Push, aside: FloatArray, axis: FloatArray, ends: tuple[float, float]) -> tuple[float, float, int]:
+    """Heights (m) around ``ends`` of which g leads up from the lower one and down from the upper one, and how often g
+    was asked; NaN where there are none as far as a tool is corrected at once."""
+    (low, high), step, rises, count = ends, TOLERANCE, False, 0
+    while step <= LONGEST:
+        at, count = high if rises else low, count + 1
+        over = float(g(aside + at * axis) @ axis) - at
+        if rises and over < 0.0:
+            return low, high, count
+        if not rises and over > 0.0:
+            rises = True
+        else:
+            low, high = (high, high + step) if rises else (low - step, low)
+            step *= 2.0
+    return float("nan"), float("nan"), count
+
+
+def _by_bracket(g: Push, free: FloatArray) -> Settled:
     """Halve the way between two places that bend the tool to each other: where it is bent to from ``free``, and where
     from there. Its ends become one place, which may push differently on its two sides; then comes the way between what
     the sides push to, on which the place lies where both together hold the tool."""
@@ -100,14 +149,12 @@ def _by_bracket(g: Callable[[FloatArray], FloatArray], free: FloatArray) -> Sett
     return found
 
 
-def _halved(
-    g: Callable[[FloatArray], FloatArray], start: FloatArray, way: FloatArray
-) -> tuple[Settled, FloatArray, FloatArray]:
+def _halved(g: Push, start: FloatArray, way: FloatArray) -> tuple[Settled, FloatArray, FloatArray]:
     """The place on a straight way (3,) m from ``start`` where g falls behind, and where its two sides push to."""
     length = float(np.linalg.norm(way))
     along, low, high = way / length, 0.0, 1.0
     at_low, at_high, count = g(start), g(start + way), 2
-    while (high - low) * length > 0.1 * TOLERANCE and count < MOST:
+    while (high - low) * length > NARROW and count < MOST:
         middle = 0.5 * (low + high)
         there = g(start + middle * way)
         count += 1

@@ -117,7 +117,7 @@ class _Walk:
         def bends(delta: FloatArray) -> FloatArray:
             return np.asarray(bent.C[i] @ meets(delta)[2] + bent.offset[i])
 
-        found = settle(bends, self.moved[i - 1], np.nan_to_num(bent.offset[i]))
+        found = settle(bends, self.moved[i - 1], np.nan_to_num(bent.offset[i]), bent.R_MF[i, :, 2])
         met = [meets(place) for place, _ in found.mix]
         row, sectors, F = met[0]
         if len(met) > 1:

@@ -8,11 +8,12 @@ from scipy.optimize import brentq, fsolve
 
 import robomill as rm
 from robomill.io.samples import samples_dir
-from robomill.simulation.coupling import LONGEST, MOST, TOLERANCE, Coupling, Settled, _by_bracket, settle
+from robomill.simulation.coupling import LONGEST, MOST, NARROW, TOLERANCE, Coupling, Settled, _by_bracket, settle
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
 
+UP = np.array([0.0, 0.0, 1.0])
 R, FEED, SPEED = 4e-3, 0.03, 200.0
 BLOCK = Stock([-20e-3, 0.0, -10e-3], [20e-3, 30e-3, 0.0])
 SETUP = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(stock=BLOCK, coupling=True)
@@ -133,7 +134,7 @@ def test_the_pocket_sample_is_solved_at_every_step():
 def test_a_straight_law_is_solved_whatever_its_slope(q):
     """Going round and round closes in only for |q| < 1."""
     goal = np.array([1e-4, -2e-4, 0.5e-4])
-    found = settle(lambda x: goal + q * (x - goal), np.zeros(3), np.zeros(3))
+    found = settle(lambda x: goal + q * (x - goal), np.zeros(3), np.zeros(3), UP)
     assert found.agreed
     np.testing.assert_allclose(found.x, goal, atol=TOLERANCE / abs(1 - q) * 1.01)
     assert found.evaluations < 12
@@ -152,12 +153,12 @@ def test_a_place_that_is_told_beforehand_is_taken_and_one_beside_it_is_left_at_o
         asked.append(x)
         return goal + q * (x - goal)
 
-    there = settle(bends, goal, np.zeros(3))
+    there = settle(bends, goal, np.zeros(3), UP)
     assert (there.agreed, there.evaluations, len(asked)) == (True, 1, 1)
     np.testing.assert_array_equal(there.x, goal)
     assert np.isnan(there.gain)
     beside = goal + np.array([0.0, 0.6e-4, -0.2e-4])
-    assert settle(bends, beside, np.zeros(3)).agreed
+    assert settle(bends, beside, np.zeros(3), UP).agreed
     np.testing.assert_allclose(asked[1:3], [beside, goal + q * (beside - goal)], atol=1e-15)
 
 
@@ -173,7 +174,7 @@ def test_a_law_of_three_slopes_is_closed_in_upon_in_short_steps(seed):
         asked.append(x)
         return goal + A @ (x - goal)
 
-    found = settle(bends, np.zeros(3), np.zeros(3))
+    found = settle(bends, np.zeros(3), np.zeros(3), UP)
     assert found.agreed
     np.testing.assert_allclose(found.x, goal, atol=3 * TOLERANCE / 0.3)
     assert found.rest == pytest.approx(np.abs(bends(found.x) - found.x).max(), abs=1e-15)
@@ -230,7 +231,7 @@ def test_a_force_that_jumps_is_held_at_the_jump():
     def bends(x):
         return np.array([50e-6, 10e-6, 0.0]) - (np.array([200e-6, 0.0, 0.0]) if x[0] > 30e-6 else 0.0)
 
-    found = settle(bends, np.zeros(3), np.zeros(3))
+    found = settle(bends, np.zeros(3), np.zeros(3), UP)
     assert found.agreed
     assert found.x[0] == pytest.approx(30e-6, abs=TOLERANCE)
     pushed = sum(weight * bends(place) for place, weight in found.mix)
@@ -258,7 +259,7 @@ def test_a_wall_that_pushes_sideways_too_holds_the_tool(seed):
     def bends(x):
         return a + (b if x @ n > at else 0.0)
 
-    found = settle(bends, np.zeros(3), np.zeros(3))
+    found = settle(bends, np.zeros(3), np.zeros(3), UP)
     assert found.agreed
     assert found.rest == pytest.approx(remains(bends, found), abs=1e-12)
     np.testing.assert_allclose(found.x, root, atol=2 * TOLERANCE)
@@ -276,7 +277,7 @@ def test_what_remains_between_force_and_deflection_is_told_agreed_or_not(seed):
     def bends(x):
         return a - sum((u * back * (1.0 + 0.3 * (n + m)) for u, at, back in walls if x @ u > at), np.zeros(3))
 
-    found = settle(bends, np.zeros(3), np.zeros(3))
+    found = settle(bends, np.zeros(3), np.zeros(3), UP)
     assert found.rest == pytest.approx(remains(bends, found), abs=1e-12)
     assert found.agreed == (remains(bends, found) <= TOLERANCE)
 
@@ -301,8 +302,59 @@ def test_a_bracket_follows_a_push_that_turns_as_it_grows(seed, stiff):
     np.testing.assert_allclose(found.x, bends((at + into) * n), atol=2 * TOLERANCE)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_an_end_that_rests_on_its_floor_holds_the_tool(seed):
+    """Free push a, and b more as soon as the tool is below a floor; just above it some of b comes within 0.7 um. Aside
+    the push changes slowly (L). How much of b acts, w, is one number's equation; the rest is linear."""
+    rng = np.random.default_rng(seed)
+    axis, u, v = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    P, near, touch = np.outer(u, u) + np.outer(v, v), 0.7e-6, 0.4
+    a = rng.uniform(-400e-6, -20e-6) * axis + rng.normal(size=3) * 50e-6
+    b = rng.uniform(500e-6, 900e-6) * axis + rng.uniform(-400e-6, 400e-6, 2) @ (u, v)
+    L, at = rng.uniform(-0.2, 0.2, (3, 3)), a @ axis + rng.uniform(0.05, 0.95) * (b @ axis)
+
+    def bends(x):
+        above = x @ axis - at
+        acts = 1.0 if above < 0.0 else touch * max(1.0 - above / near, 0.0)
+        return a + L @ (P @ x) + acts * b
+
+    def aside(w):
+        return np.linalg.solve(np.eye(3) - P @ L, P @ (a + w * b))
+
+    def over(w):
+        return (a + L @ aside(w) + w * b) @ axis - at - near * max(1.0 - w / touch, 0.0)
+
+    w = brentq(over, 0.0, 1.0, xtol=1e-15)
+    root = aside(w) + (at + near * max(1.0 - w / touch, 0.0)) * axis
+    found = settle(bends, np.zeros(3), np.zeros(3), axis)
+    assert found.agreed
+    np.testing.assert_allclose(found.x, root, atol=2 * TOLERANCE)
+    assert found.rest == pytest.approx(remains(bends, found), abs=1e-12)
+
+
+@pytest.mark.parametrize(("D", "flutes", "angle"), [(6, 2, 1), (8, 3, 3), (10, 4, 2), (12, 3, 5)])
+def test_a_ramp_into_the_full_is_solved_at_every_step(D, flutes, angle):
+    """The end touches, presses and rests on what it has cut: each step has an answer, which bends the tool to it."""
+    length = min(2.0 / np.tan(np.radians(angle)), 60.0)
+    deep = 0.3 - length * np.tan(np.radians(angle))
+    cutter = rm.Cutter("flat", diameter_mm=D, flutes=flutes)
+    way = f"G0 X{-length / 2} Y0 Z5\nG0 Z0.3\nG1 X{length / 2} Z{deep} F{240 * flutes}\nG1 X{-length / 2}\nG0 Z20\n"
+    run = simulate(
+        SETUP.replace(
+            source=GCodeSource(f"G21 G90\nS8000 M3\n{way}M2\n"),
+            cutter=cutter,
+            force=rm.process_force("al7075_t6_carbide_ref190", cutter),
+            stock=Stock([-60e-3, -30e-3, -15e-3], [60e-3, 30e-3, 0.0]),
+        )
+    )
+    assert run.coupling.converged
+    bent = np.einsum("mij,mj->mi", run.C, run.F)
+    np.testing.assert_allclose(run.delta[run.judged], bent[run.judged], atol=1e-12)
+    assert run.verdict.level in ("ok", "tight", "out")
+
+
 def test_what_is_not_a_number_ends_it():
-    found = settle(lambda x: np.full(3, np.nan), np.zeros(3), np.zeros(3))
+    found = settle(lambda x: np.full(3, np.nan), np.zeros(3), np.zeros(3), UP)
     assert not found.agreed
     assert np.isnan(found.rest)
     assert found.evaluations <= MOST
@@ -310,8 +362,8 @@ def test_what_is_not_a_number_ends_it():
 
 @pytest.mark.parametrize("seed", range(6))
 def test_how_often_the_force_was_asked_for_is_counted(seed):
-    """A wall at a random place along the push, and one that is only pushed at: halving the way between to a tenth of
-    the tolerance takes the logarithm of its length, after what going round takes at most."""
+    """A wall at a random place along the push, and one that is only pushed at: halving the way between until
+    it is narrow takes the logarithm of its length, after what going round takes at most."""
     rng = np.random.default_rng(seed)
     push, wall, back = rng.uniform(50e-6, 900e-6), rng.uniform(0.1, 0.9), rng.uniform(1.5, 4.0)
     along = np.linalg.qr(rng.normal(size=(3, 3)))[0][0]
@@ -321,12 +373,13 @@ def test_how_often_the_force_was_asked_for_is_counted(seed):
         asked.append(x)
         return push * along * (1.0 if x @ along < wall * push else 1.0 - back)
 
-    found = settle(bends, np.zeros(3), np.zeros(3))
+    found = settle(bends, np.zeros(3), np.zeros(3), UP)
     assert found.agreed
     np.testing.assert_allclose(found.x, wall * push * along, atol=TOLERANCE)
     assert found.evaluations == len(asked)
-    halvings = np.ceil(np.log2(back * push / (0.1 * TOLERANCE)))
-    assert found.evaluations <= MOST + 2 + 2 + halvings
+    halvings = np.ceil(np.log2(back * push / NARROW))
+    looks = 2 + 2 * np.ceil(np.log2(LONGEST / TOLERANCE))  # for a floor that the tool might rest on
+    assert found.evaluations <= MOST + looks + halvings + 2 + 2 + halvings
     ((there, low), (here, high)) = found.mix
     assert low + high == pytest.approx(1.0)
     both = (low * bends(there) + high * bends(here)) @ along / push
