@@ -47,6 +47,15 @@ def test_a_bent_field_is_missed_between_points_by_a_quarter_of_its_gap():
     assert np.count_nonzero(found) == 1
 
 
+def test_one_point_between_two_shows_a_bend_and_two_points_do_not():
+    """c x^2 at -h, 0, h: the middle lies c h^2 off its neighbours' line, and nothing surrounds the ends."""
+    h, c = 0.2, 3.0
+    x = h * np.array([[-1.0], [0.0], [1.0]])
+    C = c * x[:, :, None] ** 2 * np.ones((3, 3))
+    assert between_points(x, C, np.zeros_like(C)) == pytest.approx(PART_BETWEEN * c * h**2)
+    assert not between_points(x[:2], C[:2], np.zeros_like(C[:2])).any()
+
+
 def test_noise_is_not_taken_for_a_bend():
     rng = np.random.default_rng(3)
     p = np.stack(np.meshgrid(np.arange(30.0), np.arange(30.0), indexing="ij"), axis=-1).reshape(-1, 2)

@@ -19,7 +19,7 @@ from robomill.identification.fit.confidence import half_width
 from robomill.identification.fit.crossvalidation import good, headline, relative_by_pose
 from robomill.identification.fit.fitting import Fitted
 from robomill.identification.fit.folds import folds_of
-from robomill.identification.fit.least_squares import bounded_solution, solve_triangle, triangle
+from robomill.identification.fit.least_squares import bounded_solution, column_scale, solve_triangle, triangle
 from robomill.identification.fit.models import Model
 from robomill.identification.fit.selection import EXACT
 from robomill.identification.fit.suspects import OF_GAUGES, Cause, Inquest, Suspect
@@ -234,14 +234,12 @@ class Inquiry:
         return float(stdtr(spare - 2, -r * np.sqrt((spare - 2) / max(1.0 - r * r, 1e-12))))
 
     def _triangle(self, columns: _Columns) -> FloatArray:
-        size = np.linalg.norm(columns.whole, axis=0)
-        return triangle(columns.whole / np.where(size > 0, size, 1.0), self.system.b / self.system.noise)
+        return triangle(columns.whole / column_scale(columns.whole), self.system.b / self.system.noise)
 
     def _free(self, columns: _Columns) -> FloatArray:
         """The unbounded fit."""
-        size = np.linalg.norm(columns.whole, axis=0)
         R = self._triangle(columns)
-        return np.asarray(np.linalg.lstsq(R[:, :-1], R[:, -1], rcond=RANK)[0]) / np.where(size > 0, size, 1.0)
+        return np.asarray(np.linalg.lstsq(R[:, :-1], R[:, -1], rcond=RANK)[0] / column_scale(columns.whole))
 
     def _half(self, columns: _Columns) -> float:
         """Half the 95 % interval of the last coordinate."""

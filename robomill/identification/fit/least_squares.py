@@ -80,7 +80,7 @@ def solve_triangle(R: FloatArray, equations: int, signed: BoolArray, given_sigma
     if len(R) > p + 1:  # stacked factors
         R = np.asarray(np.linalg.qr(R, mode="r"))
     A, b = R[:, :p], R[:, p]
-    scale = _scale(A)
+    scale = column_scale(A)
     S = A / scale
     _, values, Vt = np.linalg.svd(S, full_matrices=True)
     values = np.pad(values, (0, p - len(values)))
@@ -103,7 +103,7 @@ def solve_triangle(R: FloatArray, equations: int, signed: BoolArray, given_sigma
 
 def bounded_solution(A: FloatArray, b: FloatArray, signed: BoolArray) -> FloatArray:
     """(p,) the bounded estimate alone, of equations in full or of their factor."""
-    scale = _scale(A)
+    scale = column_scale(A)
     S = A / scale
     return _bounded(S, b, np.asarray(np.linalg.lstsq(S, b, rcond=NULL)[0]), signed) / scale
 
@@ -120,7 +120,7 @@ def bounded_normal(N: FloatArray, y: FloatArray, signed: BoolArray) -> FloatArra
     return _bounded((turned * root).T, b, free, signed) / scale
 
 
-def _scale(A: FloatArray) -> FloatArray:
+def column_scale(A: FloatArray) -> FloatArray:
     """(p,) lengths of the columns; infinite for those that are zero beside the longest."""
     norms = np.linalg.norm(A, axis=0)
     top = norms.max(initial=0.0)
@@ -178,8 +178,7 @@ def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
 
     Works in an orthonormal basis of the columns, where the small normal equations are well conditioned.
     """
-    norms = np.linalg.norm(A, axis=0)
-    scaled = A / np.where(norms > 0, norms, 1.0)
+    scaled = A / column_scale(A)
     _, values, Vt = np.linalg.svd(triangle(scaled, b)[:, :-1], full_matrices=False)
     keep = values > NULL * max(float(values.max(initial=0.0)), 1e-300)
     B = scaled @ (Vt[keep].T / values[keep])

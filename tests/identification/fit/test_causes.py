@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import robomill as rm
 from robomill.identification.record import identification_report
@@ -105,6 +106,27 @@ def test_what_grows_with_the_displacement_is_said():
     assert "model-misses" in codes(result)
 
 
+def left_by_joints(q, F, moved):
+    """(m, 3) residuals of the joints' springs, fitted freely: what each yields alone is a column. Joint 6 is not seen:
+    the tip lies on its axis, where its column is rounding."""
+    springs = [replace(ARM, C_theta=unit) for unit in 1e-9 * np.eye(6)[:5]]
+    A = np.array([[one.yields(a, TIP, TIP, f, {}) for one in springs] for a, f in zip(q, F, strict=True)])
+    A = np.moveaxis(A, 1, 2).reshape(-1, 5)
+    size = np.linalg.norm(A, axis=0)
+    z = np.linalg.lstsq(A / size, moved.ravel(), rcond=None)[0]
+    return (moved.ravel() - A / size @ z).reshape(-1, 3), (A / size @ z).reshape(-1, 3)
+
+
+def test_growth_is_a_rank_correlation_with_the_spare_readings_for_its_freedom():
+    """Twenty-four readings, five springs: Spearman's rank correlation, and Student's t of 24 - 5 - 2 degrees."""
+    tests = pulled(count=8, noise=2e-5)
+    left, fitted = left_by_joints(tests.theta, tests.wrench[:, :3], tests.displacement[:, :3])
+    size = np.repeat(np.linalg.norm(fitted, axis=1), 3)
+    r = stats.spearmanr(np.abs(left).ravel(), size)[0]
+    chance = stats.t.sf(r * np.sqrt(17 / (1.0 - r**2)), 17)
+    assert rm.identify(ROBOT, tests).inquest.growth == pytest.approx(chance, rel=1e-3)
+
+
 def test_an_arm_unlike_any_model_is_told_by_poses_loaded_three_ways():
     """Every pose has a symmetric compliance of its own, 15 % from the joints': within a pose all is in order."""
     rng = np.random.default_rng(3)
@@ -120,6 +142,28 @@ def test_an_arm_unlike_any_model_is_told_by_poses_loaded_three_ways():
     result = rm.identify(ROBOT, rm.LoadTests(F, moved + noise, theta=theta))
     assert result.inquest.lack < 1e-6
     assert "model-misses" in codes(result)
+
+
+def test_a_lack_is_weighed_against_a_symmetric_matrix_a_pose():
+    """Five poses under three loads each: 45 readings, five springs against six entries a pose, by a written-out F."""
+    q = np.repeat(pulled(count=5).theta, 3, axis=0)
+    F = np.tile(250.0 * np.eye(3), (5, 1))
+    moved = np.array([ARM.yields(a, TIP, TIP, f, {}) for a, f in zip(q, F, strict=True)])
+    moved += 2e-5 * np.random.default_rng(2).standard_normal(moved.shape)
+    left = float((left_by_joints(q, F, moved)[0] ** 2).sum())
+    C = moved.reshape(5, 3, 3)  # what is off a symmetric matrix is half of C - C^T
+    pure = float(((C - np.swapaxes(C, 1, 2)) ** 2).sum() / 4.0)
+    chance = stats.f.sf((left - pure) / (40 - 15) / (pure / 15), 40 - 15, 15)
+    assert rm.identify(ROBOT, rm.LoadTests(F, moved, theta=q)).inquest.lack == pytest.approx(chance, rel=1e-3)
+
+
+def test_a_cause_counts_the_numbers_it_adds():
+    """Three coordinates a point, one angle a zero, two springs across a joint's axis."""
+    found = rm.identify(ROBOT, pulled(load_point=TIP + [0.05, 0.04, -0.03], stated=TIP, count=20)).inquest.suspects
+    numbers = {s.cause.points or s.cause.kind: s.numbers for s in found}
+    assert {"force", "both"} <= set(numbers)
+    right = {"force": 3, "gauge": 3, "both": 6, "zero": 1, "bending": 2, "tool": 2, "offset": 3, "drift": 6, "play": 3}
+    assert numbers == {name: right[name] for name in numbers}
 
 
 @pytest.mark.parametrize(
