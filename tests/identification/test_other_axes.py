@@ -47,6 +47,13 @@ def test_what_is_right_or_noisy_is_not_suspected():
         assert "axes" not in said(ROBOT, MADE.F, noisy)
 
 
+def test_no_other_axes_are_sought_where_a_moment_is_stated():
+    """Other axes would turn the moments as well, which no reading of the forces does."""
+    moment = np.zeros((30, 3))
+    moment[::2, 2] = 1e-3
+    assert "axes" not in said(ROBOT, np.hstack([in_tool(MADE.F), moment]), in_tool(MADE.moved))
+
+
 @pytest.mark.parametrize("name", ["a", "d"])
 def test_lengths_of_the_robot_in_metres_beside_millimetres_are_suspected(name):
     odd = ROBOT.replace(**{name: getattr(ROBOT, name) / 1000})

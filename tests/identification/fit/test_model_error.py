@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import robomill as rm
 from robomill.identification.fit.model_error import Errors, ModelError, held, model_error
@@ -54,6 +55,14 @@ def test_bands_hold_what_they_say_also_for_heavy_tails(heavy):
     half = 1.96 * np.sqrt(fresh.variance + found.variance(fresh.size, fresh.load))
     assert np.mean(np.abs(fresh.error) <= half) == pytest.approx(0.95, abs=0.01)
     assert held(learnt, 10000) == pytest.approx(0.95, abs=0.01)
+
+
+@pytest.mark.parametrize("e", [20, 50, 77, 200])
+def test_a_band_holds_so_many_that_the_next_error_is_held_19_times_of_20(e):
+    """Split conformal prediction: the next of e + 1 falls at any rank alike, so 95 % of e + 1, rounded up, are held."""
+    errors = replace(drawn(7, e=e), variance=np.zeros(e))
+    half = stats.t.ppf(0.975, 12) * np.sqrt(model_error(errors, 12).variance(errors.size, errors.load))
+    assert np.sum(np.abs(errors.error) <= half * (1.0 + 1e-9)) == min(-(-95 * (e + 1) // 100), e)
 
 
 def test_a_fit_that_misses_nothing_needs_no_more_and_too_few_folds_say_nothing():
