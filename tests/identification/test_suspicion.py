@@ -107,6 +107,13 @@ def test_oblique_forces_are_judged_by_their_work(against, told):
     assert suspicions(LoadTests(F, d, theta=THETA[:4])) == ()  # work of half a displacement says nothing
 
 
+@pytest.mark.parametrize(("size", "slip"), [(0.0254, "inches"), (9.80665e-3, "kilogram"), (4.44822e-3, "pound")])
+def test_a_slip_of_the_unit_is_told_by_its_size(size, slip):
+    """An inch in mm, a kilogram-force and a pound-force in N, each in thousandths: no other slip is as large."""
+    (finding,) = suspicions(moved(SOUND, 1e3 * size * SOUND.displacement), ROBOT)
+    assert (finding.code, slip in finding.message) == ("unit", True)
+
+
 @pytest.mark.parametrize("factor", [1 / 1000, 1 / 25.4, 1 / 9, 1 / 7, 7, 9, 25.4, 1000])
 def test_a_wrong_unit_is_a_factor_against_the_robots_own(factor):
     told = not 1 / 8 < factor < 8

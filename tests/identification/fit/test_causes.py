@@ -54,6 +54,22 @@ def test_a_link_that_bends_is_offered_however_small_the_error_is(noise):
     assert record["suspects"][0]["cause"] == "bending"
 
 
+@pytest.mark.parametrize(("turned", "axis"), [(False, 0), (True, 1)])
+def test_a_link_is_said_to_bend_on_the_side_where_it_does(turned, axis):
+    """Before joint 3 its link yields about an axis that stands still with the joint, behind it about one it turns."""
+    plain = pulled(count=40, noise=0.0)
+    moved, c = plain.displacement[:, :3].copy(), 5e-7
+    for k, (q, F) in enumerate(zip(plain.theta, plain.wrench[:, :3], strict=True)):
+        still = ARM.frames(q * (np.arange(6) != 2))[2]
+        *joints, flange = ARM.frames(q)
+        u, o = (joints[2] if turned else still)[:3, axis], joints[2][:3, 3]
+        arm = flange[:3, :3] @ TIP + flange[:3, 3] - o
+        moved[k] += c * float(u @ np.cross(arm, F)) * np.cross(u, arm)
+    moved += 2e-6 * np.random.default_rng(4).standard_normal(moved.shape)
+    first = rm.identify(ROBOT, rm.LoadTests(plain.wrench, moved, theta=plain.theta)).inquest.likeliest[0].cause
+    assert (first.kind, first.at, first.turned) == ("bending", 3, turned)
+
+
 def alarms(seeds, noise, count):
     """How many sets of tests with noise alone are said to lack something."""
     said = {"model-misses", "bending-pays", "joint-zero", "fit-force", "fit-gauge", "fit-both"}
