@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -108,6 +110,19 @@ def test_length_derivative_is_of_second_order():
         moved = Model().tip_regressor(longer, THETA, F) @ ROBOT.C_theta
         errors.append(np.abs(moved - delta - step * L[..., 1]).max())
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
+
+
+@pytest.mark.parametrize("name", ["a", "d"])
+def test_one_length_alone_widens_the_band_by_what_it_moves(name):
+    """The arm made a millimetre longer and shorter in its second link, all else being known exactly."""
+    lengths = np.zeros(10)
+    lengths[1 if name == "a" else 6] = 2e-3
+    longer, shorter = (
+        ROBOT.replace(**{name: getattr(ROBOT, name) + step * np.array([0, 1, 0, 0, 0])}) for step in (1e-3, -1e-3)
+    )
+    moved = [np.einsum("mij,mj->mi", rm.cartesian_compliance(arm, THETA), F) for arm in (longer, shorter)]
+    found = uncertain_deflection(ROBOT, THETA, F, replace(guessed(ROBOT), lengths=lengths))
+    np.testing.assert_allclose(found.std, np.abs(moved[0] - moved[1]), rtol=1e-3, atol=1e-12)
 
 
 def test_unseen_joints_widen_the_band_rather_than_narrow_it():

@@ -186,7 +186,9 @@ def test_a_lack_is_weighed_against_a_symmetric_matrix_a_pose(noise):
 
 def test_a_cause_counts_the_numbers_it_adds():
     """Three coordinates a point, one angle a zero, two springs across a joint's axis."""
-    found = rm.identify(ROBOT, pulled(load_point=TIP + [0.05, 0.04, -0.03], stated=TIP, count=20)).inquest.suspects
+    found = rm.identify(
+        ROBOT, pulled(load_point=TIP + np.array([0.05, 0.04, -0.03]), stated=TIP, count=20)
+    ).inquest.suspects
     numbers = {s.cause.points or s.cause.kind: s.numbers for s in found}
     assert {"force", "both"} <= set(numbers)
     right = {"force": 3, "gauge": 3, "both": 6, "zero": 1, "bending": 2, "tool": 2, "offset": 3, "drift": 6, "play": 3}

@@ -200,13 +200,26 @@ def test_one_pose_few_rows_and_forces_anyhow_are_told_apart():
     assert found.shift is found.covariance is None, "where lines do not meet there is no load point either"
 
 
+@pytest.mark.parametrize(("poses", "each", "enough"), [(3, 3, False), (4, 2, True)])
+def test_eight_rows_at_four_poses_are_enough(poses, each, enough):
+    """Four lines through one pulley have eight numbers; pulley and load point have six."""
+    rig = Rig()
+    q = np.repeat(postures(ARM, poses, np.random.default_rng(7)), each, axis=0)
+    found = lines_of_pull(ROBOT, read(make(ARM, rig, q=q), rig))
+    assert (found.says != "too-few") == enough
+    if enough:
+        np.testing.assert_allclose(found.pulley, rig.pulleys, atol=1e-5)
+
+
 @pytest.mark.parametrize("turn", [0.0, 1e-4])
 def test_a_tool_that_hardly_turns_cannot_tell_its_load_point(turn):
     """Poses that differ by place alone: the pulley moves with the load point, so the stated one is kept. Turned by a
     tenth of a mrad, a gap of 1 mm would still move the point by metres."""
     robot = rm.load_robot("slavkovic_5r")
     rng = np.random.default_rng(8)
-    x_M = np.concatenate([rng.uniform([-0.5, -1.6, -0.3], [0.5, -1.1, 0.1], (20, 3)), rng.uniform(-turn, turn, (20, 2))], axis=1)
+    x_M = np.concatenate(
+        [rng.uniform([-0.5, -1.6, -0.3], [0.5, -1.1, 0.1], (20, 3)), rng.uniform(-turn, turn, (20, 2))], axis=1
+    )
     T = rm.pose_from_world(x_M)
     point, pulley = np.array([0.05, 0.02, 0.1]), np.array([1.5, -3.0, 0.5])
     F = pulley - T[:, :3, 3] - T[:, :3, :3] @ point
