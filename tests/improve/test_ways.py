@@ -1,5 +1,7 @@
 """Paths that cut the same part otherwise, by their geometry."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -42,6 +44,28 @@ def test_turned_round_the_same_cuts_go_backwards_each_with_its_feed() -> None:
     np.testing.assert_allclose(np.delete(twice, stop, axis=0), PATH.p)
 
 
+def test_each_move_keeps_its_line_whichever_way_it_goes() -> None:
+    """Line 4 cuts along x and line 5 along y; round again, the tool starts where line 7 led and ends where 2 began."""
+    back, twice = turned_round(PATH, 0.0), in_levels(PATH, np.array([1e-3, 0.0]), 0.0)
+    for path in (PATH, back, twice):
+        step = np.diff(path.p, axis=0)
+        cut = path.cutting[1:] & (step[:, 2] == 0.0)
+        np.testing.assert_array_equal(path.block[1:][cut], np.where(step[cut, 0] != 0.0, 4, 5))
+    assert (back.block[0], back.block[-1]) == (7, 2)
+    between = twice.p[:, 2] > 5e-3 + 1.5e-3
+    np.testing.assert_array_equal(twice.block[between], 2)  # on their way to where line 2 stands
+
+
+def test_a_rapid_that_rises_aslant_is_stopped_on_its_line_and_waits_at_its_end_alone() -> None:
+    """From 4 mm under the stop to 2 mm above it: at two thirds of the way, leaning as the tool leant before."""
+    path = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [9, 0, -2], [18, 3, 4]], feed_mm_min=600)
+    path = replace(path, cutting=np.array([False, True, False]), dwell=np.array([0.0, 0.0, 3.0]))
+    back = turned_round(path, 0.0)
+    np.testing.assert_allclose(back.p * 1e3, [[18, 3, 4], [15, 2, 2], [9, 0, -2], [0, 0, -2]], atol=1e-12)
+    assert back.dwell.sum() == 3.0
+    np.testing.assert_array_equal(back.cutting, [False, False, True, True])
+
+
 def test_levels_end_on_the_path_and_go_over_the_part_between() -> None:
     path = in_levels(PATH, np.array([1e-3, 0.0]), 0.0)
     assert cuts(PATH) <= cuts(path)
@@ -49,6 +73,8 @@ def test_levels_end_on_the_path_and_go_over_the_part_between() -> None:
     assert cuts(path) == cuts(PATH) | raised
     aside = np.linalg.norm(np.diff(path.p[:, :2], axis=0), axis=1) > 1e-9
     rapid = aside & ~path.cutting[1:]
+    high = in_levels(PATH, np.array([1e-3, 0.0]), 7e-3)
+    assert high.p[:, 2].max() == pytest.approx(7e-3 + CLEAR)  # above the stock where that is higher than the path
     between = len(PATH)
     assert (path.p[between : between + 2, 2] >= 5e-3 + CLEAR - 1e-12).all()
     assert (path.p[1:][rapid][:, 2] >= -2e-3).all()
