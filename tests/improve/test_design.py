@@ -125,6 +125,14 @@ def test_the_front_falls_and_its_ends_are_the_cut_as_it_is_and_the_least() -> No
     assert front.share[0] == pytest.approx(front.share[-1] / 10.0, rel=1e-4)  # all joints ten times as stiff
 
 
+def test_the_front_of_joints_that_can_only_be_softer_is_the_stiffest_of_them() -> None:
+    """At most 0.8 times as stiff, the cut uses 1 / 0.8 of what it uses now."""
+    found = design(short(), 0.5e-3, bounds=(0.5, 0.8))
+    front = found.front(5)
+    np.testing.assert_allclose(front.share, [judged(found.before, found.measure).share / 0.8] * 5, rtol=1e-4)
+    assert (front.cost <= 5.0 * np.log2(0.8) + 1e-3).all()
+
+
 @pytest.mark.parametrize(
     ("name", "given", "words"),
     [

@@ -39,6 +39,10 @@ def sagging() -> rm.SimulationSetup:
     return slot().replace(links=links, add_sag=True)
 
 
+def balanced() -> rm.SimulationSetup:
+    return sagging().replace(add_sag=False)
+
+
 def stated_feed() -> rm.SimulationSetup:
     return slot().replace(tolerance_mm=(0.3, 0.2, 0.1))
 
@@ -58,7 +62,7 @@ def screened_and_simulated(setup: rm.SimulationSetup) -> tuple[dict, list[rm.Sim
     return found, [rm.simulate(setup.replace(T_MW=T)) for T in T_MW]
 
 
-@pytest.mark.parametrize("make", [slot, in_robot, on_part, bending, sagging, stated_feed, tools, arcs])
+@pytest.mark.parametrize("make", [slot, in_robot, on_part, bending, sagging, balanced, stated_feed, tools, arcs])
 def test_the_tip_is_where_a_full_simulation_has_it(make: Callable[[], rm.SimulationSetup]) -> None:
     found, full = screened_and_simulated(make())
     whole = len(full[0].path) <= 400
