@@ -83,6 +83,19 @@ def test_a_grid_has_about_as_many_places_as_asked_for(given: dict, count: tuple[
     assert places.tolist() == [list(each) for each in itertools.product(*axes)]
 
 
+@pytest.mark.parametrize("degrees", [5, 20, 60, 100, 200, 350])
+def test_a_part_of_a_turn_is_looked_at_from_end_to_end(degrees: int) -> None:
+    turns = np.degrees(area(setup(), {"yaw_deg": (30, 30 + degrees)}).axes(1000)[3])
+    np.testing.assert_allclose(turns[[0, -1]], [30, 30 + degrees])
+    assert np.diff(turns).max() <= 67.5  # never further apart than one and a half of 45 degrees
+    np.testing.assert_allclose(np.diff(turns), np.diff(turns)[0])
+
+
+@pytest.mark.parametrize("given", [{}, {"keep_out_mm": []}])
+def test_where_nothing_is_kept_out_of_no_place_is_met_not_even_the_robots_foot(given: dict) -> None:
+    assert not area(setup(), given).meets(np.zeros((1, 4))).any()
+
+
 def test_a_full_turn_has_no_place_twice() -> None:
     turns = area(setup(), {"yaw_deg": (-180, 180)}).axes(1000)[3]
     np.testing.assert_allclose(np.diff(turns), np.radians(45))

@@ -40,6 +40,14 @@ def test_every_reached_point_keeps_the_tolerance_and_the_worst_one_only_just(set
     assert found.residual < 1e-6
 
 
+def test_a_thousandth_of_the_force_within_a_thousandth_of_the_tolerance_asks_for_the_same(
+    setup: rm.SimulationSetup,
+) -> None:
+    grid = rm.box_grid(LOWER, UPPER, 0.2)
+    large, small = (rm.design_box(setup, grid, s * F, tolerance=s * 0.2e-3) for s in (1.0, 2e-3))
+    np.testing.assert_allclose(small.stiffness_ratio, large.stiffness_ratio, rtol=1e-6)
+
+
 def test_no_cheaper_stiffening_is_found_by_trying_them_all(setup: rm.SimulationSetup) -> None:
     """Joints 3 and 5 alone may be changed: a fine net over both."""
     grid = rm.box_grid(LOWER, UPPER, 0.2)

@@ -11,7 +11,7 @@ import pytest
 import robomill as rm
 from robomill.errors import CompensationError
 from robomill.improve import correction
-from robomill.improve.compensation import Compensation, checked_components, reversals
+from robomill.improve.compensation import Compensation, beside, checked_components, reversals
 from robomill.improve.errors import errors_of
 from robomill.io.samples import samples_dir
 
@@ -557,6 +557,24 @@ def test_rectangles_one_in_another_are_corrected_with_a_force_that_follows_the_c
     x, y, _ = np.abs(tip[legs & (np.abs(tip[:, :2]) > [6e-3, 4e-3]).any(axis=1)].T) * 1e3
     off = np.min([np.abs(x - 7.0), np.abs(x - 12.0), np.abs(y - 4.9), np.abs(y - 8.4)], axis=0)
     assert np.median(off) < 0.002
+
+
+def test_what_was_at_samples_of_a_path_is_found_beside_it_by_the_share_of_each_cut_that_is_gone() -> None:
+    """Two cuts of 10 and 20 mm; on the other path the first is twice as long and the second half."""
+    feed = [0, *[600] * 5, 0, *[600] * 5]
+    x = np.linspace(0.0, 1.0, 6)
+    path, other = (
+        rm.Toolpath.from_points(
+            p_mm=np.column_stack([np.append(a * x**power, 50 + b * x**power), np.zeros(12), np.full(12, -2.0)]),
+            feed_mm_min=feed,
+        )
+        for a, b, power in ((10, 20, 1), (20, 10, 2))
+    )
+    values = np.append(3.0 * x**2, 7.0 - 2.0 * x**2)[:, None] * [1.0, -2.0]
+    truth = np.append(3.0 * x, 7.0 - 2.0 * x)[:, None] * [1.0, -2.0]
+    found = beside(path, other, values)
+    np.testing.assert_allclose(found[path.cutting], truth[path.cutting], atol=1e-12)
+    assert not found[~path.cutting].any()
 
 
 @pytest.mark.parametrize("rule", ["least_motion", "least_deviation"])

@@ -1,5 +1,7 @@
 """Samples and moves of a program, and pieces against the corrections that they stand for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -49,6 +51,15 @@ def test_rapids_go_straight_up_and_down_beside_a_cut(moves: Moves) -> None:
     np.testing.assert_allclose(shift[[0, 1, 5, 6, 7, 9]][:, :2], np.tile([1e-4, -2e-4], (6, 1)), atol=1e-15)
     np.testing.assert_allclose(shift[[0, 5, 6, 9], 2], 0.0, atol=1e-15)
     np.testing.assert_allclose(shift[[1, 7], 2], 3e-4)
+
+
+def test_a_rapid_out_goes_aside_as_the_tool_stands_at_its_end(moves: Moves) -> None:
+    """The tool leans until the last sample of all: across its axis there, not across the one that it had before."""
+    last = np.arange(len(moves.owner)) == len(moves.owner) - 1
+    leaning = np.where(last[:, None], [0.0, 0.0, 1.0], [0.0, 0.6, 0.8])
+    turned = replace(moves, wanted=replace(moves.wanted, k=leaning))
+    c = np.where(moves.wanted.cutting[:, None], [1e-4, -2e-4, 3e-4], 0.0)
+    np.testing.assert_allclose((turned.corrected(c, 2e-6)[1] - moves.end)[9], [1e-4, -2e-4, 0.0], atol=1e-15)
 
 
 @pytest.mark.parametrize("bound", [1e-6, 5e-6, 20e-6])

@@ -40,6 +40,23 @@ def test_a_program_that_would_not_lead_where_it_should_is_never_given_out(monkey
         back.write(np.zeros_like(back.moves.wanted.p), 2e-6)
 
 
+@pytest.mark.parametrize(("was", "now"), [("N60 G0 Z20\n", ""), ("N60 G0 Z20\n", "N60 G0 Z20\nG0 X0\n")])
+def test_a_move_that_is_missing_or_too_many_at_the_end_is_told_by_the_last_line(
+    monkeypatch: pytest.MonkeyPatch, was: str, now: str
+) -> None:
+    honest = Rewriter.write
+
+    def wrong(self: Rewriter, *given: object) -> Rewritten:
+        found = honest(self, *given)  # type: ignore[arg-type]
+        assert was in found.text
+        return Rewritten(found.text.replace(was, now), found.made, found.unrolled)
+
+    monkeypatch.setattr(written.Rewriter, "write", wrong)
+    back = writing(SLOT, toolpath_to_gcode)
+    with pytest.raises(CompensationError, match=r"^Line 8: written back"):
+        back.write(np.zeros_like(back.moves.wanted.p), 2e-6)
+
+
 @pytest.mark.parametrize(
     ("text", "table", "words"),
     [
