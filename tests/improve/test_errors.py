@@ -1,0 +1,22 @@
+"""What is summed up of a gauge's readings, against integrals written out."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.improve.errors import errors_of
+
+RUN = rm.simulate(rm.load_setup("paper_flute").replace(step_mm=20))
+
+
+@pytest.mark.parametrize("length", [3.0, 0.0])
+def test_a_root_mean_square_is_over_the_length_and_over_the_readings_where_none_has_any(length: float) -> None:
+    """The squared error, a step function along the path, by a sum over millimetres."""
+    walls = RUN.gauge.walls
+    error = np.arange(1.0, len(walls.error) + 1.0) * 1e-5
+    each = length * np.arange(1, len(error) + 1)
+    steps = np.repeat(error, np.maximum(each, length == 0.0).astype(int))
+    gauge = replace(RUN.gauge, walls=replace(walls, error=error, length=each * 1e-3))
+    np.testing.assert_allclose(errors_of(RUN, gauge).wall, [error.max(), np.sqrt((steps**2).sum() / len(steps))])
