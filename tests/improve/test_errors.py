@@ -20,3 +20,12 @@ def test_a_root_mean_square_is_over_the_length_and_over_the_readings_where_none_
     steps = np.repeat(error, np.maximum(each, length == 0.0).astype(int))
     gauge = replace(RUN.gauge, walls=replace(walls, error=error, length=each * 1e-3))
     np.testing.assert_allclose(errors_of(RUN, gauge).wall, [error.max(), np.sqrt((steps**2).sum() / len(steps))])
+
+
+def test_the_feeds_error_is_along_the_way_the_tool_goes_or_of_an_end_whichever_is_more() -> None:
+    """The slot is straight: along x of the part."""
+    along = np.abs(RUN.delta[RUN.judged] @ RUN.setup.T_MW[:3, 0]).max()
+    for ends in (0.0, 2.0 * along):
+        error = np.full(len(RUN.gauge.ends.error), -ends)
+        gauge = replace(RUN.gauge, ends=replace(RUN.gauge.ends, error=error))
+        assert errors_of(RUN, gauge).feed == pytest.approx(max(along, ends), rel=1e-12)

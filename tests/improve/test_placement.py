@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from random_arms import seven
 
 import robomill as rm
 from robomill.errors import SetupError
-from robomill.improve.placed import FINE, FINEST, KEPT_OUT, NO_ROOM, UNREACHED, Placement
-from robomill.improve.placement import place
+from robomill.improve.area import area
+from robomill.improve.placed import FINE, FINEST, KEPT_OUT, NO_ROOM, UNREACHED, Place, Placement
+from robomill.improve.placement import _Search, place
 from robomill.io.samples import samples_dir
 from robomill.kinematics.transforms import rotation_z, transform
 from robomill.simulation.given import part_frame
@@ -49,6 +53,29 @@ def test_the_best_place_of_a_pocket_is_as_good_as_any_beside_it() -> None:
         at = np.append(found.best.zero[:2] + np.array([dx, dy]) * FINEST[:2], found.best.zero[2])
         beside = rm.simulate(setup.replace(part_zero=np.clip(at, [-0.2, -1.4, -9], [0.2, -1.2, 9])))
         assert found.best.share <= beside.verdict.share * 1.01
+
+
+class Bowl(_Search):
+    """What full runs say is a bowl about (0.08, -1.28), no room being left beyond x = 0.05; the screen knows nothing."""
+
+    def simulated(self, at: np.ndarray) -> tuple[Place, Any]:
+        share = 0.2 + ((at[:2] - [0.08, -1.28]) ** 2).sum()
+        room = 0.2 if at[0] <= 0.05 else 0.0
+        return Place(at[:3], at[3], share, 0.0, 0.0, 0.0, 0.0, "ok", "", room, 1.0), None
+
+    def _look(self, looking: Any, places: np.ndarray) -> tuple[Any, np.ndarray]:
+        return SimpleNamespace(share=lambda *_: np.zeros(len(places))), np.zeros(len(places))
+
+
+def test_where_the_screen_is_no_measure_full_runs_lead_to_the_best_place_that_is_allowed() -> None:
+    """The foot of the bowl lies beyond; of the half-plane that is allowed (0.05, -1.28) is nearest to it."""
+    here = area(slot(), {"x_mm": (-100, 100), "y_mm": (-1400, -1200)})
+    search, start = Bowl(slot(), here, "verdict", 0.1), np.array([0.02, -1.31, 0.002, 0.0])
+    axes = [np.linspace(-0.1, 0.1, 6), np.linspace(-1.4, -1.2, 6), np.array([0.002]), np.array([0.0])]
+    looking = SimpleNamespace(reference=SimpleNamespace(path=range(50)))
+    found = search._polished(search.simulated(start)[0], start, looking, axes)
+    np.testing.assert_allclose(found.zero[:2], [0.05, -1.28], atol=3e-3)
+    assert found.room >= 0.1
 
 
 def test_what_is_said_of_a_place_is_its_full_simulation() -> None:

@@ -62,6 +62,17 @@ def test_a_rapid_out_goes_aside_as_the_tool_stands_at_its_end(moves: Moves) -> N
     np.testing.assert_allclose((turned.corrected(c, 2e-6)[1] - moves.end)[9], [1e-4, -2e-4, 0.0], atol=1e-15)
 
 
+def test_a_rapid_that_goes_nowhere_first_of_all_is_moved_across_the_tool_as_it_stands_there() -> None:
+    text = "G21 G90\nG0 X0 Y0 Z0\nG0 Z-2\nG1 X20 F600\nG0 Z9\nM2\n"
+    moves = Moves.of_program(SLOT.replace(source=rm.GCodeSource(text, "x.nc")), interpret(text))
+    first = np.arange(len(moves.owner)) == 0
+    k = np.where(first[:, None], [0.0, 0.6, 0.8], [0.0, 0.0, 1.0])
+    c = np.where((moves.owner > 0)[:, None], [1e-4, -2e-4, 3e-4], 0.0)
+    leaning = replace(moves, wanted=replace(moves.wanted, k=k))
+    led = (leaning.corrected(c, 2e-6)[1] - moves.end)[0]
+    np.testing.assert_allclose(led, np.cross(k[0], np.cross([1e-4, -2e-4, 3e-4], k[0])), atol=1e-15)
+
+
 @pytest.mark.parametrize("bound", [1e-6, 5e-6, 20e-6])
 def test_pieces_stay_within_their_bound_and_are_fewer_the_wider_it_is(moves: Moves, bound: float) -> None:
     p = moves.wanted.p

@@ -197,7 +197,7 @@ def test_what_draws_differ_by_is_told_of_the_tolerance_that_the_error_has() -> N
 
 
 def test_the_same_seed_gives_the_same_numbers_and_another_others() -> None:
-    one, again, other = (rm.uncertainty(slot(), samples=50, seed=seed) for seed in (1, 1, 2))
+    one, again, other = (rm.uncertainty(slot(), samples=50, seed=seed) for seed in (2**60 + 1, 2**60 + 1, 2**60))
     assert one == again
     assert one != other
     np.testing.assert_array_equal(one.share, again.share)
@@ -233,6 +233,7 @@ def test_a_table_of_the_draws_and_one_of_the_inputs() -> None:
         ("Measure: found 'speed', expected verdict", {"measure": "speed"}),
         ("samples: found 1, expected a whole number", {"samples": 1}),
         ("seed: found -1", {"seed": -1}),
+        ("seed: found 18446744073709551616", {"seed": 2**64}),
         ("spread: expected a Spread, found 0.1", {"spread": 0.1}),
     ],
 )
