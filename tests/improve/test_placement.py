@@ -56,7 +56,7 @@ def test_the_best_place_of_a_pocket_is_as_good_as_any_beside_it() -> None:
 
 
 class Bowl(_Search):
-    """What full runs say is a bowl about (0.08, -1.28), no room being left beyond x = 0.05; the screen knows nothing."""
+    """Full runs say a bowl about (0.08, -1.28), with no room left beyond x = 0.05; the screen knows nothing."""
 
     def simulated(self, at: np.ndarray) -> tuple[Place, Any]:
         share = 0.2 + ((at[:2] - [0.08, -1.28]) ** 2).sum()
