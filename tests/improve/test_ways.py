@@ -52,8 +52,9 @@ def test_each_move_keeps_its_line_whichever_way_it_goes() -> None:
         cut = path.cutting[1:] & (step[:, 2] == 0.0)
         np.testing.assert_array_equal(path.block[1:][cut], np.where(step[cut, 0] != 0.0, 4, 5))
     assert (back.block[0], back.block[-1]) == (7, 2)
-    between = twice.p[:, 2] > 5e-3 + 1.5e-3
-    np.testing.assert_array_equal(twice.block[between], 2)  # on their way to where line 2 stands
+    three = rm.Toolpath.from_points(p_mm=[[0, 0, -1], [9, 0, -1], [9, 5, -1]], feed_mm_min=600)
+    levels = in_levels(replace(three, block=np.array([4, 5, 6])), np.array([1e-3, 0.0]), 0.0)
+    np.testing.assert_array_equal(levels.block, [4, 5, 6, 4, 4, 4, 5, 6])  # over to where line 4 leads
 
 
 def test_a_rapid_that_rises_aslant_is_stopped_on_its_line_and_waits_at_its_end_alone() -> None:
