@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import robomill as rm
+from robomill.identification.other_axes import axes_suspicions
 from tests.identification.cables import Arm, Rig, as_csv, make
 
 ARM, ROBOT = Arm.of("kuka_kr270"), rm.load_robot("kuka_kr270")
@@ -52,6 +55,14 @@ def test_no_other_axes_are_sought_where_a_moment_is_stated():
     moment = np.zeros((30, 3))
     moment[::2, 2] = 1e-3
     assert "axes" not in said(ROBOT, np.hstack([in_tool(MADE.F), moment]), in_tool(MADE.moved))
+
+
+def test_no_other_axes_are_sought_where_cables_are_aimed() -> None:
+    """A force that is calculated from its pulley has the axes that the pulley is told in."""
+    pulley = np.where((np.arange(30) % 2 == 0)[:, None], [3.4, -2.2, 1.6], np.nan)
+    free = rm.LoadTests(in_tool(MADE.F), in_tool(MADE.moved), theta=MADE.q)
+    assert [f.code for f in axes_suspicions(ROBOT, free)] == ["axes"]
+    assert axes_suspicions(ROBOT, replace(free, pulley=pulley)) == ()
 
 
 @pytest.mark.parametrize("name", ["a", "d"])
