@@ -141,7 +141,8 @@ class Inquiry:
         w, signed = 1.0 / self.system.noise, self.system.signed
         x = bounded_solution(terms[:, 0] * w[:, None], self.system.b * w, signed)
         still = np.zeros(3 * len(self.freed))
-        base = np.concatenate([terms[:, 0], slopes(terms, x, still, self.freed)], axis=1)
+        told = np.isfinite(column_scale(terms[:, 0]))  # a joint on whose axis the tip lies has a column of rounding
+        base = np.concatenate([terms[:, 0] * told, slopes(terms, x, still, self.freed)], axis=1)
         extra = base[:, :0] if cause is None else self._extra(tests, cause, x)
         free = np.ones(len(still), dtype=bool)
         spring = cause is not None and cause.kind in ("bending", "tool")
@@ -234,12 +235,14 @@ class Inquiry:
         return float(stdtr(spare - 2, -r * np.sqrt((spare - 2) / max(1.0 - r * r, 1e-12))))
 
     def _triangle(self, columns: _Columns) -> FloatArray:
-        return triangle(columns.whole / column_scale(columns.whole), self.system.b / self.system.noise)
+        size = np.linalg.norm(columns.whole, axis=0)
+        return triangle(columns.whole / np.where(size > 0, size, 1.0), self.system.b / self.system.noise)
 
     def _free(self, columns: _Columns) -> FloatArray:
         """The unbounded fit."""
+        size = np.linalg.norm(columns.whole, axis=0)
         R = self._triangle(columns)
-        return np.asarray(np.linalg.lstsq(R[:, :-1], R[:, -1], rcond=RANK)[0] / column_scale(columns.whole))
+        return np.asarray(np.linalg.lstsq(R[:, :-1], R[:, -1], rcond=RANK)[0]) / np.where(size > 0, size, 1.0)
 
     def _half(self, columns: _Columns) -> float:
         """Half the 95 % interval of the last coordinate."""

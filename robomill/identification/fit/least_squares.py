@@ -178,7 +178,8 @@ def robust_fit(A: FloatArray, b: FloatArray) -> RobustFit:
 
     Works in an orthonormal basis of the columns, where the small normal equations are well conditioned.
     """
-    scaled = A / column_scale(A)
+    norms = np.linalg.norm(A, axis=0)
+    scaled = A / np.where(norms > 0, norms, 1.0)
     _, values, Vt = np.linalg.svd(triangle(scaled, b)[:, :-1], full_matrices=False)
     keep = values > NULL * max(float(values.max(initial=0.0)), 1e-300)
     B = scaled @ (Vt[keep].T / values[keep])

@@ -148,6 +148,14 @@ def left_by_joints(q, F, moved):
     return (moved.ravel() - A / size @ z).reshape(-1, 3), (A / size @ z).reshape(-1, 3)
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_readings_that_springs_make_exactly_show_no_growth(sign):
+    plain = pulled(count=8, noise=0.0)
+    F = sign * plain.wrench[:, :3]
+    made = left_by_joints(plain.theta, F, sign * plain.displacement[:, :3])[1]
+    assert np.isnan(rm.identify(ROBOT, rm.LoadTests(F, made, theta=plain.theta)).inquest.growth)
+
+
 @pytest.mark.parametrize(("part", "noise"), [(1.0, 2e-5), (0.01, 2e-11)])
 def test_growth_is_a_rank_correlation_with_the_spare_readings_for_its_freedom(part, noise):
     """Twenty-four readings, five springs: Spearman's rank correlation, and Student's t of 24 - 5 - 2 degrees; under a
