@@ -104,9 +104,9 @@ def _by_height(g: Push, free: FloatArray, axis: FloatArray) -> Settled:
         if not low < high:
             break
         after, at_low, at_high = _halved(g, aside + low * axis, (high - low) * axis)
-        nearer = np.isnan(found.rest) or after.rest < found.rest
-        found = replace(after if nearer else found, evaluations=found.evaluations + after.evaluations)
-        if found.agreed or not np.isfinite(after.rest):
+        closes = np.isnan(found.rest) or after.rest < 0.5 * found.rest
+        found = replace(after if closes else found, evaluations=found.evaluations + after.evaluations)
+        if found.agreed or not closes:
             break
         share, height = after.mix[0][1], float(after.x @ axis)
         aside, ends = share * at_low + (1.0 - share) * at_high, (height - TOLERANCE, height + TOLERANCE)

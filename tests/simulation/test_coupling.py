@@ -378,8 +378,8 @@ def test_how_often_the_force_was_asked_for_is_counted(seed):
     np.testing.assert_allclose(found.x, wall * push * along, atol=TOLERANCE)
     assert found.evaluations == len(asked)
     halvings = np.ceil(np.log2(back * push / NARROW))
-    looks = 2 + 2 * np.ceil(np.log2(LONGEST / TOLERANCE))  # for a floor that the tool might rest on
-    assert found.evaluations <= MOST + looks + halvings + 2 + 2 + halvings
+    floor = 2 * np.ceil(np.log2(LONGEST / TOLERANCE)) + 2 + halvings  # looked for twice: does the tool rest on one?
+    assert found.evaluations <= MOST + 2 * floor + 2 + 2 + halvings
     ((there, low), (here, high)) = found.mix
     assert low + high == pytest.approx(1.0)
     both = (low * bends(there) + high * bends(here)) @ along / push
