@@ -12,13 +12,14 @@ from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
 from robomill.toolpath.gcode.fanuc.cycles import FANUC_WORDS
 from robomill.toolpath.gcode.foreign import meant_elsewhere
+from robomill.toolpath.gcode.grbl import for_controller
 from robomill.toolpath.gcode.machine import UNITS, Machine
 from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
 from robomill.toolpath.gcode.rules.motion_rules import LINE, is_arc
 from robomill.toolpath.gcode.scan import COMMENT
 from robomill.toolpath.gcode.sinumerik.lines import translated
 from robomill.toolpath.gcode.tilted import of_fanuc
-from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.gcode.words import Block, flattened
 from robomill.units import to_si
 
 NAMES = ("linuxcnc", "fanuc", "grbl", "sinumerik", "heidenhain")
@@ -144,6 +145,8 @@ class Dialect:
         """The line in LinuxCNC's words; what is left out on the way is noted."""
         findings = machine.findings
         raw = plain_numbers(raw, number, findings)
+        if not self.strict and raw.count("(") > 1:
+            raw = flattened(raw)
         if raw[:1] == ":" and not self.strict and _MAIN_BLOCK.match(raw):
             raw = "N" + raw[1:]
         if self.name == "sinumerik" and len(raw) <= 10 * LONGEST:
@@ -170,7 +173,7 @@ class Dialect:
         if self._is_fanuc_like:
             return _DWELL.sub(r"\1P", _take_corner(raw, machine)) if not self.strict else raw
         if self.name == "grbl" and raw.lstrip()[:1] in ("$", "!", "~", "?"):
-            return _from_grbl(raw, number, findings)
+            return for_controller(raw, number, findings)
         return raw
 
     @property
@@ -197,13 +200,18 @@ class Dialect:
                     f"{g_name(unit)} stands beside other words, which count in {UNITS[unit]} here; Fanuc controls want"
                 )
                 machine.note("units-beside", "warning", f"{text} it on a line of its own, before any place")
+        if self.name == "fanuc" and block.g.get(modal.NON_MODAL) == 921:
+            for letter in "xyzabc":  # which axes it presets; nothing moves
+                block.words.pop(letter, None)
         motion = block.g.get(modal.MOTION, machine.motion)
         if self.name == "fanuc" and is_arc(motion) and "r" in block.words and block.words.keys() & {"i", "j", "k"}:
             for letter in "ijk":
                 block.words.pop(letter, None)
             machine.note("radius-counts", "info", "an arc with R and I, J or K is that of R, as on Fanuc controls")
-        if self.name == "fanuc" and modal.DIAMETER in block.g:
-            raise block.refuse(f"{g_name(block.g[modal.DIAMETER])} of a Fanuc control is not read; remove the word.")
+        if self.name in ("fanuc", "sinumerik") and modal.DIAMETER in block.g:
+            raise block.refuse(
+                f"{g_name(block.g[modal.DIAMETER])} of a {self.name.title()} control is not read; remove it."
+            )
         if self.name == "sinumerik" and block.g.get(modal.COORDINATES) in (580, 590):
             raise block.refuse(
                 f"{g_name(block.g[modal.COORDINATES])} shifts coordinates on a Sinumerik, which is not read; write "
@@ -268,7 +276,8 @@ class Dialect:
             code = [*block.unknown_m, block.m.get(modal.USER)][0]
             machine.note("unused-word", "ignored", f"{letter.upper()} beside M{code} is left out with it")
             return
-        if self.name == "linuxcnc" or letter in "ijkr":
+        powered = letter == "p" and modal.SPINDLE in block.m and not self.strict  # Snapmaker's M3 P100
+        if (self.name == "linuxcnc" and not powered) or letter in "ijkr":
             raise block.refuse(f"{letter.upper()} has no use here; it needs {use} on its line.")
         machine.note("unused-word", "ignored", f"{letter.upper()} without {use} is left out")
 
@@ -389,11 +398,3 @@ def _named(found: re.Match[str]) -> str:
     code = re.match(r"[A-Z]+[\d.]*", found[0].upper())
     assert code is not None
     return code[0]
-
-
-def _from_grbl(raw: str, number: int, findings: Findings) -> str:
-    text = raw.strip().upper()
-    if text.startswith(("$H", "$J")):
-        raise GCodeError.at(number, f"{text[:2]} moves the machine in a way the program does not say; remove it.")
-    findings.add("controller-line", "ignored", number, "lines for the controller ($, !, ~, ?) are left out")
-    return ""

@@ -119,6 +119,9 @@ def _execute_g(machine: Machine, block: Block, plain: list[float]) -> None:
         diameter = g[modal.DIAMETER] == 70
         if diameter != machine.diameter_mode and "x" in block.words:
             block.words["x"] *= 0.5 if diameter else 2.0
+        if diameter and not machine.strict:
+            text = "G7: X counts as a diameter from here on, as on LinuxCNC's lathes; remove it from a mill's program"
+            machine.note("diameters", "warning", text)
         machine.diameter_mode = diameter
     if modal.COMPENSATION in g:
         if g[modal.COMPENSATION] == 400:

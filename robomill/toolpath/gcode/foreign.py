@@ -84,6 +84,11 @@ _TOLD = (
     ("URScript or VAL3", r"def[ \t]+\w+\([^\n]*\):|[ \t]*(?:movel|movej|movep|set_tcp)[ \t]*\("),
     ("Okuma's OSP", r"\$[\w-]+\.(?:MIN|SSB|SUB|LIB)\b|[^(;\n]*\bG15[ \t]*H[ \t]*\d"),
     ("a 3D printer's G-code", r"[ \t]*(?:N\d+[ \t]*)?(?:G92[ \t]*E[ \t]*-?[\d.]|M1(?:04|09)[ \t]+S\d)"),
+    (
+        "Fagor's language",
+        r"%[^\n,]*,M[XYZ]*,|(?:N\d+[ \t]*)?\((?:RPT|GOTO)[ \t]*N\d|(?:N\d+[ \t]*)?\(CALL[ \t]*\d+\)[ \t]*$",
+    ),
+    ("OSAI's language", r"(?:N\d+[ \t]*)?\((?:U[TA]O|RPT|DIS|TMR),|(?:N\d+[ \t]*)?\(ERP\)[ \t]*$"),
     ("HPGL (a plotter's language)", r"(?:IN|PU|PD|SP\d?);"),
     ("a DXF drawing", r"[ \t]*0[ \t]*\n[ \t]*SECTION\b"),
     ("an STL surface", r"solid[ \t]*\w*[^\n]*\n[ \t]*facet\b"),

@@ -48,3 +48,12 @@ def check_grbl(data: bytes, stated: bool, findings: Findings) -> None:
             return
         if _END.search(line):
             return
+
+
+def for_controller(raw: str, number: int, findings: Findings) -> str:
+    """What is left of a line for the controller: nothing, or a refusal of what would move the machine."""
+    text = raw.strip().upper()
+    if text.startswith(("$H", "$J")):
+        raise GCodeError.at(number, f"{text[:2]} moves the machine in a way the program does not say; remove it.")
+    findings.add("controller-line", "ignored", number, "lines for the controller ($, !, ~, ?) are left out")
+    return ""

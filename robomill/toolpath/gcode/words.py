@@ -43,6 +43,9 @@ class Block:
         return GCodeError.at(self.line, message)
 
 
+_BRACKETS = str.maketrans("()", "[]")
+
+
 def normalise(raw: str, line: int) -> str:
     """``raw`` in lower case without blanks; what is in ``( )`` and after ``;`` stays as written."""
     if "(" not in raw and ";" not in raw:
@@ -64,6 +67,23 @@ def normalise(raw: str, line: int) -> str:
         out += [raw[at:bracket].translate(_BLANKS).lower(), raw[bracket : close + 1]]
         at = close + 1
     return "".join(out)
+
+
+def flattened(raw: str) -> str:
+    """``raw`` with brackets for the parentheses within its comments: ``(DRILL (HSS))`` is one comment where they pair,
+    else it ends at the first that closes, as on grbl and on Fanuc's controls."""
+    out, at = "", 0
+    while (begin := raw.find("(", at)) >= 0 and ";" not in raw[at:begin]:
+        depth, end = 1, begin + 1
+        while end < len(raw) and depth:
+            depth += {"(": 1, ")": -1}.get(raw[end], 0)
+            end += 1
+        end = raw.find(")", begin) + 1 if depth else end
+        if end == 0:
+            break
+        out += f"{raw[at:begin]}({raw[begin + 1 : end - 1].translate(_BRACKETS)})"
+        at = end
+    return out + raw[at:]
 
 
 def skip_number(reader: Reader) -> None:

@@ -367,3 +367,37 @@ def test_the_limits_of_the_machine_are_no_move() -> None:
         "G21 G90 S1 M3\nG0 X5.\nG22 X100. Y100. Z100. I0 J0 K0\nG22 X9. Y9. Z9.\nG23\n", dialect="fanuc"
     )
     assert (program.end * 1e3).tolist() == [[5.0, 0.0, 0.0]]
+
+
+COMMENTS = "G21 G90\n(DRILL (HSS) )\nG0 X5\n(Tool: 3 (6mm)\nG1 X9 F100 (a (b)) Y2 (c)\n; (d (e\nM2\n"
+
+
+@pytest.mark.parametrize("dialect", ["auto", "fanuc", "grbl"])
+def test_comments_within_comments_are_one_where_they_pair_and_end_at_the_first_else(dialect: str) -> None:
+    with pytest.raises(GCodeError, match="Line 2: a comment holds another"):
+        interpret(COMMENTS, dialect="linuxcnc")
+    program = interpret(COMMENTS, dialect=dialect)
+    assert (program.end * 1e3).tolist() == [pytest.approx([5, 0, 0]), pytest.approx([9, 2, 0])]
+
+
+@pytest.mark.parametrize("line", ["M3 P100", "M4 P50", "P12.5 M3"])
+def test_a_power_beside_the_spindle_is_left_out(line: str) -> None:
+    """Snapmaker's posts write it; where LinuxCNC is stated it is refused, as LinuxCNC does."""
+    text = f"G21 G90\n{line}\nG0 X5\nG1 X9 F100\nM5\nM2\n"
+    assert [f.code for f in interpret(text).findings if f.line == 2] == ["unused-word"]
+    with pytest.raises(GCodeError, match="P has no use here"):
+        interpret(text, dialect="linuxcnc")
+
+
+@pytest.mark.parametrize(("word", "code"), [("G7", "diameters"), ("G101 X0", "mirror")])
+def test_what_halves_or_mirrors_x_is_said(word: str, code: str) -> None:
+    found = interpret(f"G21 G90\n{word}\nG0 X50\nG1 X60 F100\nM30\n").findings
+    assert [(f.code, f.line) for f in found if f.line] == [(code, 2)]
+
+
+def test_a_preset_of_the_workpiece_moves_nothing() -> None:
+    text = "O0001\nG21 G90\nG0 X50. Y50. Z20.\nG92.1 X0 Y0 Z0\nG1 X60. F100.\nM30\n"
+    assert (interpret(text, dialect="fanuc").end * 1e3).tolist() == [
+        pytest.approx([50, 50, 20]),
+        pytest.approx([60, 50, 20]),
+    ]

@@ -101,3 +101,20 @@ def test_m70_to_m73_are_the_machine_makers_but_on_linuxcnc(dialect: str) -> None
     assert len(interpret("G21 G90\nM72\nG0 X5\nM30\n", dialect=dialect)) == 1
     linuxcnc = interpret("G21 G90\nM70\nG91\nG0 X5\nM72\nX5\nM30\n", dialect="linuxcnc")
     assert (linuxcnc.end[:, 0] * 1e3).tolist() == pytest.approx([5, 5])
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "name"),
+    [
+        ("%PRUEBA,MX,\nG0 X5\n", 1, "Fagor"),
+        ("G0 X5\nN30 (RPT N20,N25)\n", 2, "Fagor"),
+        ("G0 X5\n(CALL 10)\n", 2, "Fagor"),
+        ("N1 G0 X5\nN2 (UTO,1,X100)\n", 2, "OSAI"),
+        ("(RPT,3)\nG91 X5\n(ERP)\n", 1, "OSAI"),
+    ],
+)
+def test_controls_whose_commands_stand_in_brackets_are_named(text: str, line: int, name: str) -> None:
+    """Read as comments they would be left out without a word."""
+    with pytest.raises(GCodeError, match=f"Line {line}: this is {name}"):
+        interpret(text)
+    assert len(interpret("(CALL 10 IF IT BREAKS)\n(RPT 3 TIMES)\nG0 X5\n")) == 1

@@ -44,6 +44,7 @@ def scales(machine: Machine, block: Block, code: int) -> bool:
         if not given.keys() & set("xyz"):
             raise block.refuse(f"{_CODES[code]} needs the axes that it mirrors, as in {_CODES[code]} X0.")
         if code == 1010:  # about part zero, whatever its words say
+            machine.note("mirror", "info", "G101 is read as Haas's mirror image about part zero")
             centre = tuple(0.0 if letter in given else at for letter, at in zip("xyz", centre))
         before = machine.scale.factors if machine.scale is not None else (1.0, 1.0, 1.0)
         factors = tuple(-1.0 if letter in given else old for letter, old in zip("xyz", before))

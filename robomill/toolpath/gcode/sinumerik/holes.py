@@ -99,6 +99,16 @@ class Holes(MacroCalls):
         machine.p = end
 
 
+COARSE = dict(
+    zip(
+        (3, 4, 5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 27, 30, 33, 36, 39, 42, 45, 48),
+        (0.5, 0.7, 0.8, 1, 1.25, 1.5, 1.75, 2, 2, 2.5, 2.5, 2.5, 3, 3, 3.5, 3.5, 4, 4, 4.5, 4.5, 5),
+        strict=True,
+    )
+)
+"""mm: pitch of coarse metric threads by their size, M3 to M48 (ISO 261)."""
+
+
 def drilling_cycle(kind: str, given: list[float], factor: float, line: int) -> Hole:
     """CYCLE81 to 89 by its ``kind`` ("83") and what is ``given`` in its brackets (NaN for nothing), lengths in program
     units of ``factor`` m."""
@@ -124,9 +134,11 @@ def drilling_cycle(kind: str, given: list[float], factor: float, line: int) -> H
 
 def _tapped(given: list[float], factor: float, line: int) -> tuple[float, tuple[float, float]]:
     """CYCLE84: its pitch, in program units or by _PITA in mm, and turns (1/min) in and out: SST, and SST1 or SST."""
-    _, pitch, _, going_in, out, _, unit = (0.0 if math.isnan(each) else abs(each) for each in given[7:14])
+    size, pitch, _, going_in, out, _, unit = (0.0 if math.isnan(each) else abs(each) for each in given[7:14])
+    if pitch == 0.0 and size in COARSE:
+        return COARSE[size] * 1e-3 / factor, (going_in, out or going_in)
     if pitch == 0.0:
-        raise GCodeError.at(line, "CYCLE84 needs PIT, its pitch, which MPIT does not say here; give it.")
+        raise GCodeError.at(line, "CYCLE84 needs PIT, its pitch, or MPIT, the size of its thread (3 to 48); give it.")
     if unit not in (0.0, 1.0):
         raise GCodeError.at(line, f"CYCLE84 has its pitch by _PITA {unit:g}; expected 0 or 1, a length.")
     return pitch * (1e-3 / factor if unit else 1.0), (going_in, out or going_in)

@@ -73,8 +73,6 @@ class SinumerikPolar(SinumerikShapes):
     def _to_polar(self, code: str, line: int) -> str:
         """AP= and RP= as X and Y; an arc without a form of its own turns about the pole."""
         self._in_plane("AP", line)
-        if self.middle is None:
-            raise GCodeError.at(line, "AP and RP count from a pole; give G111 X Y before.")
         if not self._absolute(code):
             raise GCodeError.at(line, "AP and RP in G91 are not read; write them in G90, and steps as AP=IC( ).")
         said: dict[str, tuple[str, float]] = {}
@@ -90,7 +88,7 @@ class SinumerikPolar(SinumerikShapes):
             text = "AP=IC( ) needs an AP before it, and RP, a radius of 0 or more, is given once at least"
             raise GCodeError.at(line, f"a polar place needs its angle AP and radius RP; {text}.")
         self.polar_angle, self.polar_radius = angle, radius
-        u, v = self.middle
+        u, v = self.middle or (0.0, 0.0)  # without a pole: the zero of the part
         x, y = polar(radius, math.radians(angle), u, v)
         form = ""
         if self._motion(code) in (2, 3) and not _FORM.search(code):

@@ -53,7 +53,6 @@ def test_arcs_by_their_angle_beside_end_or_centre() -> None:
 @pytest.mark.parametrize(
     ("body", "says"),
     [
-        ("G1 AP=0 RP=1\n", "Line 3: AP and RP count from a pole; give G111"),
         ("G111 X5\n", "Line 3: G111 needs X and Y"),
         ("G112 X5 Y5\n", "Line 3: G112 needs X and Y, and G112 a pole before it"),
         ("G111 X0 Y0\nG91 G1 AP=0 RP=1\n", "Line 4: AP and RP in G91 are not read"),
@@ -68,3 +67,10 @@ def test_arcs_by_their_angle_beside_end_or_centre() -> None:
 def test_what_cannot_be_reckoned_is_refused(body: str, says: str) -> None:
     with pytest.raises(GCodeError, match=says):
         read(body)
+
+
+def test_without_a_pole_it_is_the_zero_of_the_part() -> None:
+    program = interpret(
+        "G71 G90 G17\nTRANS X5 Y1\nG0 X0 Y0 Z5\nG1 AP=90 RP=20 F100\nAP=180\nM30\n", dialect="sinumerik"
+    )
+    np.testing.assert_allclose(program.end[-2:] * 1e3, [[5, 21, 5], [-15, 1, 5]], atol=1e-9)

@@ -235,7 +235,7 @@ def test_corners_are_rounded_and_chamfered() -> None:
         ("TRANS X10\nG55\n", "Line 3: G55 while coordinates are shifted or turned"),
         ("CYCLE81(50,0)\n", "Line 2: CYCLE81 needs RTP, RFP and DP or DPR"),
         ("CYCLE81(50,0,2,5)\n", "Line 2: CYCLE81: expected RTP above RFP + SDIS, and the depth below"),
-        ("CYCLE84(50,0,2,-10,,0,5,8)\n", "Line 2: CYCLE84 needs PIT"),
+        ("CYCLE84(50,0,2,-10,,0,5,7)\n", "Line 2: CYCLE84 needs PIT"),
         ("CYCLE84(50,0,2,-10,,0,5,,1,0,90,90,0,2)\n", "Line 2: CYCLE84 has its pitch by _PITA 2"),
         ("G1 X9 FB=300\n", "Line 2: FB= is the feed of its block alone"),
         ("G1 X9 FB=R1*2\n", "Line 2: FB= is the feed of its block alone"),
@@ -406,3 +406,22 @@ def test_a_cycle_that_mcall_holds_is_made_behind_every_line_that_moves() -> None
     program = interpret(text, dialect="sinumerik")
     depths = program.end[program.kind == 1] * 1e3
     np.testing.assert_allclose(depths, [[10, 10, -5], [10, 10, -5], [20, 20, -5]], atol=1e-9)
+
+
+@pytest.mark.parametrize(("size", "pitch"), [(8, 1.25), (10, 1.5), (3, 0.5), (48, 5.0)])
+def test_a_thread_of_a_stated_size_has_its_coarse_pitch(size: int, pitch: float) -> None:
+    """M8 taps with 1.25 mm a turn; at 120 turns a minute that is 2.5 mm/s."""
+    head = "G71 G90\nG0 X0 Y0 Z9 S100 M3\n"
+    program = interpret(f"{head}CYCLE84(9,0,1,-5,,0,3,{size},,0,120,120)\nM30\n", dialect="sinumerik")
+    assert program.v_f[program.thread].max() == pytest.approx(2.0e-3 * pitch)
+    with pytest.raises(GCodeError, match="needs PIT"):
+        interpret(f"{head}CYCLE84(9,0,1,-5,,0,3,7.5,,0,120,120)\nM30\n", dialect="sinumerik")
+
+
+@pytest.mark.parametrize(
+    "word", ["DYNNORM", "DYNROUGH", "DYNSEMIFIN", "DYNFINISH", "DYNPOS", "DYNPREC", "RTLION", "RTLIOF"]
+)
+def test_dynamics_move_nothing(word: str) -> None:
+    program = interpret(f"G71 G90\n{word}\nG0 X5\nM30\n", dialect="sinumerik")
+    assert [(f.code, f.line) for f in program.findings if f.line] == [("harmless-word", 2)]
+    assert (program.end * 1e3).tolist() == [pytest.approx([5, 0, 0])]
