@@ -6,7 +6,8 @@ from pathlib import Path, PurePath
 from robomill.arguments import asked
 from robomill.errors import ToolpathError, UnitAskedError
 from robomill.files import DRAWING, check_size, name_of, read_file
-from robomill.io.drawing.dxf import Dxf, Read, metres
+from robomill.io.drawing.dxf import Dxf
+from robomill.io.drawing.reading import Read, metres
 from robomill.io.drawing.svg import Svg
 from robomill.io.samples import sample_or_file
 from robomill.provenance import Finding

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from robomill.errors import ToolpathError
 from robomill.extras import needed
-from robomill.io.drawing.dxf import PER_INCH, STUMBLES, Read, Reading, metres
+from robomill.io.drawing.reading import PER_INCH, STUMBLES, Read, Reading, metres
 from robomill.io.drawing.svg_viewports import (
     ABSOLUTE,
     NOT_DRAWN,

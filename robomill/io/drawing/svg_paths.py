@@ -8,7 +8,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.extras import needed
-from robomill.io.drawing.dxf import Reading
+from robomill.io.drawing.reading import Reading
 from robomill.toolpath.arcs import CHORD_ERROR
 
 with needed("An SVG drawing"):

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from xml.etree import ElementTree
 
 from robomill.errors import ToolpathError
-from robomill.io.drawing.dxf import metres
+from robomill.io.drawing.reading import metres
 
 SVG, XLINK = "{http://www.w3.org/2000/svg}", "{http://www.w3.org/1999/xlink}href"
 ABSOLUTE = {"mm": "mm", "cm": "cm", "in": "in", "pt": "pt", "pc": "pt", "q": "mm"}  # and what of it people know

@@ -110,6 +110,105 @@ def test_a_circle_seen_from_behind_is_mirrored_and_one_scaled_unevenly_is_an_ell
     np.testing.assert_allclose(np.ptp(ellipse.points, axis=0) * 1e3, [20, 10], atol=1e-2)
 
 
+def test_the_frame_that_a_curve_was_fitted_to_is_not_drawn() -> None:
+    """A parabola y = x (20 - x) / 20, 5 mm high; the corner of its frame is at twice that height."""
+
+    def fitted(spline: bool):
+        def draw(doc, space):
+            line = space.add_polyline2d([(0, 0), (10, 10), (20, 0)], format="xy")
+            line.dxf.flags = 4 if spline else 2
+            for vertex in line.vertices:
+                vertex.dxf.flags = 16 if spline else 0
+            for x in np.linspace(0.0, 20.0, 101):
+                line.append_vertex((x, x * (20.0 - x) / 20.0))
+                line.vertices[-1].dxf.flags = 8 if spline else 1
+            if not spline:
+                del line.vertices[:3]
+
+        return draw
+
+    x = np.linspace(0.0, 20.0, 100_001)
+    length = float(np.hypot(np.diff(x), np.diff(x * (20.0 - x) / 20.0)).sum())
+    for spline in (True, False):
+        piece = only(fitted(spline))
+        assert piece.points[:, 1].max() == pytest.approx(5e-3)
+        assert piece.length == pytest.approx(length * 1e-3, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("outer", "inner", "ends"),
+    [
+        ({"xscale": 2}, {"rotation": 90}, [20 + 5j, 20 + 6j]),
+        ({"xscale": 2, "yscale": 2}, {"rotation": 90}, [20 + 10j, 20 + 12j]),
+        ({"xscale": -1, "rotation": 90}, {"rotation": 90}, [-5 - 10j, -6 - 10j]),
+        ({"xscale": 2}, {"rotation": 90, "extrusion": (0, 0, -1)}, [-20 + 5j, -20 + 6j]),
+        ({"yscale": 3, "rotation": 180}, {"rotation": -90}, [-10 + 15j, -10 + 18j]),
+    ],
+)
+def test_a_turned_block_in_a_block_of_unequal_scales_is_where_both_put_it(outer, inner, ends) -> None:
+    """Worked out by hand: the inner insert takes 5..6 along X to (10, 5..6), mirrored or not, the outer one scales, then turns."""
+
+    def draw(doc, space):
+        doc.blocks.new("A", base_point=(2, 3)).add_line((7, 3), (8, 3))
+        doc.blocks.new("B").add_blockref("A", (10, 0), dxfattribs=inner)
+        space.add_blockref("B", (0, 0), dxfattribs=outer)
+
+    found = only(draw).points * 1e3
+    np.testing.assert_allclose(found, [[z.real, z.imag] for z in ends], atol=1e-9)
+
+
+@pytest.mark.parametrize("angle", [30.0, 45.0, 200.0])
+def test_arcs_of_a_sheared_block_lie_on_the_curve_that_their_formula_goes_through(angle) -> None:
+    """Half a circle of 5 mm, an ellipse, and a bulge: turned by the inner insert, then 3 times as wide by the outer."""
+
+    def draw(doc, space):
+        block = doc.blocks.new("A")
+        block.add_arc((1, 2), 5, 0, 180)
+        block.add_lwpolyline([(6, 2, 1), (-4, 2, 0)], format="xyb")
+        block.add_ellipse((1, 2), (5, 0), 0.999999)
+        doc.blocks.new("B").add_blockref("A", (10, 0), dxfattribs={"rotation": angle})
+        space.add_blockref("B", (0, 0), dxfattribs={"xscale": 3})
+
+    turn = np.exp(1j * math.radians(angle))
+    for piece, upward in zip(drawn(draw).read(1e-3).pieces, (True, True, None), strict=True):
+        x, y = piece.outline().T * 1e3
+        own = (x / 3.0 + 1j * y - 10.0) / turn - (1 + 2j)
+        np.testing.assert_allclose(np.abs(own), 5.0, atol=1e-3)
+        if upward is not None:
+            assert (own.imag > -1e-6).all()
+        between = 0.5 * (own[1:] + own[:-1])
+        assert np.abs(between).min() > 5.0 - 2e-3
+
+
+def test_circles_stay_circles_where_two_uneven_scales_make_an_even_one() -> None:
+    def draw(doc, space):
+        block = doc.blocks.new("A")
+        block.add_circle((1, 0), 5)
+        block.add_arc((0, 0), 4, 0, 90)
+        doc.blocks.new("B").add_blockref("A", (0, 10), dxfattribs={"yscale": 2, "rotation": 90})
+        space.add_blockref("B", (0, 0), dxfattribs={"yscale": 2})
+
+    ring, arc = drawn(draw).read(1e-3).pieces
+    assert (ring.shape, arc.shape) == ("circle", "arc")
+    np.testing.assert_allclose(ring.points[0] * 1e3, [0, 22], atol=1e-9)
+    assert np.linalg.norm(ring.points[1] - ring.points[0]) * 1e3 == pytest.approx(10.0)
+    np.testing.assert_allclose(arc.points[[0, 2]] * 1e3, [[0, 28], [-8, 20]], atol=1e-9)
+
+
+def test_a_block_whose_insert_leans_is_seen_from_above() -> None:
+    """Its normal along X: its own X is along the drawing's Y, its own Y along Z, which is not seen."""
+
+    def draw(doc, space):
+        block = doc.blocks.new("A")
+        block.add_line((0, 0), (10, 4))
+        block.add_line((3, 0, 0), (3, 0, 7))
+        space.add_blockref("A", (0, 0), dxfattribs={"extrusion": (1, 0, 0)})
+
+    first, second = drawn(draw).read(1e-3).pieces
+    np.testing.assert_allclose(first.points * 1e3, [[0, 0], [0, 10]], atol=1e-9)
+    np.testing.assert_allclose(second.points * 1e3, [[0, 3], [7, 3]], atol=1e-9)
+
+
 def test_an_array_of_a_block_is_all_of_it() -> None:
     def draw(doc, space):
         doc.blocks.new("B").add_circle((0, 0), 1)
