@@ -127,8 +127,9 @@ class Drawing(Value):
 
     @property
     def extents(self) -> tuple[FloatArray, FloatArray]:
-        """Lower left and upper right corner (2,) m."""
-        corners = np.vstack([contour.outline() for contour in self.contours])
+        """Lower left and upper right corner (2,) m of what a person sees: without hidden layers, unless all are."""
+        shown = [contour for contour in self.contours if contour.layer not in self.hidden] or self.contours
+        corners = np.vstack([contour.outline() for contour in shown])
         return corners.min(axis=0), corners.max(axis=0)
 
     @asked
@@ -142,7 +143,7 @@ class Drawing(Value):
 
     @asked
     def moved(self, origin: Literal["drawing", "corner", "centre"] | str) -> "Drawing":
-        """With the part zero where the drawing has it, in the lower left corner of all lines, or in their middle."""
+        """With the part zero where the drawing has it, in the lower left corner of the ``extents``, or in their middle."""
         if origin not in ORIGINS:
             raise ToolpathError(f"Origin: found {origin!r:.40}, expected one of {', '.join(ORIGINS)}.", where="origin")
         if origin == "drawing":

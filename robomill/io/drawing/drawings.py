@@ -1,5 +1,7 @@
 """Drawings in: DXF and SVG as contours by layer, with the unit that the file says, or that somebody says for it."""
 
+from collections import Counter
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path, PurePath
 
@@ -77,20 +79,34 @@ def drawing_from_bytes(data: bytes, name: str, unit: str = "") -> Drawing:
         raise ToolpathError(
             f"{name}: found no lines{_but(read)}; expected lines, arcs, circles or curves to cut along."
         )
-    findings = _findings(read, twice, dots, file.unit, unit)
+    findings = (*_findings(read, twice, dots, file.unit, unit), *_unseen(read))
     drawing = Drawing(name, tuple(contours), taken or "mm", frozenset(read.hidden), findings)
     if not taken:
         give = to_give("unit", "say which")
-        raise UnitAskedError(f"{name}: the drawing does not say its unit; {_sizes(drawing)}: {give}.", where="unit")
+        raise UnitAskedError(f"{name}: the drawing {file.unsaid}; {_sizes(drawing)}: {give}.", where="unit")
     return _doubted(drawing)
 
 
 def _but(read: Read) -> str:
-    return f" (only {_left_out(read)})" if read.left_out else ""
+    unseen = Counter({f"invisible {what}": count for what, count in read.unseen.items()})
+    return f" (only {_counted(read.left_out + unseen)})" if read.left_out or unseen else ""
 
 
-def _left_out(read: Read) -> str:
-    return ", ".join(f"{format_count(count)} × {what}" for what, count in sorted(read.left_out.items()))
+def _counted(found: Counter[str]) -> str:
+    return ", ".join(f"{format_count(count)} × {what}" for what, count in sorted(found.items()))
+
+
+def _unseen(read: Read) -> Iterator[Finding]:
+    """What a person does not see who opens the file."""
+    if read.unseen:
+        text = f"{_counted(read.unseen)}: made invisible in the file, left out"
+        yield Finding("ignored", text, code="drawing-unseen")
+    hidden = sorted(read.hidden & {piece.layer for piece in read.pieces})
+    if hidden:
+        many = len(hidden) > 1
+        text = f"the layer{'s' * many} {listed(hidden):.200} {'are' if many else 'is'} switched off or frozen in the "
+        text += f"file: what {'they hold' if many else 'it holds'} is cut only where somebody asks for it by name"
+        yield Finding("info", text, code="drawing-hidden")
 
 
 def _sizes(drawing: Drawing) -> str:
@@ -109,10 +125,13 @@ def _findings(read: Read, twice: int, dots: int, own: str, said: str) -> tuple[F
         text = f"the file says that it is drawn in {own}; it was read in {said}, as was said"
         found.append(Finding("warning", text, code="drawing-unit"))
     if read.left_out:
-        found.append(Finding("ignored", f"{_left_out(read)}: no lines to cut along, left out", code="drawing-left-out"))
+        found.append(
+            Finding("ignored", f"{_counted(read.left_out)}: no lines to cut along, left out", code="drawing-left-out")
+        )
     if twice or dots:
-        text = f"{format_count(twice, 'line')} drawn twice and {format_count(dots, 'line')} without length left out"
-        found.append(Finding("info", text, code="drawing-twice"))
+        counts = ((twice, "drawn twice"), (dots, "without length"))
+        said = listed(f"{format_count(count, 'line')} {what}" for count, what in counts if count)
+        found.append(Finding("info", f"{said} left out", code="drawing-twice"))
     if len(read.pieces) > twice + dots:
         text = f"lines whose ends lie within {format_short(GAP, 'mm')} of each other were joined"
         found.append(Finding("info", text, code="drawing-joined"))

@@ -19,12 +19,16 @@ from robomill.units import format_count
 MOST_ENTITIES = 50_000  # looked at, with those of blocks each time that one is inserted
 MOST_TAGS, MOST_RECORDS = 1_000_000, 200_000  # of the file: pairs of lines, and those of them that begin something
 DEEPEST_BLOCK = 16
-# What $INSUNITS says, by the key of ``units.UNITS``; other numbers of it are units that no part is drawn in.
-UNITS_OF_DXF = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 8: "uin", 9: "thou", 13: "um"}
+# What $INSUNITS says, by names of ``metres``. (Autodesk, DXF Reference.)
+UNITS_OF_DXF = {
+    **{1: "in", 2: "ft", 3: "mi", 4: "mm", 5: "cm", 6: "m", 7: "km", 8: "uin", 9: "thou", 10: "yd", 11: "angstrom"},
+    **{12: "nm", 13: "um", 14: "dm", 15: "dam", 16: "hm", 21: "US ft", 22: "US in", 23: "US yd", 24: "US mi"},
+}
+OF_STARS = {17: "gigametres", 18: "astronomical units", 19: "light years", 20: "parsecs"}
 
 
 class Dxf:
-    """A DXF document; ``unit`` is what it says its numbers are in, "" where it is silent."""
+    """A DXF document; ``unit`` is what it says its numbers are in, "" where it is silent: then it ``unsaid``."""
 
     def __init__(self, data: bytes, name: str) -> None:
         with needed("A DXF drawing"):
@@ -33,7 +37,8 @@ class Dxf:
         _look_over(data, name)
         try:
             self.doc = _document(data, name)
-            self.unit = UNITS_OF_DXF.get(int(self.doc.header.get("$INSUNITS", 0)), "")
+            code = int(self.doc.header.get("$INSUNITS", 0))
+            self.unit, self.unsaid = UNITS_OF_DXF.get(code, ""), _unsaid(code)
         except ToolpathError:
             raise
         except (DXFError, *STUMBLES):  # ezdxf names most of what is wrong with a file by an error of its own
@@ -49,6 +54,14 @@ class Dxf:
     def read(self, scale: float) -> Read:
         """Its lines, with ``scale`` (m) for its unit of length."""
         return _DxfReading(self.name, self.doc, scale).read()
+
+
+def _unsaid(code: int) -> str:
+    """What a file says of its unit by an $INSUNITS that tells none of a part."""
+    if code == 0:
+        return "does not say its unit"
+    named = f"is drawn in {OF_STARS[code]}" if code in OF_STARS else "is drawn in a unit that nobody knows"
+    return f"says by $INSUNITS {code} that it {named}"
 
 
 def _look_over(data: bytes, name: str) -> None:

@@ -18,12 +18,20 @@ from robomill.units import format_count, to_si
 
 LONGEST_S = 10.0
 PER_INCH = {"px": 96, "pt": 72}  # pixels as browsers and Inkscape count them, points as Illustrator does
+US_FOOT = 1200 / 3937  # m, by its definition
+IN_METRES = {
+    **{"angstrom": 1e-10, "nm": 1e-9, "dm": 0.1, "dam": 10.0, "hm": 100.0, "km": 1e3, "yd": 0.9144, "mi": 1609.344},
+    **{"US in": US_FOOT / 12, "US ft": US_FOOT, "US yd": 3 * US_FOOT, "US mi": 5280 * US_FOOT},
+}
+"""Units that a DXF may say, and nobody else."""
 # What the libraries that read drawings meet in a file that is damaged, or none of theirs.
 STUMBLES = (OSError, EOFError, LookupError, ValueError, TypeError, AttributeError, ArithmeticError)
 
 
 def metres(unit: str) -> float:
-    """A unit of length of a drawing, a key of ``units.UNITS`` or of ``PER_INCH``, in m."""
+    """A unit of length of a drawing, a key of ``units.UNITS``, ``PER_INCH`` or ``IN_METRES``, in m."""
+    if unit in IN_METRES:
+        return IN_METRES[unit]
     return float(to_si(1.0 / PER_INCH[unit], "in") if unit in PER_INCH else to_si(1.0, unit))
 
 

@@ -46,6 +46,8 @@ COMMANDS = "MLTHVCSQAZmlthvcsqaz"
 class Svg:
     """An SVG document; ``unit`` is that of the size of its page, "" where that is in pixels, or nowhere."""
 
+    unsaid = "does not say its unit"
+
     def __init__(self, data: bytes, name: str) -> None:
         with needed("An SVG drawing"):
             import svgelements  # noqa: F401 (before anything is read)

@@ -116,3 +116,19 @@ def test_a_name_that_is_no_drawing_is_told_with_those_that_there_are(name: str, 
     with pytest.raises(ToolpathError, match="no drawing of this name") as caught:
         rm.read_drawing(name)
     assert str(caught.value).endswith(meant)
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ('<line x2="5"/>', "1 line drawn twice left out"),
+        ('<line y2="0"/>', "1 line without length left out"),
+        ('<line y2="0"/><line x2="5"/>', "1 line drawn twice and 1 line without length left out"),
+    ],
+)
+def test_only_what_was_left_out_is_counted(more: str, said: str) -> None:
+    page = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm" viewBox="0 0 9 9"><line x2="5"/>{more}</svg>'
+    )
+    (finding,) = (each for each in drawing_from_bytes(page.encode(), "a.svg").findings if each.code == "drawing-twice")
+    assert finding.sentence.rstrip(".") == said

@@ -11,7 +11,7 @@ import ezdxf
 import numpy as np
 import pytest
 
-from robomill.errors import ToolpathError
+from robomill.errors import ToolpathError, UnitAskedError
 from robomill.io.drawing import dxf
 from robomill.io.drawing.drawings import drawing_from_bytes
 from robomill.io.drawing.dxf import MOST_ENTITIES, Dxf
@@ -146,7 +146,7 @@ def test_the_frame_that_a_curve_was_fitted_to_is_not_drawn() -> None:
     ],
 )
 def test_a_turned_block_in_a_block_of_unequal_scales_is_where_both_put_it(outer, inner, ends) -> None:
-    """Worked out by hand: the inner insert takes 5..6 along X to (10, 5..6), mirrored or not, the outer one scales, then turns."""
+    """Worked out by hand: the inner insert takes 5..6 along X to (10, 5..6); the outer one scales, then turns."""
 
     def draw(doc, space):
         doc.blocks.new("A", base_point=(2, 3)).add_line((7, 3), (8, 3))
@@ -219,7 +219,7 @@ def test_an_array_of_a_block_is_all_of_it() -> None:
     assert centres == [(x, y) for x in (0, 20, 40) for y in (0, 10)]
 
 
-@pytest.mark.parametrize(("code", "unit"), [(0, ""), (1, "in"), (4, "mm"), (6, "m"), (10, "")])
+@pytest.mark.parametrize(("code", "unit"), [(0, ""), (1, "in"), (4, "mm"), (6, "m"), (10, "yd")])
 def test_the_unit_is_that_of_insunits(code, unit) -> None:
     assert drawn(lambda d, m: m.add_line((0, 0), (1, 0)), code).unit == unit
 
@@ -234,6 +234,50 @@ def test_what_is_no_line_is_counted_by_its_name_and_hidden_layers_are_named() ->
     read = drawn(draw).read(1e-3)
     assert read.left_out == {"TEXT": 1, "POINT": 1}
     assert read.hidden == {"off"}
+
+
+@pytest.mark.parametrize(
+    ("code", "length"),
+    [(3, 1_609_344.0), (7, 1e6), (10, 914.4), (12, 1e-6), (14, 100.0), (15, 1e4), (21, 304.8006096), (22, 25.4000508)],
+)
+def test_units_that_few_draw_in_are_read_as_long_as_they_are(code, length) -> None:
+    """Yard and mile as of 1959; the US survey foot is 1200/3937 m, printed here to ten digits."""
+    file = drawn(lambda d, m: m.add_line((0, 0), (1e-3, 0)), code)
+    (piece,) = file.read(file.scale(file.unit)).pieces
+    assert piece.points[1, 0] == pytest.approx(length * 1e-6, rel=1e-9)
+
+
+@pytest.mark.parametrize("code", [17, 20, 99])
+def test_a_unit_that_no_part_is_drawn_in_is_asked_about_by_its_number(code) -> None:
+    doc = ezdxf.new("R2000")
+    doc.header["$INSUNITS"] = code
+    doc.modelspace().add_line((0, 0), (5, 0))
+    with pytest.raises(UnitAskedError, match=rf"says by \$INSUNITS {code} that it is drawn in"):
+        drawing_from_bytes(data(doc), "a.dxf")
+    assert drawing_from_bytes(data(doc), "a.dxf", "mm").extents[1][0] == pytest.approx(5e-3)
+
+
+def test_what_is_off_frozen_or_invisible_is_told_and_part_zero_is_that_of_what_is_seen() -> None:
+    """What a block on a frozen layer holds is on that layer, whatever its own says: it hides all of it."""
+    doc = ezdxf.new("R2000", units=4)
+    doc.layers.add("OFF").off()
+    doc.layers.add("FRZ").freeze()
+    block, space = doc.blocks.new("B"), doc.modelspace()
+    block.add_line((0, 0), (1, 0), dxfattribs={"layer": "PART"})
+    space.add_blockref("B", (-50, 0), dxfattribs={"layer": "FRZ"})
+    space.add_blockref("B", (0, -50), dxfattribs={"layer": "OFF"})
+    space.add_line((-90, 0), (0, 0), dxfattribs={"layer": "OFF"})
+    space.add_line((2, 3), (4, 9), dxfattribs={"layer": "PART"})
+    space.add_line((0, 0), (-1, 0), dxfattribs={"layer": "PART", "invisible": 1})
+    space.add_blockref("B", (-7, 0), dxfattribs={"invisible": 1})
+    drawing = drawing_from_bytes(data(doc), "a.dxf")
+    counts = {layer: len(drawing.of_layer(layer)) for layer in drawing.layers}
+    assert counts == {"FRZ": 1, "PART": 2, "OFF": 1}
+    assert drawing.hidden == {"FRZ", "OFF"}
+    np.testing.assert_allclose(np.array(drawing.extents) * 1e3, [[0, -50], [4, 9]], atol=1e-9)
+    told = {each.code: each.sentence for each in drawing.findings}
+    assert "1 × INSERT, 1 × LINE" in told["drawing-unseen"]
+    assert "FRZ and OFF" in told["drawing-hidden"]
 
 
 def bomb(doc, space) -> None:
