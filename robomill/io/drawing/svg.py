@@ -37,10 +37,11 @@ PLACED = 60  # characters of the transform that a viewport or a use comes to
 WORDS = ("text", "image", "foreignObject")
 # All that says where a line is; the rest would be handed down to every element below.
 PLACES = "d points x y x1 y1 x2 y2 cx cy r rx ry width height viewBox preserveAspectRatio transform"
-STYLED = frozenset((*PLACES.split(), "display"))
+STYLED = frozenset((*PLACES.split(), "display", "visibility"))
 KEPT = STYLED | {"style", "class", "id", "href", XLINK, LAYER}
 LONG = {"d", "points", "style"}  # attributes that may be
 COMMANDS = "MLTHVCSQAZmlthvcsqaz"
+NO_PATH = re.compile(rf"[^{COMMANDS}eE\d\s,.+-]")
 
 
 class Svg:
@@ -89,7 +90,11 @@ class Svg:
         """Names layers, puts away what is drawn only where it is used, and counts what all uses come to."""
         self.known = known = {e.attrib["id"]: e for e in self.root.iter() if "id" in e.attrib}
         for parent in list(self.root.iter()):
+            drawn = _switched(parent) if kind_of(parent) == "switch" else None
             for place, child in enumerate(parent):
+                if drawn not in (None, place):
+                    _put_away(parent, place)
+                    continue
                 self._look_at(parent, place, child)
         for element in self.root.iter():
             for key in [key for key in element.attrib if key not in KEPT]:
@@ -114,6 +119,12 @@ class Svg:
         element.text = _rules(element.text or "") if kind_of(element) == "style" else None
         if "style" in element.attrib:
             element.set("style", _placing(element.attrib["style"]))
+        odd = NO_PATH.search(element.get("d", "")) if kind_of(element) == "path" else None
+        if odd and element.attrib["d"].strip() != "none":
+            raise ToolpathError(
+                f'{self.name}: the path d="{element.attrib["d"]:.40}" has {odd[0]!r}, which is no command of a path; '
+                "export it again as SVG."
+            )
         if "class" in element.attrib:
             element.set("class", " ".join(dict.fromkeys(element.attrib["class"].split())))
 
@@ -124,9 +135,7 @@ class Svg:
             if label:
                 child.set(LAYER, label[:200])
         if kind in NOT_DRAWN and kind_of(parent) != "defs":
-            put_away = ElementTree.Element(f"{SVG}defs")
-            parent[place] = put_away
-            put_away.append(child)
+            _put_away(parent, place)
         if kind in WORDS:
             self.left_out[kind] += 1
 
@@ -195,7 +204,7 @@ class Svg:
         """Its lines, with ``scale`` (m) for a pixel."""
         import svgelements
 
-        from robomill.io.drawing.svg_paths import lines_of
+        from robomill.io.drawing.svg_paths import broken_in, lines_of
 
         reading = Reading(self.name)
         reading.found.left_out.update(self.left_out)
@@ -206,6 +215,9 @@ class Svg:
             for element in page.elements():
                 if not isinstance(element, svgelements.Shape):
                     continue
+                if str(element.values.get("visibility", "")).strip() in ("hidden", "collapse"):
+                    reading.found.unseen[type(element).__name__.lower().removeprefix("simple")] += 1
+                    continue
                 layer = str(element.values.get(LAYER, NO_LAYER))
                 for shape, line in lines_of(abs(svgelements.Path(element)), scale, reading):
                     reading.take(layer, shape, line * [1.0, -1.0] + [0.0, height * scale])
@@ -213,11 +225,29 @@ class Svg:
             raise
         except (*STUMBLES, RecursionError) as exc:
             # svgelements has no error of its own: what a broken path or transform makes it stumble over.
-            raise ToolpathError(
-                f"{self.name}: a path or a transform in it cannot be read ({type(exc).__name__}: {str(exc)[:80]}); "
-                "export it again as SVG."
-            ) from None
+            said = (
+                broken_in(self.root)
+                or f"a path or a transform in it cannot be read ({type(exc).__name__}: {exc!s:.80})"
+            )
+            raise ToolpathError(f"{self.name}: {said}; export it again as SVG.") from None
         return reading.found
+
+
+def _put_away(parent: ElementTree.Element, place: int) -> None:
+    """Draw a child only where something uses it."""
+    put_away = ElementTree.Element(f"{SVG}defs")
+    put_away.append(parent[place])
+    parent[place] = put_away
+
+
+def _switched(switch: ElementTree.Element) -> int:
+    """Which child of a ``<switch>`` is drawn: the first that asks for nothing that is not here."""
+    for place, child in enumerate(switch):
+        languages = child.get("systemLanguage", "en").replace(",", " ").split()
+        plain = isinstance(child.tag, str) and child.get("requiredExtensions") is None
+        if plain and kind_of(child) != "foreignObject" and any(each.lower()[:2] == "en" for each in languages):
+            return place
+    return 0
 
 
 def _weight(element: ElementTree.Element) -> int:

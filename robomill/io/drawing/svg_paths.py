@@ -1,18 +1,25 @@
 """Paths of an SVG drawing, as svgelements reads them, as circles, lines and polylines within the chord error."""
 
 import math
+import re
 from collections.abc import Iterator
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.extras import needed
-from robomill.io.drawing.reading import Reading
+from robomill.io.drawing.reading import STUMBLES, Reading
+from robomill.io.drawing.svg_viewports import NUMBER
 from robomill.toolpath.arcs import CHORD_ERROR
+from robomill.units import format_count
 
 with needed("An SVG drawing"):
-    from svgelements import Arc, Close, CubicBezier, Move, QuadraticBezier
+    from svgelements import Arc, Close, CubicBezier, Matrix, Move, Path, QuadraticBezier
+
+TAKES = {"M": 2, "L": 2, "T": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "A": 7, "Z": 0}
+"""How many numbers each command of a path takes."""
 
 
 def lines_of(path: Any, scale: float, to: Reading) -> Iterator[tuple[Any, FloatArray]]:
@@ -29,6 +36,30 @@ def lines_of(path: Any, scale: float, to: Reading) -> Iterator[tuple[Any, FloatA
                 run = []
     if run:
         yield _line(run, scale, to)
+
+
+def broken_in(root: ElementTree.Element) -> str:
+    """What cannot be read of a page, in words; "" where every path and transform can be by itself."""
+    for element in root.iter():
+        for key, read in (("d", Path), ("transform", Matrix)):
+            text = element.get(key, "")
+            try:
+                read(text)
+            except (*STUMBLES, RecursionError):
+                named = f" of {element.get('id'):.40}" if element.get("id") else ""
+                what = f'the path{named}, d="{text:.40}"' if key == "d" else f'transform="{text:.40}"'
+                return f"{what} cannot be read{_wrong_of(text) if key == 'd' else ''}"
+    return ""
+
+
+def _wrong_of(d: str) -> str:
+    """The first command of a path that has other things than its numbers behind it."""
+    for found in re.finditer(r"([MLTHVCSQAZmlthvcsqaz])([^MLTHVCSQAZmlthvcsqaz]*)", d):
+        takes, numbers = TAKES[found[1].upper()], NUMBER.findall(found[2])
+        rest = NUMBER.sub("", found[2]).replace(",", " ").strip()
+        if rest or (takes and found[1] not in "Aa" and (not numbers or len(numbers) % takes)):
+            return f": found {found[0].strip()[:40]!r}, where {found[1]} takes {format_count(takes, 'number')}"
+    return ""
 
 
 def _line(run: list[Any], scale: float, to: Reading) -> tuple[Any, FloatArray]:

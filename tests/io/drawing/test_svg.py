@@ -266,3 +266,38 @@ def test_viewports_stand_where_browsers_show_them(body, box) -> None:
 def test_a_place_in_letters_is_refused() -> None:
     with pytest.raises(ToolpathError, match="found '2em' where a length should be"):
         pieces('<svg width="2em"><line x2="1"/></svg>')
+
+
+@pytest.mark.parametrize(
+    ("body", "lengths"),
+    [
+        ('<g visibility="hidden"><line x2="5"/><line visibility="visible" x2="6"/></g>', [6]),
+        ('<g style="visibility:hidden"><g><line x2="5"/></g></g><line x2="7"/>', [7]),
+        ('<style>.v{visibility:collapse}</style><line class="v" x2="5"/><line x2="8"/>', [8]),
+        ('<g display="none"><line visibility="visible" x2="5"/></g><line x2="9"/>', [9]),
+        ('<defs><line id="u" x2="5"/></defs><use href="#u" visibility="hidden"/><use href="#u"/>', [5]),
+        ('<switch><line x2="3"/><line x2="4"/></switch>', [3]),
+        (
+            '<switch><line x2="3" systemLanguage="de, fr"/><g><line x2="4"/><line y2="2"/></g><line x2="9"/></switch>',
+            [4, 2],
+        ),
+        ('<switch><foreignObject requiredExtensions="a"/><line id="w" x2="4"/></switch><use href="#w"/>', [4, 4]),
+        ('<switch><line x2="4"/><line id="w" x2="3"/></switch><use href="#w" y="5"/>', [4, 3]),
+    ],
+)
+def test_what_is_hidden_and_all_of_a_switch_but_what_it_shows_is_not_drawn(body, lengths) -> None:
+    assert [piece.length * 1e3 for piece in pieces(body)] == pytest.approx(lengths)
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ('<path d="M0 0 L10 0 L bad 5"/>', "has 'b', which is no command"),
+        ('<path d="M0 0 L9 0 X 5 5"/>', "has 'X', which is no command"),
+        ('<path id="k" d="M0 0 L5"/>', "the path of k, .*found 'L5', where L takes 2 numbers"),
+        ('<g transform="matrix(1 0)"><line x2="5"/></g>', r'transform="matrix\(1 0\)" cannot be read'),
+    ],
+)
+def test_what_is_wrong_in_a_page_is_shown(body, said) -> None:
+    with pytest.raises(ToolpathError, match=said):
+        pieces(body)
