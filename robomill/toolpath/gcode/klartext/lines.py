@@ -11,11 +11,10 @@ from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
 from robomill.toolpath.gcode.dialects import plain_numbers
-from robomill.toolpath.gcode.klartext.iso import KlartextIso
 from robomill.toolpath.gcode.klartext.planes import WORD, Words
+from robomill.toolpath.gcode.klartext.tools import BY_TOOTH, KlartextTools
 from robomill.toolpath.gcode.klartext.values import NUMBER
 from robomill.toolpath.gcode.scan import behind_remark
-from robomill.toolpath.gcode.sinumerik.lines import named_tool
 from robomill.toolpath.gcode.tool_axis import angles_of
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.plane import axes, centre_by_radius, polar
@@ -23,6 +22,7 @@ from robomill.toolpath.plane import axes, centre_by_radius, polar
 _NUMBERED = re.compile(r"^\s*(/?)\s*(?:N?\d+(?![\d.,])\s*)?(/?)\s*")
 _LABEL = re.compile(r"^[ \t]*N?\d*[ \t]*(?:LBL[ \t]+|G98[ \t]*L[ \t]*)(\"[^\"\n]+\"|\d+)", re.MULTILINE | re.IGNORECASE)
 _FEED = re.compile(rf"(?<![A-Z])F(U?)[ \t]*(MAX|AUTO|{NUMBER})")
+_BY_TOOTH = re.compile(r"(?<![A-Z])FZ")
 _RADIUS = re.compile(rf"(?<![A-Z])R[ \t]*({NUMBER})")
 _NORMAL = re.compile(rf"N[XYZ] ?{NUMBER}")
 _WITH_M = re.compile(
@@ -32,8 +32,8 @@ _WITH_M = re.compile(
 _SIDE = re.compile(r"(?<![A-Z])R(0|L|R)(?![\d.,])")
 _SENSE = re.compile(r"DR[ \t]*([-+])")
 _M = re.compile(r"(?<![A-Z])M[ \t]*(\d+)")
+_M_WORD = re.compile(r"(?<![A-Z])M ?\d+")
 _CALL = re.compile(r"CALL LBL (\"[^\"]+\"|\d+)(?: REP(?: ?(\d+)(?:/\d+)?)?)?")
-_TOOL = re.compile(rf"TOOL CALL ?(\d+|\"[^\"]*\"|Q[LR]?\d+)?(?: ([XYZ])\b)?((?: ?(?:S|F|DL|DR2?) ?{NUMBER})*)")
 _REPEAT = re.compile(r"REP(\d)")
 _CORNER = re.compile(rf"(RND ?R?|CHF ?L?) ?({NUMBER})(?: ?F ?(?:({NUMBER})|.*))?")
 _SILENT = re.compile(
@@ -47,13 +47,12 @@ _KEPT_M = (0, 1, 2, 3, 4, 5, 7, 8, 9, 30)
 _PAIRS = {13: "M3 M8", 14: "M4 M8"}
 
 
-class Klartext(KlartextIso):
+class Klartext(KlartextTools):
     """Reads what stands in a dialogue; what is left of a line goes on to the reader of words."""
 
     heading: tuple[float, float] | None = None
     leaving: tuple[float, float] | None = None
     modal_cycle = False
-    oversize = 0.0
 
     def klartext_line(self, index: int) -> str | None:
         """Line ``index``, and those that continue it, in LinuxCNC's words; None where it is done."""
@@ -74,14 +73,16 @@ class Klartext(KlartextIso):
         if first in ("L", "LN", "LP", "C", "CR", "CP", "CT", "CTP") or _FEED.match(code) or _M.match(code):
             return self._move("L" if first[0] in "FM" else first, code, line)
         if first == "CC":
+            self._check_left_over("CC", code, line)
             self.set_pole(code, line)
-            return None
+            stops = _M_WORD.findall(code)
+            return self._move("L", " ".join(stops), line) if stops else None
         if first in ("APPR", "DEP"):
             return self.approach(code, line)
         if first in ("RND", "CHF") or re.match(r"RND|CHF", first):
             raise GCodeError.at(line, f"{first[:3]} is read behind a cut alone (L; for RND also C, CR, CT or CP).")
         if code.startswith("TOOL CALL"):
-            return self._tool_call(code, line)
+            return self.tool_call(code, line)
         if code.startswith("LBL"):
             if re.fullmatch(r"LBL ?0", code) and self.machine.store.level > 0:
                 self._repeat_or_leave()
@@ -96,7 +97,7 @@ class Klartext(KlartextIso):
         if code.startswith("END PGM"):
             return "M2"
         if first == "STOP":
-            return "M0"
+            return self._stop(code, line)
         if self.tool_defined(code, line):
             return None
         if _SILENT.match(code):
@@ -109,6 +110,14 @@ class Klartext(KlartextIso):
             text = f'{code[:40]} calls another program; paste it in behind M30 as LBL "NAME" ... LBL 0, and call that.'
             raise GCodeError.at(line, text)
         raise GCodeError.at(line, f"{' '.join(code.split(' ')[:3])} is of Heidenhain's and is not read; {_LET}.")
+
+    def _stop(self, code: str, line: int) -> str:
+        """STOP with what its M say; M2 and M30 end the program as in any block."""
+        rest = code.removeprefix("STOP").strip()
+        if _M_WORD.sub("", rest).strip():
+            raise GCodeError.at(line, f"found {rest[:20]!r} behind STOP; expected M words alone.")
+        words = (rest and self._move("L", rest, line)) or ""
+        return words if {"M0", "M2", "M30"} & {*words.split(" ")} else f"M0 {words}".rstrip()
 
     def joined_block(self, index: int) -> tuple[str, int, bool]:
         """The block at ``index`` in capitals, without number and comment; what comes next; whether / stands before."""
@@ -179,14 +188,14 @@ class Klartext(KlartextIso):
         words = self.words_of(kind, rest, line)
         codes = [int(number[:6]) for number in _M.findall(rest)]
         where, arc = self._end(kind, words, rest, line)
-        out = [self._compensated(side[1] if side else self.side, line)]
+        out = [self.compensated(side[1] if side else self.side, line)]
         if not arc and machine.plane != 17:
             out.append("G17")
         if 136 in codes or 137 in codes:
             self.per_turn = 136 in codes
             out.append("G95" if self.per_turn else "G94")
         if feed is not None and feed[2] != "MAX":
-            out.append(self._feed(feed[1], feed[2], line))
+            out.append(self.feed_words(feed[1], feed[2], line))
         machine.machine_word = "M140" if 140 in codes else "M91" if 91 in codes else "M92"
         if where:
             if not {91, 92} & {*codes} and (feed is None or feed[2] != "MAX"):
@@ -209,17 +218,13 @@ class Klartext(KlartextIso):
 
     def _check_left_over(self, kind: str, code: str, line: int) -> None:
         """Refuse what no rule of a line that moves has a use for."""
+        if _BY_TOOTH.search(code):
+            raise GCodeError.at(line, BY_TOOTH)
         left = code.removeprefix(kind)
         for pattern in (_FEED, _SENSE, _SIDE, WORD, _NORMAL, _M, *((_RADIUS,) if kind == "CR" else ())):
             left = pattern.sub("", left)
         if left.strip():
             raise GCodeError.at(line, f"found {left.strip()[:20]!r} in a line that begins with {kind}; {_LET}.")
-
-    def _feed(self, per_turn: str, said: str, line: int) -> str:
-        """F, or FU per turn; under M136 F counts per turn, too."""
-        if said != "AUTO" and (per_turn or self.per_turn):
-            return f"G95 F{self.number(said, line):.9f}"
-        return f"G94 F{self.rate(said, line):.9f}"
 
     def _say_m(self, codes: list[int], line: int) -> None:
         for m in codes:
@@ -233,13 +238,6 @@ class Klartext(KlartextIso):
         if self.machine.away[2]:
             return ""
         return f"G0 Z{self.here()[2] + self.number(found[1], line):.9f}"
-
-    def _compensated(self, side: str, line: int) -> str:
-        before, self.side = self.side, side
-        if side != "0" and self.oversize:
-            text = f"R{side} with DR{self.oversize:+g} of TOOL CALL is not read; put it in the tool table."
-            raise GCodeError.at(line, text)
-        return "" if side == before else {"0": "G40", "L": "G41", "R": "G42"}[side]
 
     def _end(self, kind: str, words: Words, code: str, line: int) -> tuple[dict[str, float], str]:
         """Where a line leads, by letter, and the words of its arc ("" for a straight move)."""
@@ -339,31 +337,7 @@ class Klartext(KlartextIso):
             self.machine.corner = Corner(ROUND if code[0] == "R" else LEGS, self.number(found[2], line), feed)
             self.pc = after
 
-    # --- tools, labels
-    def _tool_call(self, code: str, line: int) -> str:
-        found = _TOOL.fullmatch(code)
-        if found is None or found[2] in ("X", "Y"):
-            raise GCodeError.at(line, f"{code[:30]} is not read; expected a tool, Z and S, as TOOL CALL 1 Z S2000.")
-        out = []
-        if found[1] is not None:
-            self.tool_feed, self.oversize = None, 0.0
-        for name, value in re.findall(rf"(S|F|DL|DR2?) ?({NUMBER})", found[3] or ""):
-            size = self.number(value, line)
-            if name == "DL" and size != 0.0:
-                raise GCodeError.at(line, f"TOOL CALL has DL{size:+g}, which is not read; put it in the tool table.")
-            if name == "DR":
-                self.oversize = size
-            if name == "F":
-                self.tool_feed = size / self.tenth
-                out.append(self._feed("", "AUTO", line))
-            elif name == "S":
-                out.append(f"S{size:.9f}")
-        if found[1] is not None:
-            quoted = found[1].startswith('"')
-            tool = named_tool(found[1][1:-1], line, self.machine) if quoted else f"T{self.number(found[1], line):.0f}"
-            out.append(f"{tool} M6")
-        return " ".join(out)
-
+    # --- labels
     @cached_property
     def _places(self) -> dict[str, int]:
         """Labels, each with the line behind it."""

@@ -1,4 +1,9 @@
-"""Pecks of Heidenhain's drilling cycles 200, 203 and 205."""
+"""Pecks of Heidenhain's drilling cycles 200, 203 and 205, and the holes of cycles 1 and 2 of its older controls.
+
+Cycles 1 and 2 begin where the tool stands, at their SET UP above the surface, and end there. Pecking comes back at
+rapid to an advanced stop before the depth that it had: 0.6 mm in a hole of up to 30 mm, else a fiftieth, at most 7 mm.
+(HEIDENHAIN, TNC 426, User's Manual: Pecking, cycle 1; Tapping, cycle 2.)
+"""
 
 import math
 from collections.abc import Callable
@@ -7,7 +12,13 @@ from itertools import pairwise
 import numpy as np
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.sinumerik.holes import MAX_PECKS, Peck
+from robomill.toolpath.gcode.sinumerik.holes import MAX_PECKS, Hole, Peck
+
+OLD = {
+    1: {"1": "SET UP", "2": "DEPTH", "3": "PECKG", "4": "DWELL", "5": "F"},
+    2: {"1": "SET UP", "2": "DEPTH", "3": "DWELL", "4": "F"},
+}
+"""Parts of the older cycles, by their number behind the point."""
 
 
 def pecks_of(
@@ -51,3 +62,22 @@ def _breaks(ends: list[float], often: float, back: float, line: int) -> list[Pec
         depths = [start - k * often for k in range(1, count + 1)]
         found += [Peck(depth, depth + back, False) for depth in depths]
     return found
+
+
+def old_hole(number: int, said: dict[str, float], top: float, mm: float, line: int) -> Hole:
+    """CYCL DEF 1 and 2 from the height ``top``; ``mm`` is a millimetre in program units."""
+    missing = [name for name in OLD[number].values() if name not in said and name != "DWELL"]
+    if missing:
+        raise GCodeError.at(line, f"CYCL DEF {number} has no {missing[0]}; give it.")
+    if said["DEPTH"] >= 0.0 or said["F"] <= 0.0:
+        raise GCodeError.at(line, f"CYCL DEF {number} needs its DEPTH below 0 and its F above; mend them.")
+    depth, surface = abs(said["DEPTH"]), top - abs(said["SET UP"])
+    dwell, feed, bottom = max(said.get("DWELL", 0.0), 0.0), said["F"], surface - depth
+    if number == 2:
+        return Hole(top, top, bottom, dwell, feed, feed, (), 0.0, taps=True)
+    step, stop = abs(said["PECKG"]), 0.6 * mm if depth <= 30.0 * mm else min(depth / 50.0, 7.0 * mm)
+    count = math.ceil(depth / step - 1e-9) - 1 if step > 0.0 else 0
+    if count > MAX_PECKS:
+        raise GCodeError.at(line, f"CYCL DEF 1 needs more than {MAX_PECKS} pecks; give a larger PECKG.")
+    depths = [surface - k * step for k in range(1, count + 1)]
+    return Hole(top, top, bottom, dwell, feed, 0.0, tuple(Peck(d, min(d + stop, top), True) for d in depths), 0.0)

@@ -249,7 +249,7 @@ def test_tool_axes_and_m_words() -> None:
         ("FL AN+45\n", r"FL AN\+45 is of"),
         ("PLANE AXIAL B-45 TURN\n", "PLANE AXIAL is not read"),
         ("CALL PGM TNC:\\SUB.H\n", "CALL PGM TNC"),
-        ("L X+1 FZ0.1\n", "found 'FZ0.1' in a line that begins with L"),
+        ("L X+1 FZ0.1\n", "FZ counts per tooth"),
         ("C X+1 Y+1 DR+ F9\n", "need their centre"),
         ("CC X+1 Y+1\nC X+2 Y+2 F9\n", r"C needs DR\+ or DR-"),
         ("CR X+1 Y+1 DR+ F9\n", "CR needs R"),
@@ -258,6 +258,10 @@ def test_tool_axes_and_m_words() -> None:
         ("L X+1 F9\nM8\nRND R5\n", "RND is read behind a cut alone"),
         ("CALL LBL 9\n", "LBL 9 is called, but there is no such label"),
         ("TOOL CALL 2 X S100\n", "TOOL CALL 2 X S100 is not read"),
+        ("TOOL CALL 2 Z S F DL+0.5\n", r"DL\+0.5, which is not read"),
+        ("TOOL CALL 2 Z S100 FZ0.1\n", "FZ counts per tooth"),
+        ("STOP X+5\n", "found 'X.5' behind STOP"),
+        ("CC X+1 Y+2 Q5\n", "found 'Q5' in a line that begins with CC"),
         ("TOOL CALL 2 Z S100 DL+0.5\n", r"DL\+0.5, which is not read"),
         ("CC X+1\n", "CC needs two of X, Y and Z"),
         ("CC X+1 Y+2 Z+3\n", "CC needs two of X, Y and Z"),
@@ -325,3 +329,42 @@ def test_places_that_count_otherwise_are_refused(line: str, says: str) -> None:
     with pytest.raises(GCodeError, match=says):
         read(f"{line}\n")
     assert len(read("L X+7 R0 F99 M130\n")) > 0
+
+
+@pytest.mark.parametrize(
+    "block", ["STOP M2", "STOP M30", "STOP M9 M30", "M30", "CC X+1 Y+1 M2", "L F50 M2", "12 STOP M02"]
+)
+def test_m2_and_m30_end_the_program_in_any_block(block: str) -> None:
+    assert ends(f"L X+20 F200\n{block}\nL X+40\n") == [[20, 0, 0]]
+
+
+@pytest.mark.parametrize("block", ["STOP", "STOP M9", "STOP M6", "STOP M0", "CC X+1 Y+1 M9"])
+def test_other_stops_go_on(block: str) -> None:
+    assert ends(f"L X+20 F200\n{block}\nL X+40\n") == [[20, 0, 0], [40, 0, 0]]
+
+
+def test_a_stop_turns_the_spindle_off_by_its_m5() -> None:
+    program = read("L X+20 F200\nSTOP M5\nL X+40\n")
+    assert program.n_s[1:].round(3).tolist() == [round(1000 / 60, 3), 0.0]
+
+
+@pytest.mark.parametrize(
+    ("call", "feed"),
+    [
+        ("TOOL CALL 2 Z S2000 FU0.1", 200.0),
+        ("TOOL CALL 2 Z FU0.1", 100.0),
+        ("TOOL CALL 2 Z S F DR+0", None),
+        ("TOOL CALL 2 Z S F70", 70.0),
+        ("TOOL CALL 2 Z FU 0.1\nTOOL CALL S3000", 300.0),
+        ("TOOL CALL 2 Z FU 0.1\nTOOL CALL S3000 F70", 70.0),
+        ("TOOL CALL 2 Z FU 0.1\nTOOL CALL F70\nTOOL CALL S3000", 70.0),
+    ],
+)
+def test_a_feed_per_turn_of_a_tool_is_that_times_its_turns(call: str, feed: float | None) -> None:
+    """The head says S1000; without a number, S and F leave what is there."""
+    body = f"{call}\nL X+5 F AUTO\n"
+    if feed is None:
+        with pytest.raises(GCodeError, match="FAUTO is the feed of TOOL CALL, which has none"):
+            read(body)
+    else:
+        assert read(body).v_f[-1] * 6e4 == pytest.approx(feed)

@@ -1,0 +1,83 @@
+"""Cycles 1 and 2 of Heidenhain's older controls, by the heights that their manual gives."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robomill.arrays import FloatArray
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import Program, interpret
+
+
+def read(body: str) -> Program:
+    return interpret(f"BEGIN PGM Q MM\nTOOL CALL 1 Z S1000 F99\nL X+0 Y+0 Z+10 FMAX M3\n{body}END PGM Q MM\n")
+
+
+def _long(program: Program) -> FloatArray:
+    return np.linalg.norm(np.diff(program.end, axis=0), axis=1) > 1e-9
+
+
+def moved(program: Program) -> FloatArray:
+    """mm: where the moves behind the first one end, without those of no length."""
+    return program.end[1:][_long(program)] * 1e3
+
+
+def feeds(program: Program) -> FloatArray:
+    return np.nan_to_num(program.v_f[1:][_long(program)] * 6e4)
+
+
+OLD = """CYCL DEF 1.0 PECKING
+CYCL DEF 1.1 SET UP 2
+CYCL DEF 1.2 DEPTH {}
+CYCL DEF 1.3 PECKG {}
+CYCL DEF 1.4 DWELL 0.5
+CYCL DEF 1.5 F150
+L X+5 Z+2 FMAX M99
+L X+9 FMAX
+"""
+
+
+@pytest.mark.parametrize(
+    ("depth", "peck", "heights"),
+    [
+        (-12, 5, [2, -5, 2, -4.4, -10, 2, -9.4, -12, 2]),
+        (-5, 5, [2, -5, 2]),
+        (-5, 0, [2, -5, 2]),
+        (-40, -20, [2, -20, 2, -19.2, -40, 2]),
+        (-400, 250, [2, -250, 2, -243, -400, 2]),
+    ],
+)
+def test_pecking_of_old_begins_and_ends_where_the_tool_stands(depth: float, peck: float, heights: list[float]) -> None:
+    """It comes back to 0.6 mm above the depth that it had, in a hole of 40 mm to 40 / 50, in one of 400 mm to 7 mm."""
+    program = read(OLD.format(depth, peck))
+    x, z = moved(program)[:-1, ::2].T
+    np.testing.assert_allclose(z, heights, atol=1e-9)
+    np.testing.assert_allclose(x, 5.0)
+    cuts = [level in (-5, -10, -12, -20, -40, -250, -400) for level in heights]
+    np.testing.assert_allclose(feeds(program)[:-1], np.where(cuts, 150.0, 0.0))
+    assert sum(program.dwell) == pytest.approx(0.5)
+
+
+def test_tapping_of_old_goes_out_at_its_feed() -> None:
+    program = read(
+        "CYCL DEF 2.0 TAPPING\nCYCL DEF 2.1 SET UP 3\nCYCL DEF 2.2 DEPTH -12\nCYCL DEF 2.3 DWELL 0\n"
+        "CYCL DEF 2.4 F500\nL X+5 Z+3 FMAX\nCYCL CALL\n"
+    )
+    np.testing.assert_allclose(moved(program)[1:, 2], [-12, 3], atol=1e-9)
+    np.testing.assert_allclose(feeds(program)[1:], 500.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        (OLD.format(5, 5), "CYCL DEF 1 needs its DEPTH below 0"),
+        (OLD.format(-5, 5).replace("1.5 F150", "1.5 FMAX"), "CYCL DEF 1.5 FMAX is not read"),
+        (OLD.format(-5, 5).replace("CYCL DEF 1.3 PECKG 5\n", ""), "CYCL DEF 1 has no PECKG"),
+        (OLD.format(-5, 5).replace("1.4 DWELL 0.5", "1.7 X 0.5"), "CYCL DEF 1.7 X 0.5 is not read"),
+        (OLD.format(-50, 0.001), "CYCL DEF 1 needs more than 10000 pecks"),
+    ],
+)
+def test_pecking_of_old_that_is_not_whole_is_refused(body: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=says):
+        read(body)
