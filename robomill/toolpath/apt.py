@@ -25,6 +25,7 @@ from robomill.toolpath.apt_moves import (
     numbers_of,
     tangent_arc,
 )
+from robomill.toolpath.apt_statements import is_broken, statements_of, unit_of_feeds
 from robomill.toolpath.arcs import MAX_POINTS
 from robomill.toolpath.findings import NO_UNITS, Findings
 from robomill.toolpath.path import Toolpath
@@ -103,7 +104,13 @@ def read_apt(path_or_text: Source) -> Toolpath:
     """
     data, _ = read_source(path_or_text)
     state, findings = _State(), Findings()
-    for line, text in _statements(data.decode("utf-8", "replace")):
+    statements = statements_of(data.decode("utf-8", "replace"))
+    by_feed = unit_of_feeds(statements)
+    if by_feed:
+        state.unit = state.unit_said = by_feed.unit
+        text = f"no UNITS: lengths are taken as {by_feed.unit}, as the feed of line {by_feed.line} is in {by_feed.word}"
+        findings.add("units-of-feed", "suspicious" if by_feed.unit == "in" else "info", 0, text)
+    for line, text in statements:
         word, _, rest = text.partition("/")
         word = word.strip().upper()
         values = [v.strip() for v in rest.split(",")] if rest.strip() else []
@@ -134,28 +141,6 @@ def read_apt(path_or_text: Source) -> Toolpath:
         findings=findings.freeze(),
         units=state.unit,
     )
-
-
-def _statements(text: str) -> list[tuple[int, str]]:
-    """Statements with the line where each starts: ``$$`` begins a comment, ``$`` at the end goes on below."""
-    out: list[tuple[int, str]] = []
-    pending, start, in_comment = "", 0, False
-    for number, raw in enumerate(text.split("\n"), 1):
-        whole = raw.strip()
-        code = whole.split("$$")[0].strip()
-        goes_on = whole.endswith("$") and not whole.endswith("$$")
-        if in_comment or not code:
-            in_comment = (in_comment or whole.startswith("$$->")) and goes_on
-            continue
-        start = start or number
-        if code.endswith("$"):
-            pending += code[:-1]
-            continue
-        out.append((start, pending + code))
-        pending, start = "", 0
-    if pending:
-        out.append((start, pending))
-    return out
 
 
 def _statement(state: _State, findings: Findings, word: str, values: list[str], line: int) -> None:
@@ -190,6 +175,9 @@ def _statement(state: _State, findings: Findings, word: str, values: list[str], 
         state.arc = arc_of(values, state.unit, line)
     elif word == "CYCLE":
         state.drilling = drilling_of(values, state.unit, line)
+        if state.drilling is not None and state.drilling.placed:
+            text = "CYCLE/ has three numbers before their unit: they are taken as depth, clearance and feed"
+            findings.add("cycle-places", "info", line, text)
     elif word in ("TLAXIS", "MULTAX"):
         _axis(state, findings, word, values, line)
     elif word in ("TRANS", "MSYS", "CSYS"):
@@ -262,6 +250,11 @@ def _other(state: _State, findings: Findings, word: str, values: list[str], line
         findings.add("cutcom", "warning", line, "CUTCOM is left out: points are taken as those of the tool's centre")
     elif word == "ORIGIN" and any(numbers_of(values, line, word)):
         findings.add("origin", "info", line, "ORIGIN is left out: points count from where the file counts them")
+    elif is_broken(word):
+        text = (
+            f"found {word[:40]!r}, which may move the tool; write each statement in a line of its own, as GOTO/x,y,z."
+        )
+        raise GCodeError.at(line, text)
     elif word not in ("CUTCOM", "ORIGIN") and _SILENT.isdisjoint((word, word.split(" ")[0])):
         findings.add("unknown-word", "ignored", line, f"{word[:20]} is not known and is left out")
 

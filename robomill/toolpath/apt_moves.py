@@ -4,7 +4,10 @@ Vendors write the words of a cycle in two ways (ISO 4343:1978 by place, ISO 4343
 
     CYCLE/DRILL, 20, MMPM, 100, 2                      CYCLE/DRILL, DEPTH, 20, MMPM, 100, CLEAR, 2
     CYCLE/DRILL, 20, 100, MMPM, 2                      CYCLE/DEEP, FEDTO, -20, MMPM, 100, RAPTO, 2, STEP, 5
+    CYCLE/DRILL, 20, 2, 100, MMPM
 
+The last one is CATIA's, whose tables of words put the total depth before the clearance at the tip, and a feed before
+its unit (Dassault Systemes, PP Tables and Word Syntaxes).
 SolidWorks CAM begins cycles with CYCLE/INIT, pecks with CYCLE/DEEP2, ..., 1STPECK, 5, SUBPECK, 2, and leaves the radius
 of arcs to the point where they begin.
 """
@@ -24,7 +27,20 @@ NUMBER = re.compile(r"[-+]?(?:\d++\.?+\d*+|\.\d++)(?:[eE][-+]?\d++)?+$")  # of a
 _FEED_UNITS = ("MMPM", "IPM", "PERMIN", "MMPR", "IPR", "PERREV", "PITCH")
 _NAMED = frozenset(
     (
-        *("DEPTH", "FEDTO", "CLEAR", "RAPTO", "RTRCTO", "RETURN", "STEP", "1STPECK", "SUBPECK", "DWELL", "ORIENT"),
+        *(
+            "DEPTH",
+            "FEDTO",
+            "CLEAR",
+            "RAPTO",
+            "RTRCTO",
+            "RETURN",
+            "STEP",
+            "STEP1",
+            "1STPECK",
+            "SUBPECK",
+            "DWELL",
+            "ORIENT",
+        ),
         *("ORIANT", *_FEED_UNITS),
     )
 )
@@ -141,7 +157,8 @@ def tangent_arc(text: str, tangent: FloatArray, start: FloatArray, unit: str, li
 class Drilling:
     """A cycle that each point is drilled with: lengths (m) from the point along the tool, dwell in s.
 
-    ``rate`` is its feed as the cycle says it: how much, by what, in which unit (see ``feed_of``).
+    ``rate`` is its feed as the cycle says it: how much, by what, in which unit (see ``feed_of``); ``placed`` where that
+    and the lengths stand without a word, the unit last.
     """
 
     depth: float
@@ -152,6 +169,7 @@ class Drilling:
     step: float
     dwell: float
     feed_out: bool
+    placed: bool = False
 
     def moves(self, feed: float) -> list[tuple[float, float, float]]:
         """(height above the point, feed, dwell before), in order, at a ``feed`` (m/s); a feed of 0 is a rapid."""
@@ -185,12 +203,20 @@ def drilling_of(values: list[str], unit: str, line: int) -> Drilling | None:
         raise GCodeError.at(line, text)
     near = max(rapid, clear - rapid, 0.0)
     away = max(near, clear, named.get("RTRCTO", 0.0), named.get("RETURN", 0.0))
-    step = max(named.get("STEP", named.get("SUBPECK", 0.0)), 0.0)
+    step = max(named.get("STEP", named.get("STEP1", named.get("SUBPECK", 0.0))), 0.0)
     first = max(named.get("1STPECK", step), 0.0) or step
     down, near, away, first, step = (to_si(v, unit) for v in (depth, near, away, first, step))
     rate = named[feeds[0]], feeds[0], unit
     leaves = bool(_OUT_AT_FEED & set(kinds))
-    return Drilling(down, rate, near, away, first, step, max(named.get("DWELL", 0.0), 0.0), leaves)
+    placed = _rate_behind(words)
+    return Drilling(down, rate, near, away, first, step, max(named.get("DWELL", 0.0), 0.0), leaves, placed)
+
+
+def _rate_behind(words: list[str]) -> bool:
+    """Whether three numbers stand before their unit: depth, clearance and feed."""
+    numbers = [bool(NUMBER.match(word)) for word in words if word not in _KINDS]
+    units = [word in _FEED_UNITS for word in words if word not in _KINDS]
+    return numbers[:3] == [True] * 3 and units[3:4] == [True]
 
 
 def _said_of(words: list[str], kind: str, line: int) -> tuple[dict[str, float], list[float]]:
@@ -199,7 +225,7 @@ def _said_of(words: list[str], kind: str, line: int) -> tuple[dict[str, float], 
     places: list[float] = []
     rest = iter(words)
     for word in rest:
-        if word in _FEED_UNITS and len(places) == 2 and not named:  # its rate stands before it
+        if word in _FEED_UNITS and (len(places) == 2 or _rate_behind(words)) and not named:  # its rate stands before it
             named[word] = places.pop()
         elif word in _NAMED:
             value = next(rest, "")

@@ -143,7 +143,7 @@ class Drawing(Value):
 
     @asked
     def moved(self, origin: Literal["drawing", "corner", "centre"] | str) -> "Drawing":
-        """With the part zero where the drawing has it, in the lower left corner of the ``extents``, or in their middle."""
+        """With the part zero where the drawing has it, in the lower left corner of its extents, or in their middle."""
         if origin not in ORIGINS:
             raise ToolpathError(f"Origin: found {origin!r:.40}, expected one of {', '.join(ORIGINS)}.", where="origin")
         if origin == "drawing":
