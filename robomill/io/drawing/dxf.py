@@ -159,8 +159,11 @@ class _DxfReading(Reading):
         try:
             own = np.array(list(insert.matrix44()), dtype=float).reshape(4, 4)
         except STUMBLES:
-            self.found.left_out["block whose insert has a number that is none"] += 1
-            return
+            own = np.array([np.nan])
+        if not np.isfinite(own).all():
+            raise self.refuse(
+                f"the block {insert.dxf.name:.40} is inserted with a place, a turn or a scale that is none"
+            )
         frozen = around.frozen or layer.lower() in self.frozen
         self._walk(block, _Around(layer, frozen, depth, own @ around.T))
 

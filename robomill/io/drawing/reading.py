@@ -78,7 +78,7 @@ class Reading:
     def take(self, layer: str, shape: Shape, points: FloatArray) -> None:
         """One line of it, ``points`` (r, 2) in m."""
         if not np.isfinite(points).all():
-            raise self.refuse(f"a {shape} on layer {layer:.40} has a point that is no number")
+            raise self.refuse(f"a line ({shape}) on layer {layer:.40} has a point that is no number")
         self.near(points)
         if shape == "circle" and np.linalg.norm(points[1] - points[0]) < SHORTEST:
             shape = "line"  # a point, which is left out as those are

@@ -41,6 +41,7 @@ STYLED = frozenset((*PLACES.split(), "display", "visibility"))
 KEPT = STYLED | {"style", "class", "id", "href", XLINK, LAYER}
 LONG = {"d", "points", "style"}  # attributes that may be
 COMMANDS = "MLTHVCSQAZmlthvcsqaz"
+_NOT_SHOWN = re.compile(r"(?:^|;)\s*display\s*:\s*none")
 NO_PATH = re.compile(rf"[^{COMMANDS}eE\d\s,.+-]")
 
 
@@ -52,7 +53,7 @@ class Svg:
     def __init__(self, data: bytes, name: str) -> None:
         with needed("An SVG drawing"):
             import svgelements  # noqa: F401 (before anything is read)
-        self.name, self.left_out = name, Counter[str]()
+        self.name, self.left_out, self.unseen = name, Counter[str](), Counter[str]()
         self.root = self._parsed(_text_of(data, name))
         self._look()
         self.unit = self._sized()
@@ -107,6 +108,10 @@ class Svg:
             if "href" in element.attrib:  # of two it is the one that holds
                 element.attrib.pop(XLINK, None)
             self._reduce(element)
+            if kind_of(element) != "symbol" and _NOT_SHOWN.search(
+                f"display:{element.get('display', '')};{element.get('style', '')}"
+            ):
+                self.unseen[kind_of(element)] += 1
         drawn, turned = self._count_of(self.root, known, {}, set())
         style = sum(len(e.text or "") for e in self.root.iter() if kind_of(e) == "style")
         if style * drawn > MOST_STYLE:
@@ -208,6 +213,7 @@ class Svg:
 
         reading = Reading(self.name)
         reading.found.left_out.update(self.left_out)
+        reading.found.unseen.update(self.unseen)
         try:
             written = ElementTree.tostring(Viewports(self.name, self.known).written_out(self.root), encoding="unicode")
             page = svgelements.SVG.parse(io.StringIO(written), ppi=PER_INCH["px"], on_error="raise")

@@ -319,6 +319,11 @@ def bent(doc, space) -> None:
     space.add_lwpolyline([(1e4 * (k % 7), 1e4 * (k % 5), 1) for k in range(4_000)], format="xyb")
 
 
+def nowhere(doc, space) -> None:
+    doc.blocks.new("B").add_line((0, 0), (1, 0))
+    space.add_blockref("B", (0, 0), dxfattribs={"xscale": math.inf})
+
+
 def far(doc, space) -> None:
     space.add_lwpolyline([(0, 0, 1e-3), (1e15, 0, 1e-3)], format="xyb")
 
@@ -330,6 +335,7 @@ def far(doc, space) -> None:
         (through, "a spline through 1500 points"),
         (endless, "the ELLIPSE on layer 0 has a point that is no number, or far away"),
         (bent, "more than 100.000 points"),
+        (nowhere, "the block B is inserted with a place, a turn or a scale that is none"),
         (far, "goes farther than 10 km"),
         (bomb, f"more than {format_count(MOST_ENTITIES)} entities"),
         (array, "a block is inserted 900.000.000 times"),

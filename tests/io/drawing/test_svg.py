@@ -301,3 +301,9 @@ def test_what_is_hidden_and_all_of_a_switch_but_what_it_shows_is_not_drawn(body,
 def test_what_is_wrong_in_a_page_is_shown(body, said) -> None:
     with pytest.raises(ToolpathError, match=said):
         pieces(body)
+
+
+def test_a_layer_that_is_not_displayed_is_told() -> None:
+    file = svg('<g style="fill:none;display: none"><line x2="5"/></g><line display="none" x2="6"/><line x2="7"/>')
+    read = file.read(file.scale("mm"))
+    assert (len(read.pieces), read.unseen) == (1, {"g": 1, "line": 1})
