@@ -27,7 +27,7 @@ from robomill.toolpath.apt_moves import (
 )
 from robomill.toolpath.apt_statements import is_broken, statements_of, unit_of_feeds
 from robomill.toolpath.arcs import MAX_POINTS
-from robomill.toolpath.findings import NO_UNITS, Findings
+from robomill.toolpath.findings import NO_UNITS, UNITS_OF_FEED, Findings
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.text import Source, read_source
 from robomill.toolpath.tools import MOST
@@ -109,7 +109,7 @@ def read_apt(path_or_text: Source) -> Toolpath:
     if by_feed:
         state.unit = state.unit_said = by_feed.unit
         text = f"no UNITS: lengths are taken as {by_feed.unit}, as the feed of line {by_feed.line} is in {by_feed.word}"
-        findings.add("units-of-feed", "suspicious" if by_feed.unit == "in" else "info", 0, text)
+        findings.add(UNITS_OF_FEED, "suspicious" if by_feed.unit == "in" else "info", 0, text)
     for line, text in statements:
         word, _, rest = text.partition("/")
         word = word.strip().upper()

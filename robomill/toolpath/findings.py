@@ -3,7 +3,9 @@
 from robomill.provenance import Finding, Level
 
 NO_UNITS = "no-units"
-"""The code of what is found where a program does not say its unit."""
+"""The code of what is found where a program does not say its unit,"""
+UNITS_OF_FEED = "units-of-feed"
+"""or says no more than that of its feeds."""
 
 
 class Findings:

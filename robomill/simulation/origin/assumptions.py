@@ -11,7 +11,7 @@ from robomill.quantities import described, quantities
 from robomill.robot.model import Robot
 from robomill.simulation.origin.origins import MODEL, Source, robot_lengths, robot_sources, sources
 from robomill.simulation.setup import SimulationSetup
-from robomill.toolpath.findings import NO_UNITS
+from robomill.toolpath.findings import NO_UNITS, UNITS_OF_FEED
 from robomill.units import format_many
 
 MANY = 4  # lengths that are called by their symbols
@@ -79,7 +79,9 @@ def assumed_of_tools(tools: ToolTable, numbers: Iterable[int]) -> list[Assumed]:
 
 def assumed_of_program(findings: Iterable[Finding]) -> list[Assumed]:
     """Of a program: the unit of its lengths, where it does not say one."""
-    return [Assumed("unit of the program", "mm", each.message) for each in findings if each.code == NO_UNITS][:1]
+    taken = {NO_UNITS: "mm", UNITS_OF_FEED: "that of its feeds"}
+    known = [each for each in findings if each.code in taken][:1]
+    return [Assumed("unit of the program", taken[each.code], each.message) for each in known]
 
 
 def assumed_of_tests(tests: Any) -> list[Assumed]:

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 from robomill.arrays import FloatArray
 from robomill.provenance import Finding
-from robomill.toolpath.findings import NO_UNITS
+from robomill.toolpath.findings import NO_UNITS, UNITS_OF_FEED
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
 from robomill.toolpath.summary import summary_of
@@ -48,6 +48,8 @@ def written_in(source: GCodeSource, path: Toolpath, long: bool = False) -> str:
     apt = is_apt(source.text[:200_000].encode())
     if any(f.code == NO_UNITS for f in path.findings):
         return f"{name}, assumed ({'no UNITS' if apt else 'no G20 or G21'})"
+    if any(f.code == UNITS_OF_FEED for f in path.findings):
+        return f"{name}, as its feeds are (no UNITS)"
     return f"{name} ({'UNITS' if apt else 'G20' if path.units == 'in' else 'G21'})"
 
 

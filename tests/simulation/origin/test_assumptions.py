@@ -25,6 +25,7 @@ from robomill.simulation.origin.assumptions import (
     assumed_of_tests,
     assumed_of_tools,
 )
+from robomill.toolpath.apt import read_apt
 from robomill.toolpath.gcode import interpret
 
 PAPER = ["link lengths a_2, d_4, a_5", "joint limits"]
@@ -88,6 +89,11 @@ def test_of_tools_what_their_table_does_not_say() -> None:
 def test_of_a_program_its_unit_where_it_says_none() -> None:
     assert names(assumed_of_program(interpret(b"G0 X5\nG1 X9 F100\nM2\n").findings)) == ["unit of the program"]
     assert not assumed_of_program(interpret(b"G21 G1 X9 F100\nM2\n").findings)
+    by_feed = read_apt("FEDRAT/10,IPM\nGOTO/0,0,1\nGOTO/2,0,0\nFINI\n")
+    np.testing.assert_allclose(by_feed.extents[1][0], 2 * 25.4e-3)
+    assert [(each.what, each.value) for each in assumed_of_program(by_feed.findings)] == [
+        ("unit of the program", "that of its feeds")
+    ]
 
 
 def test_of_load_tests_that_they_are_made_up() -> None:
