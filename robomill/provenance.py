@@ -15,6 +15,13 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 MADE_UP: tuple[Kind, ...] = ("assumed", "synthetic")  # what nobody has measured or stated
 Level = Literal["error", "warning", "suspicious", "ignored", "info"]
 LEVELS: tuple[Level, ...] = get_args(Level)  # the grave ones first
+
+
+def kind_word(kind: str) -> str:
+    """The word for a kind on screens and in reports: what a paper gives is published."""
+    return "published" if kind == "paper" else kind
+
+
 MANY = 3  # numbers that a sentence names
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from robomill.cutting.force import COMPONENTS
-from robomill.provenance import Finding, named
+from robomill.provenance import Finding, kind_word, named
 from robomill.report.plain import no_reading, reading_share, reading_value
 from robomill.report.remedies_told import Told
 from robomill.report.tags import Html, joined, table, tag
@@ -176,14 +176,15 @@ def remedies(rows: Sequence[Told]) -> Html | str:
 
 def rests_on(record: dict[str, Any]) -> Html:
     """Every block of numbers with who says so, and between which ends the answer lies over what is assumed."""
-    rows = [
-        (each["what"], each["value"], tag("span", each["kind"], class_=f"badge {each['kind']}"), each["source"])
-        for each in record["rests_on"][:MOST_SOURCES]
-    ]
+
+    def mark(kind: str) -> Html:
+        return tag("span", kind_word(kind), class_=f"badge {kind}")
+
+    rested = record["rests_on"][:MOST_SOURCES]
+    rows = [(each["what"], each["value"], mark(each["kind"]), each["source"]) for each in rested]
     listed = {each["what"].lower() for each in record["rests_on"]}
     more = [each for each in record["assumed"] if each["what"].lower() not in listed and not _named_above(each, record)]
-    badge = tag("span", "assumed", class_="badge assumed")
-    rows += [(each["what"].capitalize(), each["value"], badge, each["why"]) for each in more[:MOST_SOURCES]]
+    rows += [(each["what"].capitalize(), each["value"], mark("assumed"), each["why"]) for each in more[:MOST_SOURCES]]
     parts = [tag("h2", "What it rests on"), table(("What", "Value", "Said by", "Source"), rows, "wwkw", "fixed rests")]
     ranges = [
         (

@@ -13,7 +13,7 @@ import streamlit as st
 
 from robomill.csv_text import csv_text
 from robomill.errors import RobomillError
-from robomill.provenance import Provenance
+from robomill.provenance import Provenance, kind_word
 from robomill.report.tags import Html
 from robomill.ui import session
 from robomill.ui.markup import as_html, as_markdown, quiet, unparted
@@ -98,8 +98,9 @@ def subscripts(text: str) -> Html:
 
 
 def badge(kind: str, text: str = "") -> Html:
-    """A small coloured pill with a word: paper, measured, assumed, user or computed."""
-    return Html(f'<span class="rm-badge rm-{html.escape(kind)}">{html.escape(text or kind)}</span>')
+    """A small coloured pill with a word for where a number comes from: published, measured, assumed, user, computed."""
+    word = text or kind_word(kind)
+    return Html(f'<span class="rm-badge rm-{html.escape(kind)}">{html.escape(word)}</span>')
 
 
 def sourced(said: Provenance) -> Html:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robomill.errors import RobomillError
-from robomill.provenance import Finding, Provenance, named
+from robomill.provenance import KINDS, Finding, Provenance, kind_word, named
 
 
 def test_a_finding_says_its_line_and_keeps_its_code() -> None:
@@ -36,3 +36,7 @@ def test_what_was_stated_for_another_path_is_assumed_there_and_keeps_where_it_ca
     assert measured.carried_from == ""
     assert Provenance(**once.record()) == once
     assert measured.record() == {"kind": "measured", "source": "dynamometer"}
+
+
+def test_what_a_paper_gives_is_published() -> None:
+    assert [kind_word(kind) for kind in KINDS] == ["published", *KINDS[1:]]

@@ -11,6 +11,7 @@ import streamlit as st
 
 from robomill.files import PROGRAM
 from robomill.paper import SLOT
+from robomill.provenance import kind_word
 from robomill.simulation.judging.verdict_words import TIP
 from robomill.simulation.origin.origins import sources
 from robomill.simulation.result import SimulationResult
@@ -37,7 +38,7 @@ DOORS = (
 )
 CHECKED = "start.checked"
 OPENED, STIFFEN = "improve.remedy", "stiffen"  # what the Improve page shows opened
-KINDS = {"paper": "published", "user": "of your own"}  # as one counts them; the others are their own word
+KINDS = {"user": "of your own"}  # as one counts them; the others are their own word
 
 
 def purpose() -> None:
@@ -129,7 +130,7 @@ def why(setup: SimulationSetup, length: str) -> str:
     """On how many numbers the result rests, by who says them: "11 inputs: 5 published, 5 assumed, 1 measured"."""
     kinds = [source.provenance.kind for source in sources(setup, length)]
     order = sorted(dict.fromkeys(kinds), key=lambda kind: -kinds.count(kind))
-    counted = ", ".join(f"{kinds.count(kind)} {KINDS.get(kind, kind)}" for kind in order)
+    counted = ", ".join(f"{kinds.count(kind)} {KINDS.get(kind, kind_word(kind))}" for kind in order)
     return f"Why believe this? It rests on {format_count(len(kinds), 'input')}: {counted}"
 
 
