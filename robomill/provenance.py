@@ -18,7 +18,7 @@ LEVELS: tuple[Level, ...] = get_args(Level)  # the grave ones first
 
 
 def kind_word(kind: str) -> str:
-    """The word for a kind on screens and in reports: what a paper gives is published."""
+    """The word for a kind on screens: what a paper gives is published."""
     return "published" if kind == "paper" else kind
 
 

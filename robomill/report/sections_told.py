@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from robomill.cutting.force import COMPONENTS
-from robomill.provenance import Finding, kind_word, named
+from robomill.provenance import Finding, named
 from robomill.report.plain import no_reading, reading_share, reading_value
 from robomill.report.remedies_told import Told
 from robomill.report.tags import Html, joined, table, tag
@@ -178,7 +178,7 @@ def rests_on(record: dict[str, Any]) -> Html:
     """Every block of numbers with who says so, and between which ends the answer lies over what is assumed."""
 
     def mark(kind: str) -> Html:
-        return tag("span", kind_word(kind), class_=f"badge {kind}")
+        return tag("span", kind, class_=f"badge {kind}")
 
     rested = record["rests_on"][:MOST_SOURCES]
     rows = [(each["what"], each["value"], mark(each["kind"]), each["source"]) for each in rested]
