@@ -16,6 +16,7 @@ from robomill.surface.contact.engagement import engage
 from robomill.units import format_share
 
 FELT = 0.05  # of the tolerance: a step that would be off by less otherwise moves no reading that counts
+OFF = "Coupling (deflection feeds back on the force) is off"  # in the words of its switch
 MORE = 0.1  # of the tolerance: so much more than was read is told
 
 
@@ -53,8 +54,8 @@ def coupling_notes(verdict: Verdict, pushed: Verdict, place: str) -> tuple[Findi
     if not (there > here + MORE or (there > here and pushed.level != verdict.level)):
         return ()
     text = (
-        "Coupling is off, so the tool is taken to cut where it is told to. Where it is pushed to, and after earlier "
-        f"passes that were pushed off, too, {_used(pushed, place)}, not {format_share(here)}: switch coupling on."
+        f"{OFF}, so the tool is taken to cut where it is told to. Where it is pushed to, and after earlier passes that "
+        f"were pushed off, too, {_used(pushed, place)}, not {format_share(here)}: switch coupling on."
     )
     return (Finding("warning", text, code="uncoupled"),)
 
@@ -64,7 +65,7 @@ def left_open(verdict: Verdict, pushed: Verdict, place: str) -> Premise:
     be red: clearly, since it is the first step towards a coupled run only, where ``verdict`` is tight already."""
     if not pushed.share > (1.0 if verdict.level == "ok" else 1.0 + MORE):
         return NONE
-    asked = f"Coupling is off, and where the tool is pushed to, {_used(pushed, place)}: switch it on. Not judged."
+    asked = f"{OFF}, and where the tool is pushed to, {_used(pushed, place)}: switch it on. Not judged."
     return Premise("if the tool cuts where it is told to", asked)
 
 
