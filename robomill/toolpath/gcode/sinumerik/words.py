@@ -173,7 +173,9 @@ class SinumerikWords(Holes):
             raise GCodeError.at(line, "DIV behind another product is read in brackets of its own alone; write them.")
         for each in found.groups():
             if not each.isdigit() and self.kinds.get(self.variables.get(each, -1)) != "INT":
-                raise GCodeError.at(line, f"DIV is read between whole numbers and INT variables, found {each[:20]}.")
+                found_there = f"R{int(each[1:]) - FIRST_R}" if re.fullmatch(r"#1\d{3}", each) else each[:20]
+                text = f"DIV is read between whole numbers and INT variables, found {found_there}; write TRUNC(a/b)."
+                raise GCodeError.at(line, text)
         return f"TRUNC(({found[1]})/({found[2]}))"
 
     def _known_name(self, found: re.Match[str]) -> str:

@@ -100,7 +100,7 @@ def test_dwells_in_turns_of_the_spindle() -> None:
         ("REPEAT WEG P=2\nWEG: X1\n", "Line 2: REPEAT WEG leads nowhere: there is no such label before it"),
         ("WEG: X1\nREPEAT WEG ENDE\nENDE: X2\n", "Line 3: REPEAT WEG stands in what it repeats"),
         ("X=7.5 DIV 2\n", "Line 2: DIV is read between whole numbers and INT variables"),
-        ("R1=7\nX=R1 DIV 2\n", "Line 3: DIV is read between whole numbers and INT variables"),
+        ("R1=7\nX=R1 DIV 2\n", "Line 3: DIV is read between whole numbers and INT variables, found R1;"),
         ("X=2*7 DIV 2\n", "Line 2: DIV behind another product"),
         ("X=R[2.5]\n", "Line 2: R.2.5. does not exist"),
         ("G90 TRANS X5\n", "Line 2: TRANS stands on a line of its own"),
