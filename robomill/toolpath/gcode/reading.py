@@ -172,7 +172,8 @@ def _program(machine: Machine, dialect: str, lines: int) -> Program:
     if any(plane is not None for _, plane in machine.planes):
         drop_positioning(machine.planes, columns)
     if not machine.unit_said and len(columns["line"]):
-        machine.findings.add(NO_UNITS, "suspicious", 0, "no G20 or G21: lengths are taken as mm")
+        words = "G70 or G71" if dialect == "sinumerik" else "G20 or G21"
+        machine.findings.add(NO_UNITS, "suspicious", 0, f"no {words}: lengths are taken as mm")
     program = Program(
         **columns,
         lift=_since(machine.lifts, len(columns["line"]), np.zeros(3)),
