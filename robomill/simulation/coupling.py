@@ -9,6 +9,7 @@ deflection of the step before.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 
 import numpy as np
 
@@ -23,6 +24,8 @@ TURNS = 8  # of the way on which a bracket is halved
 COUPLING = "coupling"
 LONGEST = 0.5e-3  # m: no correction goes further at once
 NARROW = 0.1e-9  # m: to that a jump is found; beside it g may change a thousand times as fast as the tool's place
+AROUND = np.array([*product((-1.0, 0.0, 1.0), repeat=3), *product((-0.3, 0.3), repeat=3)])
+"""(35, 3): places around one, of half a cube's edge."""
 Push = Callable[[FloatArray], FloatArray]
 """Where the force that acts with the tool at a place (3,) m bends it to, (3,) m."""
 
@@ -32,8 +35,8 @@ class Settled:
     """Where g(x) = x: the place x (3,) m, what is left of g(x) - x (m), how often g was asked, and how many times as
     fast g changed as x did (``gain``, NaN where it was asked once).
 
-    ``mix`` are the places whose forces act there, with their weights: one, or two where the force jumps at x (the end
-    of a tool that just touches the part) and so much of either holds the tool there.
+    ``mix`` are the places whose forces act there, with their weights: one, or more where the force jumps at x (the end
+    of a tool that just touches the part) and so much of each holds the tool there.
     """
 
     x: FloatArray
@@ -52,12 +55,13 @@ def settle(g: Push, start: FloatArray, free: FloatArray, axis: FloatArray) -> Se
     ``axis`` (3,) the unit vector along the tool.
 
     Broyden's method on g(x) - x, whose first step is x <- g(x). Where it does not close in, the height at which the
-    end of the tool rests, and then a bracket between where the force bends the tool from ``free`` and from there. A g
-    that is not a number ends it.
+    end of the tool rests, then a bracket between where the force bends the tool from ``free`` and from there, and last
+    the forces that act around the best place so far. A g that is not a number ends it.
     """
     found = _by_broyden(g, start)
     gain = found.gain
-    for otherwise in (partial(_by_height, g, free, axis), partial(_by_bracket, g, free)):
+    ways = (partial(_by_height, g, free, axis), partial(_by_bracket, g, free), lambda: _by_shares(g, found.x))
+    for otherwise in ways:
         if found.agreed or not np.isfinite(found.rest):
             break
         held = otherwise()
@@ -146,6 +150,31 @@ def _by_bracket(g: Push, free: FloatArray) -> Settled:
             break
         apart = at_high - at_low
         start, way = (at_low, apart) if np.abs(apart).max() > TOLERANCE else (after.x, at_low - after.x)
+    return found
+
+
+def _by_shares(g: Push, x: FloatArray) -> Settled:
+    """Where a force jumps in more ways than one: shares of the forces around x, no further than they have to agree,
+    that together hold the tool there; where they push it on, around there."""
+    from scipy.optimize import nnls
+
+    found = Settled(x, float("nan"), 0, float("nan"), ((x, 1.0),))
+    for _ in range(TURNS):
+        places = x + TOLERANCE * AROUND
+        apart = np.array([g(place) - x for place in places])
+        found = replace(found, evaluations=found.evaluations + len(places))
+        if not np.isfinite(apart).all():
+            break
+        rows = np.vstack([apart.T, np.full(len(places), np.abs(apart).max())])
+        share = nnls(rows, np.append(np.zeros(3), rows[3, 0]))[0]
+        share /= max(float(share.sum()), np.finfo(float).tiny)
+        rest = share @ apart
+        if np.isnan(found.rest) or np.abs(rest).max() < found.rest:
+            mix = tuple((places[i], float(share[i])) for i in np.flatnonzero(share))
+            found = replace(found, x=x, rest=float(np.abs(rest).max()), mix=mix)
+        if found.agreed:
+            break
+        x = x + rest
     return found
 
 

@@ -353,6 +353,29 @@ def test_a_ramp_into_the_full_is_solved_at_every_step(D, flutes, angle):
     assert run.verdict.level in ("ok", "tight", "out")
 
 
+@pytest.mark.parametrize(("D", "flutes", "step"), [(8, 3, 2e-3), (6, 2, 1e-3), (12, 4, 2e-3)])
+def test_a_ramp_that_is_sent_again_is_solved_at_every_step(D, flutes, step):
+    """At its foot the end meets two floors at once, of the ramp and of the level cut: more than two forces hold it."""
+    cutter = rm.Cutter("flat", diameter_mm=D, flutes=flutes)
+    once = "G1 X10 Z-1.5\nG1 X25\nG0 Z5\nG0 X-20\nG0 Z0\n"
+    text = f"G21 G90\nS12000 M3\nG0 X-20 Y0 Z5\nG0 Z0\nF{480 * flutes}\n{once}{once}G0 Z20\nM2\n"
+    run = simulate(
+        SETUP.replace(
+            source=GCodeSource(text),
+            cutter=cutter,
+            force=rm.process_force("al7075_t6_carbide_ref190", cutter),
+            stock=Stock([-60e-3, -30e-3, -15e-3], [60e-3, 30e-3, 0.0]),
+            step=step,
+            part_zero_mm=(0, -1300, 0),
+        )
+    )
+    assert run.coupling.converged
+    for each in (one for one in run.coupling.settled if len(one.mix) > 2):
+        assert sum(weight for _, weight in each.mix) == pytest.approx(1.0)
+        assert max(np.abs(place - each.x).max() for place, _ in each.mix) <= TOLERANCE * (1 + 1e-9)
+        assert np.abs(run.delta - each.x).max(axis=1).min() <= 2 * TOLERANCE, "and that is where C F leads"
+
+
 def test_what_is_not_a_number_ends_it():
     found = settle(lambda x: np.full(3, np.nan), np.zeros(3), np.zeros(3), UP)
     assert not found.agreed
