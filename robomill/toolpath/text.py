@@ -24,7 +24,11 @@ DOS_END, FILLING = b"\x1a", b"\x1a\0 \t\r\n"  # Ctrl-Z ends a program from DOS, 
 TAPE = b"\0\x03\x04\x11\x12\x13\x14\x7f"
 """What readers of tapes and serial lines pass over: no hole (NUL), ends of text, reader or punch on or off, rub-out."""
 _CONTROLS = bytes(c for c in range(32) if c not in (9, 10, 12, 13, 27))
-_GOTO = re.compile(rb"^[ \t]*(?:GOTO|FROM)[ \t]*/", re.IGNORECASE | re.MULTILINE)
+_GOTO = re.compile(
+    rb"^[ \t]*(?:N?\d+[ \t]+)?(?:[A-Z]+[^\n(;]*;[ \t]*){0,9}"
+    rb"(?:(?:GO[ \t]?TO|FROM)[ \t]*(?:/|[ \t][-+.\d]+[ \t]*,)|(?:PARTNO|UNITS|FEDRAT)[ \t]*/)",
+    re.IGNORECASE | re.MULTILINE,
+)
 
 
 def read_source(source: Source) -> tuple[bytes, str]:
@@ -46,7 +50,7 @@ def read_source(source: Source) -> tuple[bytes, str]:
 
 
 def is_apt(data: bytes) -> bool:
-    """True if the bytes of a file look like APT-CL (a GOTO/ or FROM/ statement near the start)."""
+    """True if the bytes of a file look like APT-CL (statements such as GOTO/ near the start)."""
     return _GOTO.search(data[:200_000]) is not None
 
 

@@ -497,3 +497,20 @@ def test_cuts_with_a_spindle_that_was_stopped_are_told() -> None:
         ("spindle-stopped", 9, 2)
     ]
     assert not read_apt(f"{head}{cuts}FINI\n").findings
+
+
+@pytest.mark.parametrize(
+    ("text", "apt"),
+    [
+        ("N1 PARTNO/T\nN2 UNITS/MM\nN4 GOTO/0,0,0\n", True),
+        ("UNITS/MM;FEDRAT/600,MMPM;GOTO/0,0,0;GOTO/10,0,-1;\n", True),
+        ("RAPID;GOTO/0,0,5\n", True),
+        ("GO TO/0,0,0\n", True),
+        ("GOTO 0,0,0\nGOTO 10,0,-1\n", True),
+        ("O1\nN5 X1\nGOTO 20\nN20 G0 X2\n", False),  # Fanuc's macros
+        ("N10 GOTO 20\nIF [#1 EQ 2] GOTO 30\n", False),
+        ("G0 X1 ; GOTO/1,2,3\n(A;GOTO/1,2,3)\n", False),
+    ],
+)
+def test_files_of_apt_are_told_by_their_statements(text: str, apt: bool) -> None:
+    assert is_apt(text.encode()) == apt

@@ -110,6 +110,7 @@ class _DxfReading(Reading):
         super().__init__(name)
         self.doc, self.scale, self.looked_at = doc, scale, 0
         self.held: dict[str, int] = {}  # entities of each block, blocks opened
+        self.spelled = {str(layer.dxf.name).lower(): str(layer.dxf.name) for layer in doc.layers}  # in their table
         self.frozen = {str(layer.dxf.name).lower() for layer in doc.layers if layer.is_frozen()}
 
     def read(self) -> Read:
@@ -128,6 +129,7 @@ class _DxfReading(Reading):
             self.look()
             kind = entity.dxftype()
             own = str(_said(entity, "layer", "0"))
+            own = self.spelled.get(own.lower(), own)
             layer = around.layer if around.frozen or (own == "0" and around.layer) else own
             if kind == "ATTDEF" and around.depth > 0:  # what a block asks for: its inserts hold the answer
                 continue

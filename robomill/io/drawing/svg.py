@@ -41,7 +41,8 @@ STYLED = frozenset((*PLACES.split(), "display", "visibility"))
 KEPT = STYLED | {"style", "class", "id", "href", XLINK, LAYER}
 LONG = {"d", "points", "style"}  # attributes that may be
 COMMANDS = "MLTHVCSQAZmlthvcsqaz"
-_NOT_SHOWN = re.compile(r"(?:^|;)\s*display\s*:\s*none")
+_DISPLAY = re.compile(r"(?:^|;)display:\s*([\w-]+)(?!.*;display:)")
+_IMPORTANT = re.compile(r"!\s*important\s*$", re.IGNORECASE)
 NO_PATH = re.compile(rf"[^{COMMANDS}eE\d\s,.+-]")
 
 
@@ -108,9 +109,9 @@ class Svg:
             if "href" in element.attrib:  # of two it is the one that holds
                 element.attrib.pop(XLINK, None)
             self._reduce(element)
-            if kind_of(element) != "symbol" and _NOT_SHOWN.search(
-                f"display:{element.get('display', '')};{element.get('style', '')}"
-            ):
+            styled = _DISPLAY.search(element.get("style", ""))
+            display = styled[1] if styled else element.get("display", "")
+            if kind_of(element) != "symbol" and display.strip() == "none":
                 self.unseen[kind_of(element)] += 1
         drawn, turned = self._count_of(self.root, known, {}, set())
         style = sum(len(e.text or "") for e in self.root.iter() if kind_of(e) == "style")
@@ -124,6 +125,8 @@ class Svg:
         element.text = _rules(element.text or "") if kind_of(element) == "style" else None
         if "style" in element.attrib:
             element.set("style", _placing(element.attrib["style"]))
+        if element.get("visibility") == "inherit":
+            del element.attrib["visibility"]
         odd = NO_PATH.search(element.get("d", "")) if kind_of(element) == "path" else None
         if odd and element.attrib["d"].strip() != "none":
             raise ToolpathError(
@@ -268,7 +271,9 @@ def _weight(element: ElementTree.Element) -> int:
 
 def _placing(style: str) -> str:
     """The part of a style that says where a line is, and whether it is drawn."""
-    return ";".join(each for each in style.split(";") if each.partition(":")[0].strip() in STYLED)
+    said = (each.partition(":") for each in style.split(";"))
+    placing = [(name.strip().lower(), value) for name, _, value in said if name.strip().lower() in STYLED]
+    return ";".join(f"{name}:{_IMPORTANT.sub('', value).strip()}" for name, value in placing)
 
 
 def _rules(sheet: str) -> str:

@@ -5,15 +5,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 AXES, ROTARY, CENTRES = "XYZ", "ABC", "IJK"
+_REMARK = r"\([^()\n]*(?:\([^()\n]*\)[^()\n]*)*\)"  # which may hold another
 _PART = re.compile(
-    r"(?P<space>\s+)|(?P<comment>\([^()]*\)|;.*)|(?P<skip>/\d?(?=\s*(?:N|$|[A-Z])))"
+    rf"(?P<space>\s+)|(?P<comment>{_REMARK}|;.*)|(?P<skip>/\d?(?=\s*(?:N|$|[A-Z])))"
     r"|(?P<named>[A-Z]{2,}\d*\s*=\s*[^\s;]+)"
     r"|(?P<word>(?P<letter>[A-Z])\s*(?P<number>[-+]?\s*(?:\d+\.?\d*|\.\d+))(?![\d.\[#]))"
     r"|(?P<corner>,\s*[RC]\s*\d*\.?\d*)"
     r"|(?P<computed>(?P<of>[A-Z])\s*(?:=\s*[^\s;]+|[-+]?(?:#<[^>]*>|#+\d+|#*\[)))",
     re.IGNORECASE,
 )
-COMMENT = re.compile(r"\([^()\n]*\)|;[^\n]*")
+COMMENT = re.compile(rf"{_REMARK}|;[^\n]*")
 """What a line says to people."""
 COMMENT_BYTES = re.compile(COMMENT.pattern.encode())
 _PARAMETER = re.compile("#"), re.compile(r"#|\bR\d")

@@ -307,3 +307,20 @@ def test_a_layer_that_is_not_displayed_is_told() -> None:
     file = svg('<g style="fill:none;display: none"><line x2="5"/></g><line display="none" x2="6"/><line x2="7"/>')
     read = file.read(file.scale("mm"))
     assert (len(read.pieces), read.unseen) == (1, {"g": 1, "line": 1})
+
+
+@pytest.mark.parametrize(
+    ("hidden", "unseen"),
+    [
+        ('<line style="display:none !important" x2="5"/>', 1),
+        ('<line style="DISPLAY: none!important" x2="5"/>', 1),
+        ('<line style="visibility:hidden !important" x2="5"/>', 1),
+        ('<g visibility="hidden"><line visibility="inherit" x2="5"/></g>', 1),
+        ('<line style="fill:red;display : none" x2="5"/>', 1),
+        ('<line display="none" style="display:inline" x2="5"/>', 0),  # a style counts before an attribute
+    ],
+)
+def test_what_is_said_to_be_left_out_is_left_out(hidden, unseen) -> None:
+    file = svg(f'{hidden}<line x2="7"/>')
+    read = file.read(file.scale("mm"))
+    assert (len(read.pieces), sum(read.unseen.values())) == (2 - unseen, unseen)

@@ -10,6 +10,7 @@ LINES = [
     "G1 X[#1+[2*3]] Y#2 Z#<deep> F[#3]",
     "X=R1*2 Y=IC(5) CR=8 RND=2",
     "G1 X20.,R3. Y1",
+    "G1 X40 (finish (slot) X9) F1500",
     "",
 ]
 
@@ -54,3 +55,9 @@ def test_a_word_goes_with_the_space_before_it_and_gets_another_number() -> None:
 )
 def test_what_is_left_of_lines_that_mirror_and_scale(text: str, left: list[str] | None) -> None:
     assert unscaled(text) == left
+
+
+def test_a_comment_within_a_comment_holds_no_words() -> None:
+    tokens = scan("G1 X40 (finish (slot) X9) F1500") or []
+    assert [token.letter for token in tokens if token.letter] == ["G", "X", "F"]
+    assert [token.text for token in tokens if token.is_comment] == ["(finish (slot) X9)"]
