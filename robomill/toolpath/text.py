@@ -25,7 +25,7 @@ TAPE = b"\0\x03\x04\x11\x12\x13\x14\x7f"
 """What readers of tapes and serial lines pass over: no hole (NUL), ends of text, reader or punch on or off, rub-out."""
 _CONTROLS = bytes(c for c in range(32) if c not in (9, 10, 12, 13, 27))
 _GOTO = re.compile(
-    rb"^[ \t]*(?:N?\d+[ \t]+)?(?:[A-Z]+[^\n(;]*;[ \t]*){0,9}"
+    rb"^[ \t]*(?:N?\d+[ \t]+)?(?:[A-Z]+[ \t]*(?:/[^\n(;]*)?;[ \t]*){0,9}"
     rb"(?:(?:GO[ \t]?TO|FROM)[ \t]*(?:/|[ \t][-+.\d]+[ \t]*,)|(?:PARTNO|UNITS|FEDRAT)[ \t]*/)",
     re.IGNORECASE | re.MULTILINE,
 )
