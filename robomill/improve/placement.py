@@ -14,6 +14,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import SetupError
 from robomill.improve.area import MOST_CANDIDATES, WHO, Area, area, grid, today
 from robomill.improve.judged import check_improvable
+from robomill.improve.map_check import AGREES, LONG, checked
 from robomill.improve.placed import (
     FINE,
     FINEST,
@@ -52,8 +53,7 @@ ROOM = 0.05  # of a joint's half range: how much it keeps to its limits
 WRITTEN = np.array([1e-4, 1e-4, 1e-4, to_si(0.01, "deg")])  # to which a place is rounded
 STARTS = 4  # places from which the coarse map is refined
 ROUNDS = 3  # of looking again, with what the full simulation of the best place found worst
-POLISHED, LONG = 8, 2000  # steps by full simulations, and samples of a path beyond which there are none
-AGREES = 0.01  # of its share: by how much the screen may differ from the full simulation
+POLISHED = 8  # steps by full simulations
 
 
 @asked
@@ -108,7 +108,9 @@ def place(
     Notes
     -----
     The coarse map moves every reading of one full simulation as the tip moves there, with the compliance of eqs. (11)
-    to (14) at every sample; without coupling, which the full simulations have. From its best places the search
+    to (14) at every sample; without coupling, which the full simulations have. Some of its places are simulated in
+    full; where these differ (at corners, where one pass cleans up another), more are, and the map is moved along with
+    them, but for coupled and long programs. From its best places the search
     goes on in halved steps to 1 mm and 0.25 degrees. A place is allowed where the arm reaches all of the path, keeps
     ``room``, passes no singular configuration and stays away from one (2 % of its largest |det(J)|). Whether the arm
     itself meets the part is not checked.
@@ -154,7 +156,11 @@ class _Search:
         if not (why == FINE).any():
             raise self._nowhere(places, screened.standing, why)
         share = np.where(why == FINE, screened.share(self.measure, self.setup), np.nan)
-        best, looking = self._best(looking, axes, share, here if now.known and self.area.contains(here) else None, now)
+        known = [(now, here)] if now.known and self.area.contains(here) and self.allows(now, here) else []
+        if not self._long(looking):
+            full = checked(lambda at: self.simulated(at)[0], places, share, _spacing(axes))
+            known += [(found, places[i]) for i, found in full.items() if self.allows(found, places[i])]
+        best, looking = self._best(looking, axes, share, known)
         median, worst = self._compared(places, share, why)
         shape = tuple(map(len, axes))
         found = Placement(
@@ -226,12 +232,12 @@ class _Search:
         return found.known and found.room >= self.room and found.det > NEAR and not self.area.meets(at[None])[0]
 
     def _best(
-        self, looking: Screen, axes: Sequence[FloatArray], share: FloatArray, here: FloatArray | None, now: Place
+        self, looking: Screen, axes: Sequence[FloatArray], share: FloatArray, known: list[tuple[Place, FloatArray]]
     ) -> tuple[Place, Screen]:
-        """The best place by full simulation; what it shows that the screen has not seen is looked at again."""
-        starts = self._starts(axes, share)
-        known = [(now, here)] if here is not None and self.allows(now, here) else []
-        starts = [*starts, here] if here is not None and known else starts
+        """The best place by full simulation, of which some are ``known``; what it shows that the screen has not seen is
+        looked at again."""
+        known = sorted(known, key=lambda each: each[0].share)
+        starts = [*self._starts(axes, share), *(at for _, at in known[:2])]
         reference = looking.reference
         rounds = 1 if self.setup.coupling else ROUNDS
         for turn in range(rounds):
@@ -264,8 +270,7 @@ class _Search:
         """Where the screen is no good measure (a surface that another pass has made), a few steps along the axes by
         full runs; none of a coupled or a long program, each of whose runs takes its time."""
         screened = float(self._look(looking, at[None])[0].share(self.measure, self.setup)[0])
-        long = self.setup.coupling or len(looking.reference.path) > LONG
-        if long or abs(best.share - screened) <= AGREES * best.share:
+        if self._long(looking) or abs(best.share - screened) <= AGREES * best.share:
             return best
         size = _spacing(axes) / 2.0
         for turn in range(POLISHED):
@@ -280,6 +285,10 @@ class _Search:
             else:
                 size = size / 2.0
         return best
+
+    def _long(self, looking: Screen) -> bool:
+        """Whether a full run takes so long that few are made."""
+        return self.setup.coupling or len(looking.reference.path) > LONG
 
     def _starts(self, axes: Sequence[FloatArray], share: FloatArray) -> list[FloatArray]:
         """The best places of the coarse map that are no neighbours of a better one."""

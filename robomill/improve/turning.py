@@ -3,6 +3,7 @@ course of the spin."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from robomill.errors import SetupError
 from robomill.frames import Columns
 from robomill.improve.area import today
 from robomill.improve.judged import check_improvable
+from robomill.improve.map_check import AGREES, LONG
 from robomill.improve.placed import Place, place_of
 from robomill.improve.screening import ASKED, MOST_SAMPLES, Asked, Screen, screen, uncoupled
 from robomill.improve.spin_course import best_course
@@ -37,8 +39,9 @@ WHO = "Spindle"
 ANGLES = 72
 RATE = to_si(1.0, "deg/mm")  # how fast the spin may change along the path
 SAME = 1e-6  # of a share: what differs by no more is the same
-TRIED = 3  # constant spins that are simulated in full
+TRIED, COARSE = 3, 3  # constant spins that are simulated in full; every third where the map is off, then those near
 RATE_ASKED = Quantity("rate", "deg/mm", name="rate", key="rate_deg_mm", above=0.0)
+_Try = tuple[Place, SimulationResult, float]
 ONE_SPIN, NOT_TAKEN, HASTE = "spin-course", "spin-not-taken", "spin-haste"
 
 
@@ -254,16 +257,32 @@ class _Turned:
     ) -> tuple[Place, float, SimulationResult]:
         """The best spin for the whole path by full simulations; today's where no other is better."""
         largest = cost.max(axis=0).min(axis=1)
-        spins = [float(angle[k]) for k in np.argsort(largest, kind="stable")[:TRIED] if np.isfinite(largest[k])]
-        tried = [(*self._simulated(self.setup.replace(spin=spin)), spin) for spin in spins]
+        best_first = [int(k) for k in np.argsort(largest, kind="stable")[:TRIED] if np.isfinite(largest[k])]
+        tried = self._tried(best_first, angle, {})
         if now.known:
             chosen = base.ik.spin
-            tried.append((now, base, 0.0 if chosen is None else float(chosen[0])))
-        known = [each for each in tried if each[0].known]
-        if not known:
+            tried[-1] = (now, base, 0.0 if chosen is None else float(chosen[0]))
+        found = [(tried[k][0].share, largest[k]) for k in best_first if tried[k][0].known]
+        off = any(abs(full - mapped) > AGREES * full for full, mapped in found)
+        if off and len(base.path) <= LONG:  # as at corners: then one does not go by the map
+            tried = self._tried(range(0, ANGLES, COARSE), angle, tried)
+            known = [k for k, each in tried.items() if k >= 0 and each[0].known and each[0].det > NEAR]
+            near = min(known, key=lambda k: tried[k][0].share, default=0)
+            tried = self._tried([(near + k) % ANGLES for k in range(1 - COARSE, COARSE)], angle, tried)
+        sound = [each for k, each in tried.items() if each[0].known and (k in (-1, *best_first) or each[0].det > NEAR)]
+        if not sound:
             raise SetupError(f"{WHO}: no spin reaches all of the path with room to singular configurations.")
-        place, result, spin = min(known, key=lambda each: each[0].share)
+        place, result, spin = min(sound, key=lambda each: each[0].share)
         return place, spin, result
+
+    def _tried(self, numbers: Iterable[int], angle: FloatArray, tried: dict[int, _Try]) -> dict[int, _Try]:
+        """``tried`` with the spins ``angle`` of these numbers, by full simulations."""
+        fresh = [k for k in numbers if k not in tried]
+        found = dict(tried)
+        for n, k in enumerate(fresh):
+            with step(n, len(fresh), "Spins by full simulations"):
+                found[k] = (*self._simulated(self.setup.replace(spin=float(angle[k]))), float(angle[k]))
+        return found
 
     def _course(self, looking: Screen, cost: FloatArray, angle: FloatArray, way: FloatArray) -> FloatArray | None:
         """(m,) rad spin at every sample of the path; None where no course leads through."""

@@ -167,7 +167,9 @@ def _by_shares(g: Push, x: FloatArray) -> Settled:
             break
         rows = np.vstack([apart.T, np.full(len(places), np.abs(apart).max())])
         share = nnls(rows, np.append(np.zeros(3), rows[3, 0]))[0]
-        share /= max(float(share.sum()), np.finfo(float).tiny)
+        if not share.any():  # they all push alike
+            break
+        share /= share.sum()
         rest = share @ apart
         if np.isnan(found.rest) or np.abs(rest).max() < found.rest:
             mix = tuple((places[i], float(share[i])) for i in np.flatnonzero(share))

@@ -43,6 +43,23 @@ def test_no_constant_spin_is_better_than_the_best(found: Turning) -> None:
     assert found.now.share == rm.simulate(circle()).verdict.share
 
 
+def test_the_best_spin_of_a_path_with_corners_is_found_by_runs() -> None:
+    """The map moves each reading as the tip moves; at a corner the next pass cleans up what the tip left, or not."""
+    cutter = rm.Cutter("flat", diameter_mm=10, flutes=3)
+    setup = circle().replace(
+        source=rm.GCodeSource("G21 G90\nS9000 M3\nG0 X-30 Y-20 Z9\nG0 Z-2\nG1 X30 F1500\nG1 Y20\nG1 X-30\nG0 Z9\nM2\n"),
+        cutter=cutter,
+        force=rm.process_force("al7075_t6_carbide_ref190", cutter),
+        stock=rm.Stock(lower_mm=(-45, -40, -10), upper_mm=(45, 40, 0)),
+        engagement=True,
+        step=4e-3,
+    )
+    angle, found = np.arange(0.0, 2 * np.pi, np.pi / 12), rm.turn(setup)
+    runs = [rm.simulate(setup.replace(spin=float(each))) for each in angle]
+    best = min(run.verdict.share for run in runs if run.reached.all() and run.verdict.level in ("ok", "tight", "out"))
+    assert found.constant.share <= best + 1e-9
+
+
 def test_a_course_is_better_than_any_constant_spin_and_no_better_than_its_bound(found: Turning) -> None:
     assert found.course.share < found.constant.share < found.now.share
     assert found.course.share >= np.nanmin(found.share, axis=1).max() * 0.99

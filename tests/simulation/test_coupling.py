@@ -376,6 +376,14 @@ def test_a_ramp_that_is_sent_again_is_solved_at_every_step(D, flutes, step):
         assert np.abs(run.delta - each.x).max(axis=1).min() <= 2 * TOLERANCE, "and that is where C F leads"
 
 
+def test_what_pushes_away_from_everywhere_is_told_as_open():
+    """Wherever the tool stands it is pushed on by 10 um more: nothing holds it, and what acts there is told."""
+    found = settle(lambda x: x + np.array([0.0, 10e-6, 0.0]), np.zeros(3), np.zeros(3), UP)
+    assert not found.agreed
+    assert found.rest == pytest.approx(10e-6, rel=0.1)
+    assert sum(weight for _, weight in found.mix) == pytest.approx(1.0)
+
+
 def test_what_is_not_a_number_ends_it():
     found = settle(lambda x: np.full(3, np.nan), np.zeros(3), np.zeros(3), UP)
     assert not found.agreed
