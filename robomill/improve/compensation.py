@@ -14,7 +14,7 @@ from robomill.frames import Columns
 from robomill.identification.fit.confidence import LEVEL
 from robomill.identification.knowledge import Knowledge
 from robomill.improve.correction import COMPONENTS, Correction, correct
-from robomill.improve.errors import MEASURED, Errors, errors_of, graver, level_of, measured
+from robomill.improve.errors import Errors, errors_of, graver, is_measured_whole, level_of, measured
 from robomill.improve.finer import closer
 from robomill.improve.judged import check_improvable
 from robomill.improve.springs import Springs, springs
@@ -341,7 +341,7 @@ def _findings(
     told += [each.finding for each in sprung]
     known = {(each.code, each.line) for each in wanted.steadiness}
     told += [each for each in led.steadiness if (each.code, each.line) not in known]
-    if int(led.judged.sum()) <= MEASURED:
+    if is_measured_whole(led):
         told += led.uncoupled
     before, after = reversals(wanted), reversals(led)
     if after > before:

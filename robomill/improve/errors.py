@@ -80,14 +80,19 @@ def graver(one: Errors, other: Errors, setup: SimulationSetup) -> Errors:
     return max(one, other, key=lambda errors: errors.share(setup))
 
 
+def is_measured_whole(run: SimulationResult) -> bool:
+    """Whether a gauge reads every sample of a run, which is not so long."""
+    return int(run.judged.sum()) <= MEASURED
+
+
 def measured(run: SimulationResult) -> Gauge:
     """What a gauge reads on a run, of a long one at ``MEASURED`` of its samples and those that are most off."""
-    return run.gauge if int(run.judged.sum()) <= MEASURED else gauge_at(run, MEASURED)
+    return run.gauge if is_measured_whole(run) else gauge_at(run, MEASURED)
 
 
 def level_of(run: SimulationResult) -> Level:
     """The verdict's level by what was ``measured`` on a run."""
-    return run.verdict.level if int(run.judged.sum()) <= MEASURED else judge(run, measured(run)).level
+    return run.verdict.level if is_measured_whole(run) else judge(run, measured(run)).level
 
 
 def errors_of(run: SimulationResult, gauge: Gauge | None = None) -> Errors:

@@ -15,6 +15,11 @@ LONG = 2000  # samples of a path beyond which few full runs are made
 PROBES, MANY = 8, 64  # places that are looked at, and where one of them is off
 
 
+def agrees(full: float, mapped: float) -> bool:
+    """Whether the share of a full simulation is the one that a map has."""
+    return abs(full - mapped) <= AGREES * full
+
+
 def checked(
     simulated: Callable[[FloatArray], Place], places: FloatArray, share: FloatArray, spacing: FloatArray
 ) -> dict[int, Place]:
@@ -37,7 +42,7 @@ def checked(
         return [i for i in some if full[i].known]
 
     few = look_at(_spread(order, PROBES), "The map is checked")
-    if all(abs(full[i].share - share[i]) <= AGREES * full[i].share for i in few):
+    if all(agrees(full[i].share, share[i]) for i in few):
         return {}
     look_at([i for i in _spread(allowed, MANY) if i not in full], "The map is mended by full simulations")
     known = [i for i in full if full[i].known]

@@ -14,7 +14,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import SetupError
 from robomill.improve.area import MOST_CANDIDATES, WHO, Area, area, grid, today
 from robomill.improve.judged import check_improvable
-from robomill.improve.map_check import AGREES, LONG, checked
+from robomill.improve.map_check import LONG, agrees, checked
 from robomill.improve.placed import (
     FINE,
     FINEST,
@@ -252,7 +252,7 @@ class _Search:
                 if self.allows(found, end):
                     known.append((found, end))
                 screened = float(self._look(looking, end[None])[0].share(self.measure, self.setup)[0])
-                if not found.known or abs(found.share - screened) > AGREES * found.share:
+                if not found.known or not agrees(found.share, screened):
                     unseen += _worst_samples(result)
             if not (fresh := np.setdiff1d(np.array(unseen, dtype=np.int64), looking.at)).size:
                 break
@@ -270,7 +270,7 @@ class _Search:
         """Where the screen is no good measure (a surface that another pass has made), a few steps along the axes by
         full runs; none of a coupled or a long program, each of whose runs takes its time."""
         screened = float(self._look(looking, at[None])[0].share(self.measure, self.setup)[0])
-        if self._long(looking) or abs(best.share - screened) <= AGREES * best.share:
+        if self._long(looking) or agrees(best.share, screened):
             return best
         size = _spacing(axes) / 2.0
         for turn in range(POLISHED):

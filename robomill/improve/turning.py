@@ -14,7 +14,7 @@ from robomill.errors import SetupError
 from robomill.frames import Columns
 from robomill.improve.area import today
 from robomill.improve.judged import check_improvable
-from robomill.improve.map_check import AGREES, LONG
+from robomill.improve.map_check import LONG, agrees
 from robomill.improve.placed import Place, place_of
 from robomill.improve.screening import ASKED, MOST_SAMPLES, Asked, Screen, screen, uncoupled
 from robomill.improve.spin_course import best_course
@@ -262,8 +262,7 @@ class _Turned:
         if now.known:
             chosen = base.ik.spin
             tried[-1] = (now, base, 0.0 if chosen is None else float(chosen[0]))
-        found = [(tried[k][0].share, largest[k]) for k in best_first if tried[k][0].known]
-        off = any(abs(full - mapped) > AGREES * full for full, mapped in found)
+        off = any(tried[k][0].known and not agrees(tried[k][0].share, largest[k]) for k in best_first)
         if off and len(base.path) <= LONG:  # as at corners: then one does not go by the map
             tried = self._tried(range(0, ANGLES, COARSE), angle, tried)
             known = [k for k, each in tried.items() if k >= 0 and each[0].known and each[0].det > NEAR]

@@ -103,7 +103,7 @@ def _by_height(g: Push, free: FloatArray, axis: FloatArray) -> Settled:
     aside, ends = first, (float(free @ axis), float(first @ axis))
     for _ in range(TURNS):
         aside = aside - (aside @ axis) * axis
-        low, high, asked = _around(g, aside, axis, (min(ends), max(ends)))
+        low, high, asked = _bounds(g, aside, axis, (min(ends), max(ends)))
         found = replace(found, evaluations=found.evaluations + asked)
         if not low < high:
             break
@@ -117,7 +117,7 @@ def _by_height(g: Push, free: FloatArray, axis: FloatArray) -> Settled:
     return found
 
 
-def _around(g: Push, aside: FloatArray, axis: FloatArray, ends: tuple[float, float]) -> tuple[float, float, int]:
+def _bounds(g: Push, aside: FloatArray, axis: FloatArray, ends: tuple[float, float]) -> tuple[float, float, int]:
     """Heights (m) around ``ends`` of which g leads up from the lower one and down from the upper one, and how often g
     was asked; NaN where there are none as far as a tool is corrected at once."""
     (low, high), step, rises, count = ends, TOLERANCE, False, 0

@@ -209,9 +209,8 @@ class Dialect:
                 block.words.pop(letter, None)
             machine.note("radius-counts", "info", "an arc with R and I, J or K is that of R, as on Fanuc controls")
         if self.name in ("fanuc", "sinumerik") and modal.DIAMETER in block.g:
-            raise block.refuse(
-                f"{g_name(block.g[modal.DIAMETER])} of a {self.name.title()} control is not read; remove it."
-            )
+            code, control = g_name(block.g[modal.DIAMETER]), self.name.title()
+            raise block.refuse(f"{code} of a {control} control is not read; remove the word.")
         if self.name == "sinumerik" and block.g.get(modal.COORDINATES) in (580, 590):
             raise block.refuse(
                 f"{g_name(block.g[modal.COORDINATES])} shifts coordinates on a Sinumerik, which is not read; write "
