@@ -26,7 +26,7 @@ from robomill.provenance import Finding, named
 from robomill.simulation.band import deviation_band
 from robomill.simulation.judging.gauge import Gauge
 from robomill.simulation.judging.verdict import judge
-from robomill.simulation.judging.verdict_words import LEVELS, Level, level_of_share
+from robomill.simulation.judging.verdict_words import LEVELS, NO_NUMBER, Level, level_of_share
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, ran, spin_of
 from robomill.simulation.setup import SimulationSetup
@@ -312,9 +312,12 @@ def _half(led: SimulationResult, known: Knowledge | None) -> float:
 
 def _met(after: Errors, softer: Errors, stronger: Errors, led: SimulationResult) -> tuple[Finding, ...]:
     """Whether the corrected program keeps the tolerance, and whether it still does if the numbers are wrong."""
-    setup = led.setup
+    setup, found = led.setup, judge(led, measured(led))
+    if found.level in NO_NUMBER:
+        text = f"whether the corrected program keeps the tolerance is not known. {found.sentence}"
+        return (Finding("warning", text, code="not-known"),)
     if after.share(setup) > 1.0:
-        text = f"the tolerance is not kept by the corrected program either. {judge(led, measured(led)).sentence}"
+        text = f"the tolerance is not kept by the corrected program either. {found.sentence}"
         return (Finding("warning", text, code="not-met"),)
     wrong = graver(softer, stronger, setup)
     if wrong.share(setup) <= 1.0:

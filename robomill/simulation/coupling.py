@@ -8,7 +8,6 @@ deflection of the step before.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import product
 
 import numpy as np
@@ -24,8 +23,11 @@ TURNS = 8  # of the way on which a bracket is halved
 COUPLING = "coupling"
 LONGEST = 0.5e-3  # m: no correction goes further at once
 NARROW = 0.1e-9  # m: to that a jump is found; beside it g may change a thousand times as fast as the tool's place
+CLOSE, NEAR = 0.5 * TOLERANCE, 16.0 * TOLERANCE  # m: so far off are forces of which shares are taken, last and first
 AROUND = np.array([*product((-1.0, 0.0, 1.0), repeat=3), *product((-0.3, 0.3), repeat=3)])
 """(35, 3): places around one, of half a cube's edge."""
+STRAIGHT = np.linalg.pinv(np.column_stack([np.ones(len(AROUND)), AROUND]))
+"""(4, 35): of what is found ``AROUND`` a place the value there, and how it changes along x, y and z, by least squares."""
 Push = Callable[[FloatArray], FloatArray]
 """Where the force that acts with the tool at a place (3,) m bends it to, (3,) m."""
 
@@ -56,11 +58,16 @@ def settle(g: Push, start: FloatArray, free: FloatArray, axis: FloatArray) -> Se
 
     Broyden's method on g(x) - x, whose first step is x <- g(x). Where it does not close in, the height at which the
     end of the tool rests, then a bracket between where the force bends the tool from ``free`` and from there, and last
-    the forces that act around the best place so far. A g that is not a number ends it.
+    the forces that act around the best place so far, near it and a little further off. A g that is not a number ends it.
     """
     found = _by_broyden(g, start)
     gain = found.gain
-    ways = (partial(_by_height, g, free, axis), partial(_by_bracket, g, free), lambda: _by_shares(g, found.x))
+    ways: tuple[Callable[[], Settled], ...] = (
+        lambda: _by_height(g, free, axis),
+        lambda: _by_bracket(g, free),
+        lambda: _by_shares(g, found.x, CLOSE, TURNS),
+        lambda: _by_shares(g, found.x, NEAR, 4 * TURNS),
+    )
     for otherwise in ways:
         if found.agreed or not np.isfinite(found.rest):
             break
@@ -153,15 +160,17 @@ def _by_bracket(g: Push, free: FloatArray) -> Settled:
     return found
 
 
-def _by_shares(g: Push, x: FloatArray) -> Settled:
-    """Where a force jumps in more ways than one: shares of the forces around x, no further than they have to agree,
-    that together hold the tool there; where they push it on, around there."""
+def _by_shares(g: Push, x: FloatArray, far: float, turns: int) -> Settled:
+    """Where a force jumps in more ways than one: shares of the forces around x that together hold the tool in their
+    midst. They are sought up to ``far`` (m) off first, where more of them are met, then around that midst by half as
+    far, until none is further from it than they have to agree. Where none hold it, the next are sought a little further
+    apart, around where the straight law that fits them best has its root, or on the way there."""
     from scipy.optimize import nnls
 
     found = Settled(x, float("nan"), 0, float("nan"), ((x, 1.0),))
-    for _ in range(TURNS):
-        places = x + TOLERANCE * AROUND
-        apart = np.array([g(place) - x for place in places])
+    for _ in range(turns):
+        places = x + far * AROUND
+        apart = np.array([g(place) for place in places]) - places
         found = replace(found, evaluations=found.evaluations + len(places))
         if not np.isfinite(apart).all():
             break
@@ -170,13 +179,19 @@ def _by_shares(g: Push, x: FloatArray) -> Settled:
         if not share.any():  # they all push alike
             break
         share /= share.sum()
-        rest = share @ apart
-        if np.isnan(found.rest) or np.abs(rest).max() < found.rest:
+        left = float(np.abs(share @ apart).max())
+        if far <= CLOSE and (np.isnan(found.rest) or left < found.rest):
             mix = tuple((places[i], float(share[i])) for i in np.flatnonzero(share))
-            found = replace(found, x=x, rest=float(np.abs(rest).max()), mix=mix)
+            found = replace(found, x=share @ places, rest=left, mix=mix)
         if found.agreed:
             break
-        x = x + rest
+        if left <= TOLERANCE:
+            x, far = share @ places, 0.5 * far
+        else:
+            here, *law = STRAIGHT @ apart
+            way = -np.linalg.lstsq(np.array(law).T / far, here, rcond=1e-6)[0]
+            x = x + way * min(1.0, 2.0 * far / max(float(np.linalg.norm(way)), far))
+            far *= 1.1
     return found
 
 

@@ -87,4 +87,5 @@ def against(
         return told
     of = _behind(links)
     rows = {name: getattr(told, name)[of] for name in ("F", "delta_joint", "delta_spring", "delta", "ahead")}
-    return replace(told, **rows)
+    unjudged = tuple(replace(each, where=each.where[of]) for each in told.unjudged)
+    return replace(told, **rows, unjudged=unjudged)

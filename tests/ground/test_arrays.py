@@ -108,7 +108,7 @@ DIFFERENT = [
     2,
     0.0,
     1.0,
-    -0.0,
+    -1.0,
     "",
     "a",
     "b",
@@ -154,6 +154,36 @@ def test_equal_values_have_equal_digests_however_they_are_held() -> None:
     assert digest(grid.astype(">f8")) == digest(grid)
 
 
+@pytest.mark.parametrize("places", range(5))
+def test_one_length_in_two_units_has_one_digest(places: int) -> None:
+    lengths_mm = np.round(np.random.default_rng(places).uniform(-3000, 3000, 1000), places)
+    apart, together = lengths_mm * 1e-3, lengths_mm / 1000
+    assert places or (apart != together).any(), "their last bits differ"
+    assert digest(apart) == digest(together)
+    assert [digest(x) for x in apart.tolist()] == [digest(x) for x in together.tolist()]
+
+
+@pytest.mark.parametrize("base", [0.7, -123.456, 1e-9, 0.1 + 0.2, 9.999999999999, 1e300])
+def test_twelve_digits_tell_numbers_apart(base: float) -> None:
+    near, other = np.nextafter(base, np.inf), base * (1 + 2e-12)
+    assert digest(near) == digest(base) and digest(np.array([near])) == digest(np.array([base]))
+    assert digest(other) != digest(base) and digest(np.array([other])) != digest(np.array([base]))
+
+
+@pytest.mark.parametrize("power", range(-300, 301, 20))
+def test_a_power_of_ten_is_told_alike_from_both_sides(power: int) -> None:
+    one = float(f"1e{power}")
+    around = [one, float(np.nextafter(one, 0)), float(np.nextafter(one, np.inf))]
+    assert len({digest(value) for value in around}) == 1
+    assert len({digest(np.array([value])) for value in around}) == (1 if power > -290 else 3)
+
+
+def test_zero_has_no_sign_and_what_is_not_finite_is_told_apart() -> None:
+    assert digest(np.array([-0.0])) == digest(np.array([0.0])) and digest(-0.0) == digest(0.0)
+    ends = [0.0, 5e-324, -5e-324, np.nan, np.inf, -np.inf, 1.7e308, -1.7e308]
+    assert len({digest(np.array([end])) for end in ends}) == len(ends)
+
+
 def test_what_has_no_canonical_bytes_is_a_bug() -> None:
     with pytest.raises(TypeError, match="no canonical bytes for set"):
         digest({1, 2})
@@ -163,8 +193,8 @@ def test_what_has_no_canonical_bytes_is_a_bug() -> None:
 
 def test_the_digest_is_the_same_on_every_machine() -> None:
     """SHA-256 of the canonical bytes, spelled out."""
-    assert digest([1, 0.5, "ab"]) == sha256(b"s3(i1f0x1.0000000000000p-1t2:ab)").hexdigest()
-    words = np.array([1.0]).tobytes()
+    assert digest([1, 0.5, "ab"]) == sha256(b"s3(i1f5.000000000000e-01t2:ab)").hexdigest()
+    words = np.array([1e12, 0.0]).tobytes()
     assert digest(One(np.array([1.0]))) == sha256(b"dOne(a=a<f8(1,)" + words + b")").hexdigest()
     assert digest({"a": None, "b": b"xy"}) == sha256(b"m(t1:ant1:by2:xy)").hexdigest()
 

@@ -332,6 +332,31 @@ def test_an_end_that_rests_on_its_floor_holds_the_tool(seed):
     assert found.rest == pytest.approx(remains(bends, found), abs=1e-12)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_an_edge_of_a_floor_between_three_pushes_holds_the_tool(seed):
+    """Above a floor one push, below it another on each side of a line: a share of each holds the tool on the floor's
+    edge at x, which is chosen here first, with the shares. Each alone sends it hundreds of micrometres away."""
+    rng = np.random.default_rng(seed)
+    up, aside, along = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    x, share = rng.uniform(100e-6, 300e-6) * up + rng.normal(size=3) * 50e-6, rng.dirichlet([2, 2, 2])
+    lift, turn = rng.uniform(100e-6, 600e-6) * np.array([1.0, rng.uniform(0.5, 1.0)]), rng.uniform(20e-6, 200e-6, 2)
+    left, right = (
+        lift[i] * up + way * turn[i] * aside + rng.normal() * 100e-6 * along for i, way in enumerate((1.0, -1.0))
+    )
+    above = -(share[1] * left + share[2] * right) / share[0]
+
+    def bends(y):
+        if (y - x) @ up > 0.0:
+            return x + above
+        return x + (left if (y - x) @ aside < 0.0 else right)
+
+    found = settle(bends, np.zeros(3), np.zeros(3), up)
+    assert found.agreed
+    assert found.rest == pytest.approx(remains(bends, found), abs=1e-12)
+    assert max(np.abs(place - found.x).max() for place, _ in found.mix) <= TOLERANCE * (1 + 1e-9)
+    np.testing.assert_allclose([up @ found.x, aside @ found.x], [up @ x, aside @ x], atol=2 * TOLERANCE)
+
+
 @pytest.mark.parametrize(("D", "flutes", "angle"), [(6, 2, 1), (8, 3, 3), (10, 4, 2), (12, 3, 5)])
 def test_a_ramp_into_the_full_is_solved_at_every_step(D, flutes, angle):
     """The end touches, presses and rests on what it has cut: each step has an answer, which bends the tool to it."""

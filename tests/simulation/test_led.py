@@ -1,8 +1,11 @@
 """Runs along a path beside the one that was meant, told from that."""
 
+from dataclasses import replace
+
 import numpy as np
 
 import robomill as rm
+from robomill.cutting.unjudged import Unjudged
 from robomill.io.samples import samples_dir
 from robomill.progress import Progress, watched
 from robomill.simulation.led import against
@@ -25,6 +28,22 @@ def test_against_the_wanted_path_a_run_is_off_by_what_its_tip_is() -> None:
     np.testing.assert_allclose(told.ahead[cut], np.tile(-to_M @ beside, (cut.sum(), 1)), atol=1e-15)
     np.testing.assert_allclose(told.p_machined[cut], (run.path.p + run.delta @ to_M)[cut], atol=1e-12)
     assert told.path is wanted
+
+
+def test_a_link_is_judged_where_the_cut_is_that_it_leads_to() -> None:
+    """A link takes what its cut begins with: its number, or that it has none, and no longer its own."""
+    text = "G21 G90\nG0 X0 Y0 Z5\nG0 Z-2\nG1 X20 F600\nG0 Z5\nM2\n"
+    run = rm.simulate(SLOT.replace(source=rm.GCodeSource(text, "x.nc")))
+    cut = np.flatnonzero(run.path.cutting)
+    links, open_ = np.zeros(len(run.path), dtype=bool), np.zeros(len(run.path), dtype=bool)
+    links[cut[[4, 9]]] = True
+    open_[cut[[5, 9]]] = True  # where the first link leads to, and the second link itself
+    delta = np.where(open_[:, None], np.nan, run.delta)
+    left = replace(run, delta=delta, unjudged=(Unjudged("coupling", open_, "open"),))
+    told = against(left, run.path, run.R_MF, links)
+    assert np.flatnonzero(told.not_judged).tolist() == cut[[4, 5]].tolist()
+    assert np.flatnonzero(~np.isfinite(told.delta[:, 0]) & run.path.cutting).tolist() == cut[[4, 5]].tolist()
+    assert not told.missed.any()
 
 
 def test_every_stage_of_a_corrected_run_is_told_from_its_beginning() -> None:
