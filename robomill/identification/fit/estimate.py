@@ -24,6 +24,7 @@ from robomill.identification.fit.suspects import UNASKED
 from robomill.identification.fit.system import System, build_system
 from robomill.identification.fit.treatment import AUTO, BENDING_JOINTS, STANDARD, Treatment
 from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.other_senses import CODE as SENSE
 from robomill.identification.pull.found_points import found_points, point_findings
 from robomill.identification.pull.lines_of_pull import lines_of_pull
 from robomill.identification.pull.offer import offer_of
@@ -69,7 +70,8 @@ def identify(
     result = _result(robot, tests, choice, fitted)
     error = headline(relative_by_pose(fitted.system, missed.error, fitted.weights))
     inquest = UNASKED
-    if choice.has("joint"):
+    turned_round = any(finding.code == SENSE for finding in result.findings)  # no spring and no point explains that
+    if choice.has("joint") and not turned_round:
         inquest = Inquiry.of(robot, tests, result, treatment, fitted).inquest()
     offer = offer_of(robot, tests, choice, treatment, inquest)
     bends = bending_offer(candidates, model, inquest, error)
