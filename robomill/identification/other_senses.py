@@ -37,7 +37,8 @@ def sense_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
     if tests.theta is None or solved or len(tests) < FEWEST:
         return ()
     tests = tests.thinned(MOST)
-    stated, which, least = _left_over(robot, tests), (), np.inf
+    which: tuple[int, ...] = ()
+    stated, least = _left_over(robot, tests), np.inf
     for turned in _turned(robot.n) if stated > AMISS else ():
         checkpoint()
         now = _left_over(robot, _with_turned(robot, tests, turned))

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, IntArray
 from robomill.identification.fit.confidence import BISQUARE, MAD
 from robomill.identification.fit.fitting import columns, linear_readings
 from robomill.identification.fit.least_squares import NULL, robust_fit
@@ -22,21 +22,22 @@ EXACT = 1e-9  # of the readings: a scatter below it is rounding
 MOST = 100.0  # the noisiest counts as no more than this many times the quietest
 
 
-def balanced(system: System) -> System:
-    """The system with the noise of each component as its residuals say, where these clearly differ."""
-    size, spare = _scatters(system)
+def balanced(system: System, group: IntArray | None = None) -> System:
+    """The system with the noise of each component (or ``group`` (e,), from 0) as residuals say, where they differ."""
+    group = system.component if group is None else group
+    size, spare = _scatters(system, group)
     judged = np.flatnonzero(spare >= FEWEST)
     if len(judged) < 2 or not _differ(size[judged], spare[judged]):
         return system
     noise = system.noise
     for _ in range(ROUNDS):
         checkpoint()
-        factor = np.ones(6)
+        factor = np.ones(len(size))
         factor[judged] = np.maximum(size[judged], size[judged].max() / MOST)
         typical = float(np.sqrt(np.average(factor[judged] ** 2, weights=spare[judged])))
         factor[judged] /= typical
-        noise = system.noise * factor[system.component]
-        size, spare = _scatters(replace(system, noise=noise))
+        noise = system.noise * factor[group]
+        size, spare = _scatters(replace(system, noise=noise), group)
         if (spare[judged] < FEWEST).any():
             break
         size = size * factor
@@ -50,8 +51,8 @@ def _differ(size: FloatArray, spare: FloatArray) -> bool:
     return bool(np.log(size[high] / size[low]) > chance)
 
 
-def _scatters(system: System) -> tuple[FloatArray, FloatArray]:
-    """By displacement component (6,): scatter over the noise, gross readings left out, and how many are to spare.
+def _scatters(system: System, group: IntArray) -> tuple[FloatArray, FloatArray]:
+    """By group of displacements: scatter over the noise, gross readings left out, and how many are to spare.
 
     None are to spare where what is left over is rounding: a component that nothing moves has no scatter.
     """
@@ -63,9 +64,10 @@ def _scatters(system: System) -> tuple[FloatArray, FloatArray]:
     U, values, _ = np.linalg.svd(wide / np.maximum(np.linalg.norm(wide, axis=0), 1e-300), full_matrices=False)
     leverage = (U[:, values > NULL * values.max(initial=0.0)] ** 2).sum(axis=1)
     least = EXACT * float(np.sqrt(np.mean((now.b / now.noise) ** 2)))
-    size, spare = np.ones(6), np.zeros(6)
-    for k in np.unique(now.component[now.linear]):
-        own = now.component == k
+    count = int(group.max()) + 1
+    size, spare = np.ones(count), np.zeros(count)
+    for k in np.unique(group[now.linear]):
+        own = group == k
         left = np.abs(residual[own])
         middle = float(np.median(left)) / MAD
         good = left <= BISQUARE * middle

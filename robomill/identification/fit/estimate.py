@@ -12,6 +12,7 @@ import numpy as np
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
 from robomill.identification import diagnostics
+from robomill.identification.fit.balance import balanced
 from robomill.identification.fit.causes import Inquiry
 from robomill.identification.fit.crossvalidation import Folded, Missed, good, headline, leave_out, relative_by_pose
 from robomill.identification.fit.doubts import bending_offer, model_findings
@@ -109,7 +110,8 @@ def pull_starts(robot: Robot, tests: LoadTests, freed: tuple[Point, ...]) -> tup
 
 def _of_joints(robot: Robot, tests: JointTests, choice: Model, treatment: Treatment) -> IdentificationResult:
     """Single joints: no pose, no points, and nothing that says how the tool moves."""
-    fitted = fit_system(build_system(robot, tests, choice, treatment.freed), treatment.robust)
+    system = build_system(robot, tests, choice, treatment.freed)
+    fitted = fit_system(balanced(system, np.unique(tests.joint, return_inverse=True)[1]), treatment.robust)
     fold = folds_of("pose", fitted.system.pose, None)
     folded = Folded(fitted.small, fold, fitted.weights)
     missed = leave_out(folded.count, lambda left: folded)

@@ -9,7 +9,7 @@ import robomill as rm
 from robomill.identification.fit.balance import balanced
 from robomill.identification.fit.models import Model
 from robomill.identification.fit.system import build_system
-from robomill.identification.load_test import LoadTests
+from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.synthesis import three_directions
 from tests.identification.synthetic import simulated_tests
 
@@ -75,3 +75,20 @@ def test_good_rows_of_a_noisy_gauge_are_no_outliers():
     assert rm.identify(ROBOT, LoadTests(F, read, theta=THETA)).outliers == ()
     read[7, 0] += 80e-6
     assert [each.row for each in rm.identify(ROBOT, LoadTests(F, read, theta=THETA)).outliers] == [8]
+
+
+@pytest.mark.parametrize(("weighed", "held"), [(True, 0.91), (False, 0.56)])
+def test_single_joints_that_are_read_ten_times_worse_have_intervals_of_their_own(weighed, held, monkeypatch):
+    """One noise for all joints took that of the well read ones for joint 5's."""
+    if not weighed:
+        monkeypatch.setattr("robomill.identification.fit.estimate.balanced", lambda system, group: system)
+    rng = np.random.default_rng(6)
+    joint, torque = np.repeat(np.arange(1, 6), 8), np.tile(np.linspace(100.0, 450.0, 8), 5)
+    scatter = np.where(joint == 5, 2e-5, 2e-6)
+    inside = []
+    for _ in range(100):
+        angle = ROBOT.C_theta[joint - 1] * torque + scatter * rng.standard_normal(40)
+        low, high = rm.identify(ROBOT, JointTests(joint=joint, torque=torque, angle=angle)).ci95.T
+        inside.append((low <= ROBOT.C_theta) & (ROBOT.C_theta <= high))
+    assert np.mean(inside, axis=0)[4] == pytest.approx(held, abs=0.05)
+    assert np.mean(inside, axis=0).min() > held - 0.06
