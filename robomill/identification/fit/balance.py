@@ -25,23 +25,31 @@ MOST = 100.0  # the noisiest counts as no more than this many times the quietest
 def balanced(system: System, group: IntArray | None = None) -> System:
     """The system with the noise of each component (or ``group`` (e,), from 0) as residuals say, where they differ."""
     group = system.component if group is None else group
-    size, spare = _scatters(system, group)
+    part, own = _distinct(system, group)
+    size, spare = _scatters(part, own)
     judged = np.flatnonzero(spare >= FEWEST)
     if len(judged) < 2 or not _differ(size[judged], spare[judged]):
         return system
-    noise = system.noise
+    factor = np.ones(len(size))
     for _ in range(ROUNDS):
         checkpoint()
-        factor = np.ones(len(size))
         factor[judged] = np.maximum(size[judged], size[judged].max() / MOST)
         typical = float(np.sqrt(np.average(factor[judged] ** 2, weights=spare[judged])))
         factor[judged] /= typical
-        noise = system.noise * factor[group]
-        size, spare = _scatters(replace(system, noise=noise), group)
+        size, spare = _scatters(replace(part, noise=part.noise * factor[own]), own)
         if (spare[judged] < FEWEST).any():
             break
         size = size * factor
-    return replace(system, noise=noise)
+    return replace(system, noise=system.noise * factor[group])
+
+
+def _distinct(system: System, group: IntArray) -> tuple[System, IntArray]:
+    """The equations each once, and their groups: a copy is no second reading, and makes no scatter surer."""
+    table = np.column_stack([system.A, system.b, system.noise, group])
+    first = np.sort(np.unique(table, axis=0, return_index=True)[1])
+    names = ("A", "b", "noise", "test", "component", "pose")
+    terms = None if system.terms is None else system.terms[first]
+    return replace(system, **{name: getattr(system, name)[first] for name in names}, terms=terms), group[first]
 
 
 def _differ(size: FloatArray, spare: FloatArray) -> bool:
