@@ -22,6 +22,8 @@ SLIPS = {  # by words: a number that was meant in the one unit, and stands under
     for meant, said in (("in", "mm"), ("mm", "in"), ("m", "mm"), ("mm", "m"))
 }
 OTHER_UNITS = {slip: to_si(1.0, meant) / to_si(1.0, said) for slip, (meant, said) in SLIPS.items()}  # times
+SOLVED = frozenset({"turn-about-the-tool", "posture-open", "postures-open", "joints-solved"})
+"""Codes of what is said where joints were solved from poses."""
 WRITTEN = 4  # decimals of a length as tables have it
 LIMIT_SLACK = 1e-5  # rad (m): rounding of a written angle allowed beyond a joint limit
 

@@ -19,10 +19,12 @@ from robomill.arguments import asked, asking
 from robomill.arrays import BoolArray, FloatArray, IntArray, digest, frozen, made_array
 from robomill.errors import LoadTestError
 from robomill.frames import Columns
+from robomill.identification.array_checks import floats, gauge_directions, given_or, six_columns
 from robomill.identification.configurations import checked, sliding_joints, solved, ways
 from robomill.kinematics.forward import tool_pose
 from robomill.lazy import cached_property
 from robomill.provenance import Finding, Provenance
+from robomill.quantities import GREATEST
 from robomill.robot.model import Robot
 from robomill.units import format_count, format_si, from_si
 from robomill.values import Tabled
@@ -127,40 +129,40 @@ class LoadTests(_Rows):
     sliding: tuple[int, ...] | None = None
 
     def __post_init__(self) -> None:
-        wrench = _six(self.wrench, "wrench")
+        wrench = six_columns(self.wrench, "wrench")
         m = len(wrench)
         if m == 0:
             raise LoadTestError("Load tests: no test in it; give at least one loaded pose.")
         row = np.arange(1, m + 1) if self.row is None else np.asarray(self.row)
         if row.shape != (m,):
             raise LoadTestError(f"row: expected {m} row numbers, found an array of shape {row.shape}.")
-        displacement = _six(self.displacement, "displacement")
+        displacement = six_columns(self.displacement, "displacement")
         values = {
             "wrench": wrench,
             "displacement": displacement,
-            "force_point": _default(self.force_point, m, "force_point"),
-            "measuring_point": _default(self.measuring_point, m, "measuring_point"),
-            "noise": np.full(m, np.nan) if self.noise is None else np.broadcast_to(self.noise, (m,)),
-            "pulley": np.full((m, 3), np.nan) if self.pulley is None else np.asarray(self.pulley, dtype=np.float64),
+            "force_point": given_or(self.force_point, (m, 3), "force_point"),
+            "measuring_point": given_or(self.measuring_point, (m, 3), "measuring_point"),
+            "noise": given_or(self.noise, (m,), "noise", np.nan),
+            "pulley": given_or(self.pulley, (m, 3), "pulley", np.nan),
         }
         if (self.theta is None) == (self.x_M is None):
             raise LoadTestError("Load tests: give the poses either as theta or as x_M, one of the two.")
         name = "theta" if self.theta is not None else "x_M"
-        poses = np.asarray(getattr(self, name), dtype=np.float64)
+        poses = floats(getattr(self, name), name)
         if poses.ndim != 2 or len(poses) != m or (name == "x_M" and poses.shape[1] not in (5, 6)):
             raise LoadTestError(f"{name}: expected one pose for each of the {m} tests, found shape {poses.shape}.")
         values[name] = poses
         if self.gauges is not None:
-            values["gauges"] = np.asarray(self.gauges, dtype=np.float64)
+            values["gauges"] = gauge_directions(self.gauges, displacement, row)
         if displacement.shape != (m, 6):
             raise LoadTestError(f"displacement: expected shape {(m, 6)}, found {displacement.shape}.")
         for key, value in values.items():
-            bad = ~np.isfinite(value) if key not in ("displacement", "noise", "pulley") else np.isinf(value)
+            known = np.isnan(value) if key in ("displacement", "noise", "pulley") else np.zeros(value.shape, dtype=bool)
+            bad = ~(known | (np.abs(value) <= GREATEST))
             if bad.any():
                 where = int(row[np.argwhere(bad)[0][0]])
-                raise LoadTestError(
-                    f"Row {where}, {key}: found NaN or infinity, expected numbers.", where=f"row {where}"
-                )
+                what = "a number beyond any measurement" if np.isfinite(value[bad]).all() else "NaN or infinity"
+                raise LoadTestError(f"Row {where}, {key}: found {what}, expected numbers.", where=f"row {where}")
             object.__setattr__(self, key, frozen(value))
         object.__setattr__(self, "row", frozen(row, np.int64))
         _refuse_empty(wrench, displacement, row)
@@ -322,14 +324,14 @@ class JointTests(_Rows):
         if m == 0:
             raise LoadTestError("Joint tests: no test in it; give at least one torque and angle.")
         row = np.arange(1, m + 1) if self.row is None else np.asarray(self.row)
-        torque, angle = (np.asarray(v, dtype=np.float64) for v in (self.torque, self.angle))
+        torque, angle = floats(self.torque, "torque"), floats(self.angle, "angle")
         for name, value in (("torque", torque), ("angle", angle)):
             if value.shape != (m,) or not np.isfinite(value).all():
                 raise LoadTestError(f"{name}: expected {m} finite numbers, found shape {value.shape} or NaN.")
         if (torque == 0).any():
             where = int(row[np.argmax(torque == 0)])
             raise LoadTestError(f"Row {where}: the torque is zero, so nothing can be learned; delete the row.")
-        noise = np.full(m, np.nan) if self.noise is None else np.broadcast_to(self.noise, (m,))
+        noise = given_or(self.noise, (m,), "noise", np.nan)
         for name, value in (("torque", torque), ("angle", angle), ("noise", noise)):
             object.__setattr__(self, name, frozen(value))
         object.__setattr__(self, "joint", frozen(self.joint, np.int64))
@@ -348,26 +350,6 @@ class JointTests(_Rows):
 def _vector(name: str, values: FloatArray, unit: str) -> Columns:
     """A column for each component of values (m, 3): ``F`` in N gives Fx_N, Fy_N, Fz_N."""
     return {f"{name}{axis}_{unit.replace(' ', '')}": from_si(values[:, i], unit) for i, axis in enumerate("xyz")}
-
-
-def _six(value: ArrayLike, name: str) -> FloatArray:
-    """(m, 3) or (m, 6) as (m, 6): no moment, rotation not measured."""
-    array = np.asarray(value, dtype=np.float64)
-    if array.ndim != 2 or array.shape[1] not in (3, 6):
-        raise LoadTestError(f"{name}: expected shape (m, 3) or (m, 6), found {array.shape}.")
-    if array.shape[1] == 6:
-        return array
-    fill = 0.0 if name == "wrench" else np.nan
-    return np.concatenate([array, np.full_like(array, fill)], axis=1)
-
-
-def _default(value: ArrayLike | None, m: int, name: str) -> FloatArray:
-    if value is None:
-        return np.zeros((m, 3))
-    try:
-        return np.broadcast_to(np.asarray(value, dtype=np.float64), (m, 3))
-    except (ValueError, OverflowError) as exc:
-        raise LoadTestError(f"{name}: expected shape (3,) or ({m}, 3), found {np.shape(value)}.") from exc
 
 
 def _refuse_empty(wrench: FloatArray, displacement: FloatArray, row: IntArray) -> None:

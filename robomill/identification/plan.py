@@ -13,6 +13,7 @@ import numpy as np
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
 from robomill.identification.configurations import sliding_joints
+from robomill.identification.fit.balance import balanced
 from robomill.identification.fit.confidence import half_width
 from robomill.identification.fit.models import Parameter
 from robomill.identification.fit.system import build_system
@@ -155,7 +156,8 @@ def next_best(
         raise LoadTestError("Plan: the noise is not known (no residuals to judge by); state it in mm.")
     aim = _aim(robot, result, goal)
     candidates = candidates or candidates_around(robot, tests)
-    system = build_system(robot, tests.without(result.excluded), result.choice)
+    by_size = result.treatment.weights == "size"
+    system = balanced(build_system(robot, tests.without(result.excluded), result.choice, by_size=by_size))
     D = result.choice.tip_regressor(robot, candidates.theta, candidates.F)
     scale = np.sqrt((system.A**2).sum(axis=0) + (D**2).mean(axis=(0, 1)))  # above zero wherever either sees anything
     scale[scale == 0] = 1.0  # a spring that neither can see

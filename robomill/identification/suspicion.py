@@ -10,6 +10,7 @@ from robomill.identification.fit.system import build_system
 from robomill.identification.length_units import length_suspicions
 from robomill.identification.load_test import JointTests, LoadTests
 from robomill.identification.other_axes import axes_suspicions
+from robomill.identification.other_senses import sense_suspicions
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
 from robomill.robot.sources import block_in_force
@@ -43,7 +44,7 @@ def suspicions(tests: LoadTests | JointTests, robot: Robot | None = None) -> tup
         return _joint_suspicions(tests, robot)
     explained: tuple[Finding, ...] = ()
     if robot is not None and tests.theta is not None:
-        explained = length_suspicions(robot, tests) or axes_suspicions(robot, tests)
+        explained = length_suspicions(robot, tests) or sense_suspicions(robot, tests) or axes_suspicions(robot, tests)
     return (*_signs(tests), *_unread(tests, robot), *_sizes(tests, robot), *explained, *_repeats(tests))
 
 

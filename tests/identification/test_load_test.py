@@ -60,6 +60,30 @@ def test_refusals_name_the_row(fields, words):
         LoadTests(**{"wrench": F, "displacement": MOVED, "theta": THETA, **fields})
 
 
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"noise": np.full((6, 3), 1e-6)}, r"noise: expected one number or shape \(6,\), found \(6, 3\)"),
+        ({"gauges": np.eye(3)}, r"gauges: expected shape \(6, 3, 3\), three directions a test, found \(3, 3\)"),
+        ({"gauges": np.ones((6, 3, 3))}, "Row 1, gauge 1: found a direction of length 1.73, expected a unit vector"),
+        ({"pulley": np.zeros((5, 3))}, r"pulley: expected shape \(3,\) or shape \(6, 3\), found \(5, 3\)"),
+        ({"displacement": np.ma.masked_less(MOVED, 0.0)}, "displacement: expected numbers, found a masked entry"),
+        ({"wrench": F + 0j}, "wrench: expected numbers, found"),
+        ({"wrench": F * 1e300}, "Row 1, wrench: found a number beyond any measurement"),
+    ],
+)
+def test_arrays_that_numpy_would_take_are_refused_in_a_sentence(fields, words):
+    """A masked reading is none, two millimetres along (1, 1, 1) are not read along a unit vector."""
+    with pytest.raises(LoadTestError, match=words):
+        LoadTests(**{"wrench": F, "displacement": MOVED, "theta": THETA} | fields)
+
+
+def test_gauges_that_read_nothing_may_point_anywhere():
+    along, read = np.broadcast_to(np.eye(3), (6, 3, 3)).copy(), MOVED.copy()
+    along[:, 2], read[:, 2] = 0.0, np.nan
+    assert LoadTests(F, read, theta=THETA, gauges=along).gauges is not None
+
+
 def test_a_partly_measured_displacement_and_a_pure_moment_are_tests():
     half = MOVED.copy()
     half[2, :2] = np.nan

@@ -15,6 +15,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.compliance.components import COLUMN, ROW
 from robomill.identification.diagnostics import MANY
+from robomill.identification.fit.balance import balanced
 from robomill.identification.fit.confidence import half_width
 from robomill.identification.fit.crossvalidation import good, headline, relative_by_pose
 from robomill.identification.fit.fitting import Fitted
@@ -86,7 +87,7 @@ class Inquiry:
         tests = tests.select(index)
         for k, point in enumerate(freed):
             tests = _with_point(robot, tests, point, shift[3 * k : 3 * k + 3])
-        system = build_system(robot, tests, choice, freed, treatment.weights == "size")
+        system = balanced(build_system(robot, tests, choice, freed, treatment.weights == "size"))
         fold = folds_of(treatment.leave_out, tests.pose_index(), tests.theta)
         return cls(robot, tests, choice, freed, system, fold[system.test])
 
@@ -169,7 +170,8 @@ class Inquiry:
         """(e, 3) what a gauge that is not zeroed, drifts or sticks adds to each component of the displacement."""
         each = (self.system.component[:, None] == np.arange(3)).astype(np.float64)
         if cause.kind == "drift":
-            each *= self.tests.row[self.system.test][:, None] / float(self.tests.row.max())
+            row = self.tests.row - self.tests.row.min()  # of a table's index, which may begin anywhere
+            each *= (row / max(float(row.max()), 1.0))[self.system.test][:, None]
             each = np.concatenate([each, (self.system.component[:, None] == np.arange(3))], axis=1)
         elif cause.kind == "play":
             each *= np.sign(self.terms[:, 0] @ x)[:, None]

@@ -12,6 +12,7 @@ import numpy as np
 from robomill.arrays import FloatArray, frozen
 from robomill.errors import LoadTestError
 from robomill.identification import diagnostics
+from robomill.identification.fit.balance import balanced
 from robomill.identification.fit.causes import Inquiry
 from robomill.identification.fit.crossvalidation import Folded, Missed, good, headline, leave_out, relative_by_pose
 from robomill.identification.fit.doubts import bending_offer, model_findings
@@ -24,6 +25,7 @@ from robomill.identification.fit.suspects import UNASKED
 from robomill.identification.fit.system import System, build_system
 from robomill.identification.fit.treatment import AUTO, BENDING_JOINTS, STANDARD, Treatment
 from robomill.identification.load_test import JointTests, LoadTests
+from robomill.identification.other_senses import CODE as SENSE
 from robomill.identification.pull.found_points import found_points, point_findings
 from robomill.identification.pull.lines_of_pull import lines_of_pull
 from robomill.identification.pull.offer import offer_of
@@ -69,7 +71,8 @@ def identify(
     result = _result(robot, tests, choice, fitted)
     error = headline(relative_by_pose(fitted.system, missed.error, fitted.weights))
     inquest = UNASKED
-    if choice.has("joint"):
+    turned_round = any(finding.code == SENSE for finding in result.findings)  # no spring and no point explains that
+    if choice.has("joint") and not turned_round:
         inquest = Inquiry.of(robot, tests, result, treatment, fitted).inquest()
     offer = offer_of(robot, tests, choice, treatment, inquest)
     bends = bending_offer(candidates, model, inquest, error)
@@ -107,7 +110,8 @@ def pull_starts(robot: Robot, tests: LoadTests, freed: tuple[Point, ...]) -> tup
 
 def _of_joints(robot: Robot, tests: JointTests, choice: Model, treatment: Treatment) -> IdentificationResult:
     """Single joints: no pose, no points, and nothing that says how the tool moves."""
-    fitted = fit_system(build_system(robot, tests, choice, treatment.freed), treatment.robust)
+    system = build_system(robot, tests, choice, treatment.freed)
+    fitted = fit_system(balanced(system, np.unique(tests.joint, return_inverse=True)[1]), treatment.robust)
     fold = folds_of("pose", fitted.system.pose, None)
     folded = Folded(fitted.small, fold, fitted.weights)
     missed = leave_out(folded.count, lambda left: folded)

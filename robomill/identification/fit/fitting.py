@@ -77,15 +77,15 @@ def _robust(system: System, plain: PointFit) -> tuple[PointFit, FloatArray]:
         checkpoint()
         now = system.at(found.shift)
         wide = columns(now, found)
-        gross = robust_fit(wide / now.noise[:, None], _linear(now, found, wide) / now.noise)
+        gross = robust_fit(wide / now.noise[:, None], linear_readings(now, found, wide) / now.noise)
         last, found = found, system.fit_points(gross.weights, [found.shift])
         if float(np.abs(found.shift - last.shift).max(initial=0.0)) < SETTLED:
             break
     return found._replace(fit=_robust_covariance(found.fit, plain.fit, gross)), gross.weights
 
 
-def _linear(system: System, found: PointFit, wide: FloatArray) -> FloatArray:
-    """(e,) readings of the equations that are linear about the points found."""
+def linear_readings(system: System, found: PointFit, wide: FloatArray) -> FloatArray:
+    """(e,) readings of the equations that are linear about the points found, with their ``columns``."""
     return system.b + wide[:, system.A.shape[1] :] @ found.shift
 
 

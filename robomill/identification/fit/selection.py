@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.errors import LoadTestError
+from robomill.identification.fit.balance import balanced
 from robomill.identification.fit.crossvalidation import Folded, Missed, leave_out
 from robomill.identification.fit.fitting import Fitted, fit_system
 from robomill.identification.fit.models import Model
@@ -48,7 +49,7 @@ class Candidates:
             if self._open or joints:
                 model = model.bending_at(joints, turned)
             by_size = self.treatment.weights == "size"
-            system = build_system(self.robot, self.tests, model, self.treatment.freed, by_size)
+            system = balanced(build_system(self.robot, self.tests, model, self.treatment.freed, by_size))
             fitted = fit_system(system, self.treatment.robust, self.starts)
             folded = Folded(fitted.small, self.fold[system.test], fitted.weights, self.starts)
             self.kept[bend] = model, fitted, folded

@@ -12,7 +12,7 @@ from robomill.identification.pull.points import FREED, Point
 
 BENDING_JOINTS = (2, 3)
 AUTO: Literal["auto"] = "auto"
-WEIGHTS = {"equal": "every reading alike", "size": "every test by its relative error"}
+WEIGHTS = {"equal": "every reading of a gauge alike", "size": "every test by its relative error"}
 
 
 class Choices(TypedDict, total=False):

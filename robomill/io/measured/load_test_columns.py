@@ -7,6 +7,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import LoadTestError
+from robomill.identification.array_checks import UNIT_VECTOR
 from robomill.io.columns import Columns, Layout, spelled
 from robomill.provenance import KINDS, Kind
 
@@ -16,7 +17,6 @@ ANGLE, _LENGTH, _FORCE, _MOMENT = ("deg", "rad"), ("mm", "um", "m", "in"), ("N",
 _ROTATION, _COMPLIANCE = ("mrad", "urad", "rad", "deg"), ("um/N", "mm/N", "m/N")
 GAUGES = ("1", "2", "3")
 ROTVEC = ("rotvec_x", "rotvec_y", "rotvec_z")
-UNIT_VECTOR = 0.02  # how far the length of a written direction may be from 1
 HEAD = {
     "provenance": KINDS,
     "frame": ("tool", "flange"),

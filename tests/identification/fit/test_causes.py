@@ -232,3 +232,11 @@ def test_copies_are_no_second_reading():
     """Every row twice halves the noise that seems to be there; nothing is called for all the same."""
     tests = pulled(1, 20, noise=3e-5)
     assert "model-misses" not in codes(rm.identify(ROBOT, tests.joined(tests)))
+
+
+def test_rows_that_count_from_below_zero_are_asked_too():
+    """A DataFrame's index may begin anywhere: the drift of the gauges was divided by its largest number."""
+    tests = pulled(count=20)
+    found = [rm.identify(ROBOT, replace(tests, row=np.arange(20) + first)).inquest for first in (1, 0, -19)]
+    assert np.ptp([each.before for each in found]) == 0.0
+    assert [len(each.suspects) for each in found] == [0, 0, 0]
