@@ -101,6 +101,15 @@ def test_only_what_begins_or_turns_has_a_sample_at_its_start() -> None:
     assert fine.p[:, 0] * 1e3 == pytest.approx([0, 0, 10, 20, 30, 30, 40, 40, 40, 50, 60, 60, 60, 60], abs=1e-12)
 
 
+@pytest.mark.parametrize(("wait", "twice"), [("", False), ("G4 P0.2\n", True), ("G4 P1\n", True)])
+def test_a_tool_drawn_straight_back_begins_nothing_unless_it_has_waited(wait: str, twice: bool) -> None:
+    """At the bottom of a plunge it is asked once; where it waits there, as it comes and as it leaves."""
+    fine = resample(read_gcode(f"G21 F600\nG0 Z5\nG1 Z-3\n{wait}G1 Z5\nM2\n"), 1.0)
+    assert np.isclose(fine.p[:, 2], -3e-3).sum() == 1 + twice
+    aside = resample(read_gcode(f"G21 F600\nG0 Z5\nG1 Z-3\n{wait}G1 X5\nM2\n"), 1.0)
+    assert np.isclose(aside.p[:, 0] + aside.p[:, 2], -3e-3).sum() == 2
+
+
 WORDS = [
     *("M3 S600", "G1 X1 F600", "X2", "M5", "X3", "M4", "X4", "G4 P0.5", "G4 P0.25", "G2 X6 I1", "X8 I1"),
     *("M3", "G1 X9", "M4 S0", "X10", "S900", "G0 X11", "G4 P2", "M2"),
