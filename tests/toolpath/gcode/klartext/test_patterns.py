@@ -80,3 +80,22 @@ def test_a_pattern_that_is_not_read_is_refused(pattern: str) -> None:
         drilled(pattern)
     with pytest.raises(GCodeError, match=r"^Line 6: CYCL CALL PAT"):
         drilled("; nothing")
+
+
+@pytest.mark.parametrize(
+    ("pattern", "holes"),
+    [
+        ("ROW1 (X+1 Y+1 D+8 NUM{})", 6),
+        ("CIRC1 (X+50 Y+0 D20 START+90 NUM{})", 6),
+        ("PAT1 (X+1 Y+2 DX+10 DY+5 NUMX{} NUMY1)", 6),
+        ("PAT1 (X+1 Y+2 DX+10 DY+5 NUMX3 NUMY{})", 2),
+        ("FRAME1 (X+1 Y+2 DX+10 DY+5 NUMX{} NUMY2)", 3),
+    ],
+)
+def test_a_pattern_has_one_hole_to_as_many_as_are_said(monkeypatch: pytest.MonkeyPatch, pattern: str, holes: int):
+    """The last count that fits, the first that does not."""
+    monkeypatch.setattr("robomill.toolpath.gcode.klartext.patterns.MOST_HOLES", 6)
+    assert len(drilled(f"PATTERN DEF {pattern.format(1)}")[0]) >= 1
+    assert len(drilled(f"PATTERN DEF {pattern.format(holes)}")[0]) == 6
+    with pytest.raises(GCodeError, match="6"):
+        drilled(f"PATTERN DEF {pattern.format(holes + 1)}")
