@@ -99,3 +99,19 @@ def test_a_pattern_has_one_hole_to_as_many_as_are_said(monkeypatch: pytest.Monke
     assert len(drilled(f"PATTERN DEF {pattern.format(holes)}")[0]) == 6
     with pytest.raises(GCodeError, match="6"):
         drilled(f"PATTERN DEF {pattern.format(holes + 1)}")
+
+
+@pytest.mark.parametrize(("z", "up"), [(80.0, []), (4.0, []), (3.0, []), (2.0, [51.0]), (-5.0, [51.0])])
+def test_a_call_at_a_place_goes_up_first_where_the_tool_stands_too_low(z: float, up: list[float]) -> None:
+    """Below the set-up clearance, 2 mm above the surface at 1 mm, it would run into the part on its way across."""
+    program = interpret(f"{HEAD.format(z=z)}CYCL CALL POS X+10 Y+20 Z+0 FMAX M3\nEND PGM A MM\n")
+    ways = program.end - program.start
+    aside = np.hypot(ways[:, 0], ways[:, 1]) > 0.0
+    assert aside.sum() == 1
+    first = int(np.argmax(aside))
+    level = up[-1] if up else z
+    np.testing.assert_allclose(program.end[first] * 1e3, [10, 20, level], atol=1e-9)
+    assert (program.kind[: first + 1] == TRAVERSE).all()
+    moved = np.abs(ways[:first, 2]) > 0.0
+    np.testing.assert_allclose(program.end[:first][moved, 2][1:] * 1e3, up, atol=1e-9)
+    np.testing.assert_allclose(program.end[program.kind == FEED] * 1e3, [[10, 20, -9]], atol=1e-9)
