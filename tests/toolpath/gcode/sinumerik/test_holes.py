@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret
 
 HEAD = "G71 G90\nM3 S500 F100\nG0 X0 Y0 Z50\n"
@@ -28,3 +29,15 @@ def test_a_tap_goes_a_pitch_a_turn_as_fast_as_it_turns_in_and_out(said: str, pit
     np.testing.assert_allclose(program.n_s[tapped] * 60.0, turns)
     np.testing.assert_allclose(program.v_f[tapped] / program.n_s[tapped], pitch * 1e-3)
     np.testing.assert_allclose(program.n_s[[0, -1]] * 60.0, 500.0)
+
+
+@pytest.mark.parametrize(("retract", "drills"), [(3.0, True), (2.999, False), (50.0, True)])
+def test_a_cycle_may_go_back_to_where_it_begins_and_no_lower(retract: float, drills: bool) -> None:
+    """It begins 2 mm above a surface at 1 mm."""
+    text = f"{HEAD}CYCLE81({retract},1,2,-10)\nM30\n"
+    if not drills:
+        with pytest.raises(GCodeError, match=r"expected RTP above RFP \+ SDIS"):
+            interpret(text, dialect="sinumerik")
+        return
+    heights = interpret(text, dialect="sinumerik").end[-3:, 2] * 1e3
+    np.testing.assert_allclose(heights[np.append(True, np.diff(heights) != 0.0)][-2:], [-10.0, retract])
