@@ -37,6 +37,7 @@ PATTERNS = {
         [x, y, -9] for x in (0, 10, 20) for y in (0, 5, 10) if (x, y) != (10, 5)
     ],
     "PATTERN DEF CIRC1 (X+50 Y+0 D20 START+90 NUM4 Z+0)": [[50, 10, -9], [40, 0, -9], [50, -10, -9], [60, 0, -9]],
+    "PATTERN DEF CIRC1 (X+50 Y+0 D20 NUM4)": [[60, 0, -9], [50, 10, -9], [40, 0, -9], [50, -10, -9]],
     "PATTERN DEF PITCHCIRC1 (X+50 Y+0 D20 START+0 STEP-30 NUM2)": [[60, 0, -9], [50 + 5 * ROOT3, -5, -9]],
 }
 """The surface lies at Q203 = 1 and the place's Z above it, the holes are 10 deep."""
