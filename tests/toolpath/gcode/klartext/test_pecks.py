@@ -126,3 +126,13 @@ def test_so_many_breaks_and_no_more_are_made(often: float, fits: bool) -> None:
         return
     with pytest.raises(GCodeError, match="CYCL DEF 205 needs more than"):
         read(cycle)
+
+
+@pytest.mark.parametrize("number", [207, 209])
+def test_a_tap_without_a_pitch_is_refused(number: int) -> None:
+    """Q239: with one it goes that far a turn, 1000 of them a minute."""
+    tap = f"CYCL DEF {number} Q200=2 Q201=-8 Q239={{}} Q203=0 Q204=10 Q257=0 Q256=0 Q336=0\nL X+5 FMAX M99\n"
+    program = read(tap.format(1.25))
+    assert program.v_f[program.thread].max() * 6e4 == pytest.approx(1250.0)
+    with pytest.raises(GCodeError, match="Q239"):
+        read(tap.format(0))
