@@ -213,19 +213,19 @@ def _numerical(robot: Robot, wish: Wish) -> Chosen:
     turned: FloatArray | None = None
     if wish.goal is not None:
         start = bent_home(robot)[None] if wish.at_home else wish.goal
-        theta, found = solve_numerically(robot, wish.T_MT, start, wish.mode, nearest=not wish.at_home)
+        theta, _ = solve_numerically(robot, wish.T_MT, start, wish.mode, nearest=not wish.at_home)
     else:
-        theta, found = np.empty((len(wish.T_MT), robot.n)), np.empty(len(wish.T_MT), dtype=bool)
+        theta = np.empty((len(wish.T_MT), robot.n))
         turn = np.full(len(wish.T_MT), np.nan)
         for first in range(0, len(wish.T_MT), wish.length):
             run = slice(first, first + wish.length)
             held = _held(robot, wish.T_MT[run]) if wish.free_spin else None
             if held is not None:
-                theta[run], found[run], turn[run] = held[0], True, held[1]
+                theta[run], turn[run] = held
             else:
-                theta[run], found[run] = _walked(robot, wish.T_MT[run], wish.mode, bent_home(robot)[None])
+                theta[run], _ = _walked(robot, wish.T_MT[run], wish.mode, bent_home(robot)[None])
         turned = None if np.isnan(turn).any() else turn
-    index = np.where(found, 0, -1)
+    index = np.zeros(len(theta), dtype=np.int64)  # what is near enough is told by forward kinematics
     return Chosen(theta, index, *misfit(robot, theta, wish.T_MT, wish.mode), turned)
 
 

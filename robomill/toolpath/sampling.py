@@ -82,8 +82,7 @@ def _begins(path: Toolpath) -> BoolArray:
     moved = path.step_length > 0
     angle, _ = _turns(path)
     resumed = np.append(True, ~path.cutting[:-1] | ~moved[:-1])
-    back = _turns_back(path) & (path.dwell == 0.0)
-    begins = path.cutting & moved & (resumed | ((angle > CORNER) & ~back))
+    begins = path.cutting & moved & (resumed | ((angle > CORNER) & ~_turns_back(path)))
     begins[0] = False
     return np.asarray(begins)
 
@@ -107,8 +106,9 @@ def _turns(path: Toolpath) -> tuple[FloatArray, BoolArray]:
 
 
 def _turns_back(path: Toolpath) -> BoolArray:
+    """(m,) moves straight back out of a plunge that has not waited at its bottom."""
     angle, up = _turns(path)
-    return up & (angle > np.pi - CORNER)
+    return np.asarray(up & (angle > np.pi - CORNER) & (path.dwell == 0.0))
 
 
 def _slerp(k_a: FloatArray, k_b: FloatArray, fraction: FloatArray) -> FloatArray:

@@ -90,6 +90,7 @@ def test_a_pose_that_is_not_reached_is_nan_throughout():
     assert not here.reached
     for value in (here.frames, here.J, here.C_joint, here.C, here.C_X, here.det_J, here.manipulability):
         assert np.isnan(value).all()
+    assert [value.shape for value in here.principal] == [(3,), (3, 3)]
     for value in (here.limit_distance, *here.principal, deflection(here.C_joint, [1, 0, 0])):
         assert np.isnan(value).all()
 

@@ -103,3 +103,4 @@ def test_what_is_not_reached_stays_nan():
     nan = np.full((2, 3, 5), np.nan)
     assert np.isnan(rm.joint_contributions(nan, np.ones(5))).all()
     assert np.isnan(deflection(np.full((5, 3, 3), np.nan), np.ones(3))).all()
+    assert np.isnan(deflection(np.ones((5, 3, 3)), np.full(3, np.nan))).all(), "nor is a force that is not known"

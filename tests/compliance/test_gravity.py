@@ -73,6 +73,22 @@ def test_one_link_mass_is_not_taken_for_the_tip():
     assert gravity_torques(single, theta, links)[0, 0] == pytest.approx(-slope, abs=1e-6)
 
 
+@pytest.mark.parametrize("longer", [-0.08, 0.0, 0.15])
+def test_what_the_last_joint_carries_stays_where_a_longer_tool_ends_elsewhere(longer):
+    """A tool sticks out against z_T: its tip goes that way, and no weight moves, so no joint feels any of it."""
+    shift = np.eye(4)
+    shift[2, 3] = -longer
+    other = ROBOT.replace(T_tool=ROBOT.T_tool @ shift)
+    tips = tool_pose(ROBOT, THETA)
+    lower = tips[:, :3, 3] - longer * tips[:, :3, 2]
+    np.testing.assert_allclose(tool_pose(other, THETA)[:, :3, 3], lower, atol=1e-12)
+    behind = LINKS.behind(longer)
+    torques = gravity_torques(ROBOT, THETA, LINKS)
+    np.testing.assert_allclose(gravity_torques(other, THETA, behind), torques, rtol=1e-10, atol=1e-9)
+    assert (behind is LINKS) == (longer == 0.0)
+    np.testing.assert_array_equal(behind.centre[:-1], LINKS.centre[:-1])
+
+
 def test_refusals():
     with pytest.raises(RobotError, match="found 2, expected 5"):
         gravity_sag(ROBOT, THETA, LinkMasses([1.0, 1.0], np.zeros((2, 3))))

@@ -146,6 +146,9 @@ def test_names_are_lines_of_the_result():
         (lambda: ToolBending(8e-3, 0.04, E=math.inf), "Young's modulus: found inf"),
         (lambda: ToolBending(8e-3, 0.04, core=1.5), "Bending Ø / Ø: found 1.5; expected more than 0 to 1."),
         (lambda: SpindleSpring(-1e-6), "Spindle and holder, Across: found −1 µm/N; expected 0 µm/N or more."),
+        (lambda: SpindleSpring(0.05), "If 0.05 µm/N is meant"),
+        (lambda: SpindleSpring(1e-7, 0.02), "If 0.02 µm/N is meant"),
+        (lambda: ToolBending(8e-3, 0.04, E=600e3), "found 0.6 N/mm²; expected 1000 N/mm² to 2e+06 N/mm²"),
         (lambda: JointBending(0), "Joint: found 0; expected 1 or more."),
         (lambda: JointBending(2, C_y=-1e-7), "Joint 2 bending, about y: found −1 ×10⁻⁷ rad/(N m)"),
         (lambda: JointBending(9).contribution(joint_frames(ROBOT, THETA)), "there is no joint 9; the robot has 5"),
@@ -176,10 +179,11 @@ def test_edited_springs_say_who_typed_them_and_a_tool_follows_the_cutter():
 
 
 def test_springs_are_found_in_their_order():
-    ranks = [kind.rank for kind in KINDS.values()]
-    assert ranks == sorted(ranks)
-    assert KINDS["joint_bending"].each_joint
-    assert not KINDS["spindle"].each_joint
+    """From the tip inwards; tool and spindle are light enough for the teeth, what bends a link moves the arm along."""
+    assert list(KINDS) == ["tool_bending", "spindle", "joint_bending"]
+    assert [name for name, kind in KINDS.items() if kind.each_joint] == ["joint_bending"]
+    assert [name for name, kind in KINDS.items() if kind.follows_tooth] == ["tool_bending", "spindle"]
+    assert [name for name, kind in KINDS.items() if kind.at_tip] == ["spindle"]
 
 
 def test_turned_bending_axes_stay_with_the_link_after_the_joint():

@@ -6,7 +6,14 @@ from hypothesis import given, settings, strategies as st
 from scipy.spatial.transform import Rotation
 
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.force import feed_along, feed_frame, feed_share, force_on_tool
+from robomill.cutting.force import (
+    feed_along,
+    feed_frame,
+    feed_share,
+    force_at_ends,
+    force_by_material,
+    force_on_tool,
+)
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.forces.constant import ConstantForce
 from robomill.cutting.forces.mechanistic import MechanisticForce
@@ -90,6 +97,28 @@ def test_process_force_in_the_robot_frame():
     model = MechanisticForce(Cutter("flat", 8e-3, flutes=3), load_material("al7075_t6_carbide_ref190"))
     F = force_on_tool(model, steady(3), feed_frame(moves(p), np.tile(UP, (3, 1))))
     np.testing.assert_allclose(F, [[0, 0, 0], [-63.46, 110.43, -23.30], [-110.43, -63.46, -23.30]], atol=0.01)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_other_materials_and_assumed_shares_push_in_the_robot_frame_too(seed):
+    """Each as a force of its own that has that row alone; 0 on rapids."""
+    mill, frames = Cutter("flat", 8e-3, flutes=3), Rotation.random(4, random_state=seed).as_matrix()
+    conditions = steady(4, cutting=[False, True, True, False])
+    row, other = load_material("al7075_t6_carbide_ref190"), load_material("al6061_t6_carbide_ref160")
+    model = MechanisticForce(mill, row, alternatives=(other,))
+    known = force_by_material(model, conditions, frames)
+    filled = other.replace(Kac=row.Kac, Kae=row.Kae)  # its source does not give them
+    for (_, F), alike in zip(known, (row, filled), strict=True):
+        alone = MechanisticForce(mill, alike).components(conditions)
+        expected = [R @ f for R, f in zip(frames, alone, strict=True)]
+        np.testing.assert_allclose(F, expected * conditions.cutting[:, None], atol=1e-9)
+    assumed = MechanisticForce(mill, other, axial_share=0.2)
+    ends = force_at_ends(assumed, conditions, frames)
+    assert len(ends) > 1
+    for F, own in zip(ends, assumed.at_ends(conditions), strict=True):
+        expected = [R @ f for R, f in zip(frames, own, strict=True)]
+        np.testing.assert_allclose(F, expected * conditions.cutting[:, None], atol=1e-9)
+    assert {term.exponent for row, _ in known for term in row.terms} == set(model.exponents)
 
 
 def test_refusals():

@@ -31,18 +31,31 @@ def test_models_are_found_in_the_order_of_their_ranks():
 
 
 @pytest.mark.parametrize(
-    ("name", "follows", "ends", "stated"),
+    ("name", "follows", "ends", "stated", "milling"),
     [
-        ("path", False, True, True),
-        ("constant", False, True, True),
-        ("mechanistic", True, False, False),
-        ("kienzle", True, False, False),
-        ("measured", False, False, False),
+        ("path", False, True, True, True),
+        ("constant", False, True, True, True),
+        ("mechanistic", True, False, False, True),
+        ("kienzle", True, False, False, True),
+        ("measured", False, False, False, False),  # a dynamometer hears a tap, too
     ],
 )
-def test_models_say_what_they_follow(name, follows, ends, stated):
+def test_models_say_what_they_follow(name, follows, ends, stated, milling):
     model = FORCES[name]
-    assert (model.follows_cut, model.ends_with_material, model.stated) == (follows, ends, stated)
+    said = (model.follows_cut, model.ends_with_material, model.stated, model.of_milling)
+    assert said == (follows, ends, stated, milling)
+
+
+@pytest.mark.parametrize("force", [PathForce(1.0, 2.0, 3.0), ConstantForce([1.0, 2.0, 3.0])], ids=lambda f: f.kind)
+def test_a_force_that_is_stated_knows_no_clock_no_cutter_and_no_turn_of_the_part(force):
+    """The same at every step, whoever cuts and however the part lies; nothing of it is assumed."""
+    quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    assert not force.in_time
+    assert not force.turns_with_part
+    for same in (force.placed(quarter), force.cut_by(MILL)):
+        np.testing.assert_array_equal(same.components(SLOT), [[1.0, 2.0, 3.0]] * 2)
+    assert force.peak(SLOT) is None
+    assert force.by_material(SLOT) == force.at_ends(SLOT) == []
 
 
 def test_another_model_starts_from_the_force_that_pushed():

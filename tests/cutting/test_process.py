@@ -80,6 +80,16 @@ def test_a_share_stands_for_what_the_source_does_not_give():
     assert half[0].why.startswith(f"the axial force of {TURNED.title} is not known")
 
 
+@pytest.mark.parametrize("name", ["radial_ratio", "axial_ratio"])
+def test_a_ratio_of_nothing_is_where_the_line_through_two_others_begins(name):
+    """Kienzle's force is a straight line over each ratio: 0 is a value like any other, and no gap in the source."""
+    whole = TURNED.replace(radial_ratio=0.3, axial_ratio=0.3)
+    none, some, twice = (KienzleForce(MILL, whole.replace(**{name: ratio})) for ratio in (0.0, 0.2, 0.4))
+    line = 2.0 * some.components(SLOT) - twice.components(SLOT)
+    np.testing.assert_allclose(none.components(SLOT), line, rtol=1e-9, atol=1e-9)
+    assert none.unjudged(SLOT) == ()
+
+
 def test_a_mechanistic_row_without_axial_coefficients():
     force = MechanisticForce(MILL, NO_AXIAL)
     assert [each.code for each in force.unjudged(SLOT)] == ["coefficient"]

@@ -115,6 +115,18 @@ def test_refusals(fields, sentence):
     assert str(refusal.value).count("\n") == 0
 
 
+@pytest.mark.parametrize("degrees", [1.6, 30.0, 60.0, 84.0])
+def test_no_angle_of_a_cutter_that_was_given_in_radians_passes_for_degrees(degrees):
+    """Nor is any angle in degrees that a cutter has taken for radians; a full tip angle is twice that of its flank."""
+    radians = degrees * math.pi / 180.0
+    for fields in ({"kind": "flat", "helix_angle_deg": radians}, {"kind": "chamfer", "tip_angle_deg": 2.0 * radians}):
+        with pytest.raises(CuttingError, match="rad is meant"):
+            Cutter(diameter=8e-3, **fields)
+    assert Cutter("flat", 8e-3, helix_angle_deg=degrees).helix_angle == pytest.approx(radians)
+    tip = Cutter("chamfer", 8e-3, tip_angle_deg=2.0 * degrees + 0.1).tip_angle
+    assert tip == pytest.approx(2.0 * radians + 0.1 * math.pi / 180.0)
+
+
 def test_what_nobody_said_of_a_cutter():
     plain = Cutter("flat", 8e-3)
     assert (plain.corner_radius, plain.flutes, plain.helix, plain.hand) == (0.0, 2, "right", "right")

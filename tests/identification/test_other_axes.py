@@ -83,3 +83,10 @@ def test_pounds_under_newtons_and_a_gauge_that_was_not_read_are_suspected():
     assert "pound-force as N?" in said(ROBOT, MADE.F / 4.448, MADE.moved)["unit"]
     assert "unit" not in said(ROBOT, MADE.F, MADE.moved)
     assert said(ROBOT, MADE.F, MADE.moved * [1, 1, 0])["unread"].startswith("dz is zero in every test")
+
+
+@pytest.mark.parametrize(("count", "suspected"), [(3, False), (4, True), (30, True)])
+def test_so_few_tests_say_nothing_of_axes(count: int, suspected: bool) -> None:
+    """Six compliances take up most of what three tests read; from four on other axes leave more than they can."""
+    tests = rm.LoadTests(in_tool(MADE.F)[:count], in_tool(MADE.moved)[:count], theta=MADE.q[:count])
+    assert bool(axes_suspicions(ROBOT, tests)) == suspected

@@ -7,8 +7,9 @@ import pytest
 
 import robomill as rm
 from robomill.errors import SetupError
-from robomill.improve.design import design
+from robomill.improve.design import design, nearest
 from robomill.improve.judged import judged
+from robomill.improve.least_cost import Errors
 from robomill.improve.sensitivity import stiffened
 from tests.improve.shoulder import shoulder
 
@@ -169,3 +170,14 @@ def test_the_name_of_a_set_up_is_no_set_up() -> None:
 def test_a_cut_out_of_reach_has_no_number_to_design_for() -> None:
     with pytest.raises(SetupError, match="no number"):
         design(rm.load_setup("paper_flute").replace(part_zero_mm=(0, -9000, 0)), tolerance_mm=0.1)
+
+
+def test_what_cannot_be_met_is_neared_by_the_joints_that_play_a_role_there_alone() -> None:
+    """By hand: 3 + x is least at the stiffest x; joints beside it, of small or no part in it, cost less than they help
+    or nothing."""
+    given = np.array([[[1.0, 0.0, 0.0]], [[0.0, 0.1, 0.0]]])
+    errors = Errors(np.array([[3.0], [0.0]]), given, np.ones(2))
+    low, high = np.full(3, 0.25), np.array([1.0, 1.0, 2.0])
+    found = nearest(errors, np.array([1.0, 2.0, 0.5]), low, high)
+    np.testing.assert_allclose(found.x, [0.25, 1.0, 2.0], rtol=2e-3)
+    assert errors.shares(found.x).max() == pytest.approx(3.25, rel=2e-4)

@@ -99,13 +99,17 @@ def test_what_is_said_of_a_place_is_its_full_simulation() -> None:
 
 def test_the_map_is_what_a_full_simulation_says_of_its_points() -> None:
     setup = slot()
-    found = place(setup, x_mm=(-200, 200), y_mm=(-1400, -1200), candidates=9)
+    found = place(setup, x_mm=(-200, 100), y_mm=(-1400, -1200), candidates=9)
     for i, j in np.ndindex(found.plane.shape):
         there = rm.simulate(setup.replace(part_zero=[found.axes[0][i], found.axes[1][j], found.axes[2][0]]))
         assert found.plane[i, j] == pytest.approx(there.verdict.share, rel=2e-3)
     frame = found.to_dataframe()
     assert len(frame) == found.tried == found.share.size
     assert frame["share"].min() == np.nanmin(found.plane)
+    shares = np.sort(found.plane[np.isfinite(found.plane)])
+    assert found.worst.share == pytest.approx(shares[-1], rel=5e-4)
+    assert found.median.share == pytest.approx(shares[(len(shares) - 1) // 2], rel=2e-3)
+    assert shares[-1] > 1.001 * shares[-2], "one place is the worst"
 
 
 def test_moving_robot_and_part_together_changes_nothing() -> None:

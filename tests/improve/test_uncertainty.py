@@ -124,6 +124,9 @@ def test_what_the_model_misses_is_in_it_as_in_the_band() -> None:
     normal = deviation_band(found.run, known, i).by_along("model", found.run.R_MF[i][:, 1])
     assert found.std == pytest.approx(float(normal), rel=0.05)
     assert sum(each.group == "model" for each in found.tornado.inputs) == 3
+    # What no run in full can say is left out of both where they are compared.
+    assert found.checked[0] > 0
+    assert found.checked[1] < 1e-3
 
 
 def test_one_normal_number_gives_the_normal_distribution() -> None:

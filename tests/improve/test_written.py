@@ -9,6 +9,7 @@ from robomill.improve import written
 from robomill.improve.written import writing
 from robomill.io.gcode_out import toolpath_to_gcode
 from robomill.io.samples import samples_dir
+from robomill.toolpath.gcode import interpret
 from robomill.toolpath.gcode.rewriting import Rewriter, Rewritten
 
 SLOT = rm.load_setup(samples_dir() / "paper_flute")
@@ -78,3 +79,17 @@ def test_a_location_file_is_written_as_g_code() -> None:
     path = rm.read_gcode(found.text)
     np.testing.assert_allclose(path.p[-1], [20e-3, 0.1e-3, -2e-3], atol=1e-9)
     np.testing.assert_allclose(found.q, back.moves.wanted.p + c, atol=2e-6)
+
+
+def test_waits_of_a_location_file_are_written_once_however_many_pieces_a_move_becomes() -> None:
+    """Before the first move, too."""
+    moves = "DELAY/3\nGOTO/0,0,-2,0,0,1\nDELAY/2\nGOTO/20,0,-2,0,0,1\nDELAY/0.5\nGOTO/20,10,-2\n"
+    text = f"PARTNO/X\nUNITS/MM\nFEDRAT/600,MMPM\n{moves}FINI\n"
+    back = writing(SLOT.replace(source=rm.GCodeSource(text, "x.apt")), toolpath_to_gcode)
+    wanted = back.moves.wanted
+    bowed = np.outer(3e-4 * np.sin(300.0 * wanted.p[:, 0]), [0.0, 1.0, 0.0])
+    program = interpret(back.write(np.where(wanted.cutting[:, None], bowed, 0.0), 2e-6).text)
+    assert len(program) > 12
+    waits = program.dwell > 0.0
+    assert program.dwell[waits].tolist() == [3.0, 2.0, 0.5]
+    np.testing.assert_allclose(program.start[waits][1:, 0], [0.0, 20e-3], atol=1e-6)

@@ -8,6 +8,7 @@ from robomill.kinematics import dexterity
 from robomill.kinematics.choice import turn
 from robomill.workspace.fields import compliance_map
 from robomill.workspace.grid import box_grid
+from tests.kinematics.oracles import pose
 
 SCARA = {
     "name": "scara",
@@ -102,3 +103,19 @@ def test_an_arm_without_closed_form_follows_each_path_from_pose_to_pose(lead):
     assert np.isnan(bridged.theta[..., 5, :]).all()
     after = np.delete(bridged.theta, 5, axis=-2)
     assert np.abs(np.diff(after, axis=-2)).max() < 0.2
+
+
+@pytest.mark.parametrize("name", ["planar_2r", "planar_3r"])
+@pytest.mark.parametrize(("off", "reached"), [(1e-10, True), (-9e-10, True), (1.1e-9, False), (-1e-6, False)])
+@pytest.mark.parametrize("near", [None, "path"])
+def test_what_forward_kinematics_meets_to_a_nanometre_is_reached(name, off, reached, near):
+    """A planar arm asked for tips beside its plane: it stays as far away as they lie from it."""
+    robot = rm.load_robot(name)
+    theta = np.linspace(0.3, 0.6, 4)[:, None] * np.ones(robot.n)
+    T_MT = np.array([pose(robot, each) for each in theta])
+    T_MT[1::2, 2, 3] += off
+    found = rm.inverse_kinematics(robot, T_MT, near=near)
+    assert found.reached.tolist() == [True, reached, True, reached]
+    np.testing.assert_allclose(found.residual[1::2], abs(off), atol=5e-12)
+    for wanted, one in zip(T_MT[found.reached], found.theta[found.reached], strict=True):
+        assert np.linalg.norm((pose(robot, one) - wanted)[:3, 3]) < 1e-9

@@ -257,3 +257,18 @@ def test_a_pose_that_is_met_or_cannot_be_is_given_no_further_start(arm, monkeypa
         np.testing.assert_array_equal(x, open_)
         left |= {place: min(left[place], now) for place, now in zip(x, error, strict=True)}
     assert len(calls) > 1
+
+
+@pytest.mark.parametrize("mode", ["position", "axis", "pose"])
+def test_starts_are_those_that_miss_a_pose_by_least_in_what_counts_of_it(arm, mode):
+    """Against measuring every configuration that is known: a metre counts as much as directions 2 apart."""
+    T_MT = rm.tool_pose(arm, configurations(arm, 4))
+    _, known = numeric._library(arm, mode)
+    there = rm.tool_pose(arm, known)
+    columns = {"position": [], "axis": [2], "pose": [0, 1, 2]}[mode]
+    for T, starts in zip(T_MT, numeric._starts(arm, T_MT, mode), strict=True):
+        miss = ((there[:, :3, 3] - T[:3, 3]) ** 2).sum(axis=1)
+        for c in columns:
+            miss += ((there[:, :3, c] - T[:3, c]) ** 2).sum(axis=1) / 4
+        least = known[np.argsort(miss)[: len(starts)]]
+        np.testing.assert_array_equal(starts, least)

@@ -126,10 +126,11 @@ def test_a_feed_per_turn_of_a_cycle_follows_the_spindle_too() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("turn", [1, -1])
-def test_an_arc_of_catia_is_the_circle_through_its_start_along_its_tangent(seed: int, turn: int) -> None:
+@pytest.mark.parametrize("size", [1.0, 0.02])
+def test_an_arc_of_catia_is_the_circle_through_its_start_along_its_tangent(seed: int, turn: int, size: float) -> None:
     """In complex numbers; every chord within a hundredth of a millimetre of the circle, and the whole as long as it."""
     rng = np.random.default_rng(seed)
-    centre, radius = complex(*rng.uniform(-40, 40, 2)), rng.uniform(5, 30)
+    centre, radius = complex(*rng.uniform(-40, 40, 2)), size * rng.uniform(5, 30)
     begin, sweep = rng.uniform(-3, 3), rng.uniform(0.3, 6.0)
     start, end = (centre + radius * np.exp(1j * (begin + turn * t)) for t in (0.0, sweep))
     along = 1j * turn * np.exp(1j * begin)

@@ -82,6 +82,8 @@ def test_ends_meet_from_every_side(gap: tuple[float, float], place: float) -> No
     found, _, _ = joined([line((-9, -9), at), line(other, (30, 9))])
     assert len(found) == 1
     np.testing.assert_allclose(found[0].points * 1e3, [(-9, -9), at, (30, 9)], atol=1.1 * GAP * 1e3)
+    beyond = at + 1.02 * GAP * 1e3 * np.array(gap) / np.hypot(*gap)
+    assert len(joined([line((-9, -9), at), line(beyond, (30, 9))])[0]) == 2
 
 
 @pytest.mark.parametrize("seed", range(12))

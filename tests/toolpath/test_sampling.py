@@ -8,7 +8,7 @@ import pytest
 from robomill.errors import ToolpathError
 from robomill.toolpath.gcode import read_gcode
 from robomill.toolpath.path import Toolpath, toolpath_from_lines
-from robomill.toolpath.sampling import resample
+from robomill.toolpath.sampling import drawn_back, resample
 from robomill.units import format_count
 
 
@@ -99,6 +99,28 @@ def test_only_what_begins_or_turns_has_a_sample_at_its_start() -> None:
         expected += [i, i] if begin else [i]
     assert fine.block.tolist() == expected
     assert fine.p[:, 0] * 1e3 == pytest.approx([0, 0, 10, 20, 30, 30, 40, 40, 40, 50, 60, 60, 60, 60], abs=1e-12)
+
+
+@pytest.mark.parametrize(("wait", "twice"), [("", False), ("G4 P0.2\n", True), ("G4 P1\n", True)])
+def test_a_tool_drawn_straight_back_begins_nothing_unless_it_has_waited(wait: str, twice: bool) -> None:
+    """At the bottom of a plunge it is asked once; where it waits there, as it comes and as it leaves."""
+    fine = resample(read_gcode(f"G21 F600\nG0 Z5\nG1 Z-3\n{wait}G1 Z5\nM2\n"), 1.0)
+    assert np.isclose(fine.p[:, 2], -3e-3).sum() == 1 + twice
+    aside = resample(read_gcode(f"G21 F600\nG0 Z5\nG1 Z-3\n{wait}G1 X5\nM2\n"), 1.0)
+    assert np.isclose(aside.p[:, 0] + aside.p[:, 2], -3e-3).sum() == 2
+
+
+@pytest.mark.parametrize("step", [None, 2e-3, 1.0])
+@pytest.mark.parametrize("wait", ["", "G4 P0.2\n"])
+def test_drawn_back_is_what_goes_up_at_feed_right_behind_a_plunge(wait: str, step: float | None) -> None:
+    """Line by line: up in two moves, aside, up again, down at rapid and up, down aslant and up, as resampled or not."""
+    up = "G1 Z1\nZ5\nX5\nZ9\nG0 Z-1\nG1 Z6\nX9 Z1\nZ7\nM2\n"
+    path = read_gcode(f"G21 F600\nG0 Z5\nG1 Z-3\n{wait}{up}")
+    path = path if step is None else resample(path, step)
+    ways = np.diff(path.p, axis=0, prepend=path.p[:1])
+    first = 4 + bool(wait)
+    behind = ~np.isin(path.block, [] if wait else [first, first + 1]) | (np.linalg.norm(ways, axis=1) == 0.0)
+    np.testing.assert_array_equal(drawn_back(path), ~behind)
 
 
 WORDS = [

@@ -109,6 +109,14 @@ def test_a_tool_is_measured_by_words_or_by_where_it_stands():
     np.testing.assert_allclose(read(f"{plain}G10 L11 P3 X1 Y2 Z12\nG59.3\nG43\n", *HERE), [1, 2, 12], atol=1e-9)
 
 
+def test_l11_counts_without_the_shift_that_is_in_force():
+    """What it says is read in G59.3 with the new length once that shift of G92 has ended."""
+    start = "G21 G90\nG10 L2 P9 X-2 Y8 Z11\nG54\nT3 M6\nG0 X5 Y3 Z2\nG92 X40 Y-7 Z-30\n"
+    for words, here in (("Z12", [7, -5, 12]), ("X1 Y2 Z12", [1, 2, 12])):
+        found = read(f"{start}G10 L11 P3 {words}\nG92.1\nG59.3\nG43\n", *HERE)
+        np.testing.assert_allclose(found, here, atol=1e-9)
+
+
 def test_a_second_length_is_added_to_the_one_in_force():
     """The machine reads the tip lower by every length it counts with."""
     tools = {1: Tool(1, 0.0, (0.0, 0.0, 50e-3)), 2: Tool(2, 0.0, (3e-3, 0.0, 7e-3))}

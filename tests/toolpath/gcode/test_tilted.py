@@ -237,6 +237,31 @@ def test_arcs_lie_in_the_plane_and_the_way_there_turns_the_tool_evenly() -> None
     np.testing.assert_allclose(upper, swept.max(axis=0), atol=2e-3)
 
 
+@pytest.mark.parametrize("missing", ["", "X", "Y", "Z"])
+def test_a_cut_behind_a_tilt_is_placed_once_x_y_and_z_have_been_said(missing: str) -> None:
+    """How the machine swivels moves all three; whichever is not said again is where nobody knows."""
+    words = " ".join(word for word in ("X5.", "Y6.", "Z9.") if not missing or missing not in word)
+    cut = "Y1." if missing != "Y" else "X1."
+    program = interpret(f"{FANUC}G68.2 I0 J30. K0\nG53.1\nG0 {words}\nG1 {cut} F100.\nM30\n%\n")
+    assert ("cut-unplaced" in [each.code for each in program.findings]) == bool(missing)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 1.0, 90.0, 179.9, 180.0])
+def test_the_tool_turns_by_the_least_angle_into_a_plane_however_far_that_lies(degrees: float) -> None:
+    """A great circle: every axis is a unit vector, as far from both ends together as they are from each other."""
+    body = f"G68.2 I20. J{degrees} K0\nG53.1\nG0 X10. Y5.\nZ5.\nG1 Z0. F100.\nX20.\nM30\n%\n"
+    k = read_gcode(f"{FANUC}{body}").k
+    np.testing.assert_allclose(np.linalg.norm(k, axis=1), 1.0, atol=1e-12)
+    np.testing.assert_allclose(
+        k[-1], Rotation.from_euler("ZX", (20, degrees), degrees=True).apply([0, 0, 1]), atol=1e-9
+    )
+    to, on = (
+        2.0 * np.degrees(np.arcsin(np.clip(np.linalg.norm(k - end, axis=1) / 2.0, 0, 1))) for end in (k[0], k[-1])
+    )
+    np.testing.assert_allclose(to + on, degrees, atol=1e-5)
+    assert (np.diff(to) > -1e-9).all()
+
+
 @pytest.mark.parametrize(
     ("body", "says"),
     [

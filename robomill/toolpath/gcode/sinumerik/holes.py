@@ -62,13 +62,13 @@ class Holes(MacroCalls):
             raise block.refuse("a drilling cycle needs a feed rate; give an F word above 0 first.")
         down = hole.feed * machine.factor / MINUTE if hole.feed else None
         out = hole.out * machine.factor / MINUTE if 0.0 < hole.out < math.inf else None
-        before = machine.motion, machine.speed
+        before, speed_out = (machine.motion, machine.speed), machine.speed
         if hole.pitch:
             turns = [each or machine.speed for each in hole.turns]
             if 0.0 in turns:
                 raise block.refuse("CYCLE84 needs a spindle speed; give an S word first.")
             down, out = (hole.pitch * machine.factor * each / MINUTE for each in turns)
-            machine.speed = turns[0]
+            machine.speed, speed_out = turns
         machine.motion = 840 if hole.pitch or hole.taps else machine.motion
         self._to(TRAVERSE, line, hole.clear)
         begin = down if hole.first == 1.0 else hole.first * (feed_speed(machine) if down is None else down)
@@ -82,6 +82,7 @@ class Holes(MacroCalls):
                 self._to(*(FEED, line, peck.on, down) if peck.at_feed else (TRAVERSE, line, peck.on))
         self._to(FEED, line, hole.bottom, down if hole.pecks else begin)
         self._wait(hole.dwell)
+        machine.speed = speed_out
         if hole.out or hole.pitch:
             self._to(FEED, line, hole.clear, out)
         self._to(TRAVERSE, line, hole.retract)

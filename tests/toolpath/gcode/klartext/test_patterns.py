@@ -37,6 +37,7 @@ PATTERNS = {
         [x, y, -9] for x in (0, 10, 20) for y in (0, 5, 10) if (x, y) != (10, 5)
     ],
     "PATTERN DEF CIRC1 (X+50 Y+0 D20 START+90 NUM4 Z+0)": [[50, 10, -9], [40, 0, -9], [50, -10, -9], [60, 0, -9]],
+    "PATTERN DEF CIRC1 (X+50 Y+0 D20 NUM4)": [[60, 0, -9], [50, 10, -9], [40, 0, -9], [50, -10, -9]],
     "PATTERN DEF PITCHCIRC1 (X+50 Y+0 D20 START+0 STEP-30 NUM2)": [[60, 0, -9], [50 + 5 * ROOT3, -5, -9]],
 }
 """The surface lies at Q203 = 1 and the place's Z above it, the holes are 10 deep."""
@@ -80,3 +81,38 @@ def test_a_pattern_that_is_not_read_is_refused(pattern: str) -> None:
         drilled(pattern)
     with pytest.raises(GCodeError, match=r"^Line 6: CYCL CALL PAT"):
         drilled("; nothing")
+
+
+@pytest.mark.parametrize(
+    ("pattern", "holes"),
+    [
+        ("ROW1 (X+1 Y+1 D+8 NUM{})", 6),
+        ("CIRC1 (X+50 Y+0 D20 START+90 NUM{})", 6),
+        ("PAT1 (X+1 Y+2 DX+10 DY+5 NUMX{} NUMY1)", 6),
+        ("PAT1 (X+1 Y+2 DX+10 DY+5 NUMX3 NUMY{})", 2),
+        ("FRAME1 (X+1 Y+2 DX+10 DY+5 NUMX{} NUMY2)", 3),
+    ],
+)
+def test_a_pattern_has_one_hole_to_as_many_as_are_said(monkeypatch: pytest.MonkeyPatch, pattern: str, holes: int):
+    """The last count that fits, the first that does not."""
+    monkeypatch.setattr("robomill.toolpath.gcode.klartext.patterns.MOST_HOLES", 6)
+    assert len(drilled(f"PATTERN DEF {pattern.format(1)}")[0]) >= 1
+    assert len(drilled(f"PATTERN DEF {pattern.format(holes)}")[0]) == 6
+    with pytest.raises(GCodeError, match="6"):
+        drilled(f"PATTERN DEF {pattern.format(holes + 1)}")
+
+
+@pytest.mark.parametrize(("z", "up"), [(80.0, []), (4.0, []), (3.0, []), (2.0, [51.0]), (-5.0, [51.0])])
+def test_a_call_at_a_place_goes_up_first_where_the_tool_stands_too_low(z: float, up: list[float]) -> None:
+    """Below the set-up clearance, 2 mm above the surface at 1 mm, it would run into the part on its way across."""
+    program = interpret(f"{HEAD.format(z=z)}CYCL CALL POS X+10 Y+20 Z+0 FMAX M3\nEND PGM A MM\n")
+    ways = program.end - program.start
+    aside = np.hypot(ways[:, 0], ways[:, 1]) > 0.0
+    assert aside.sum() == 1
+    first = int(np.argmax(aside))
+    level = up[-1] if up else z
+    np.testing.assert_allclose(program.end[first] * 1e3, [10, 20, level], atol=1e-9)
+    assert (program.kind[: first + 1] == TRAVERSE).all()
+    moved = np.abs(ways[:first, 2]) > 0.0
+    np.testing.assert_allclose(program.end[:first][moved, 2][1:] * 1e3, up, atol=1e-9)
+    np.testing.assert_allclose(program.end[program.kind == FEED] * 1e3, [[10, 20, -9]], atol=1e-9)

@@ -81,3 +81,58 @@ def test_tapping_of_old_goes_out_at_its_feed() -> None:
 def test_pecking_of_old_that_is_not_whole_is_refused(body: str, says: str) -> None:
     with pytest.raises(GCodeError, match=says):
         read(body)
+
+
+HOLE = "Q200=2 Q201=-20 Q206=150 Q203=0 Q204=10 Q211=0"
+IN_205 = f"CYCL DEF 205 {HOLE} Q202=8 Q212=0 Q205=0 Q258=0.5 Q259=0.3"
+IN_203 = f"CYCL DEF 203 {HOLE} Q202=6 Q210=0 Q212=1 Q205=4 Q208=500"
+
+
+@pytest.mark.parametrize(
+    ("cycle", "heights", "feed_out"),
+    [
+        # Infeeds of 6, 5, then 4 mm; up by Q256 twice (Q213), the third time out of the hole and back to Q200 above.
+        (f"{IN_203} Q213=2 Q256=0.5", [2, -6, -5.5, -11, -10.5, -15, 2, -13, -19, -18.5, -20, 2, 10], 500),
+        (f"{IN_203} Q213=0 Q256=0.5", [2, -6, 2, -4, -11, 2, -9, -15, 2, -13, -19, 2, -17, -20, 2, 10], 500),
+        # Every 3 mm (Q257) of each infeed of 8 mm up by Q256; back to Q258 above the first depth, Q259 above the last.
+        (
+            f"{IN_205} Q257=3 Q256=0.2",
+            [2, -3, -2.8, -6, -5.8, -8, 2, -7.5, -11, -10.8, -14, -13.8, -16, 2, -15.7, -19, -18.8, -20, 10],
+            0,
+        ),
+        (f"{IN_205} Q257=8 Q256=0.2", [2, -8, 2, -7.5, -16, 2, -15.7, -20, 10], 0),
+        (f"{IN_205} Q257=0 Q256=0.2", [2, -8, 2, -7.5, -16, 2, -15.7, -20, 10], 0),
+    ],
+)
+def test_chips_are_broken_and_brought_out_where_the_manual_says(cycle: str, heights: list, feed_out: float) -> None:
+    """Heights by hand, of a hole of 20 mm. Down to a depth at Q206; out at Q208 (203) or rapid, up by Q256 at rapid."""
+    program = read(f"{cycle}\nL X+5 FMAX M99\n")
+    x, z = moved(program)[1:, ::2].T
+    np.testing.assert_allclose(z, heights, atol=1e-9)
+    np.testing.assert_allclose(x, 5.0)
+    before = np.array([10.0, *heights[:-1]])
+    again = np.isclose(z, 2.0) & (before < 0.0)
+    down = (z < before) & (z < np.minimum.accumulate(before))
+    down[0] = False  # to the set-up clearance
+    np.testing.assert_allclose(feeds(program)[1:], np.where(down, 150.0, np.where(again, feed_out, 0.0)))
+
+
+@pytest.mark.parametrize(("often", "fits"), [(0.0021, True), (0.0019, False)])
+def test_so_many_breaks_and_no_more_are_made(often: float, fits: bool) -> None:
+    """20 mm in steps of 0.002 mm are ten thousand."""
+    cycle = f"CYCL DEF 205 {HOLE} Q202=20 Q212=0 Q205=0 Q258=0.5 Q259=0.3 Q257={often} Q256=0.2\nL X+5 FMAX M99\n"
+    if fits:
+        assert (np.diff(moved(read(cycle))[:, 2]) > 0.0).sum() == round(20 / often - 0.5) + 1
+        return
+    with pytest.raises(GCodeError, match="CYCL DEF 205 needs more than"):
+        read(cycle)
+
+
+@pytest.mark.parametrize("number", [207, 209])
+def test_a_tap_without_a_pitch_is_refused(number: int) -> None:
+    """Q239: with one it goes that far a turn, 1000 of them a minute."""
+    tap = f"CYCL DEF {number} Q200=2 Q201=-8 Q239={{}} Q203=0 Q204=10 Q257=0 Q256=0 Q336=0\nL X+5 FMAX M99\n"
+    program = read(tap.format(1.25))
+    assert program.v_f[program.thread].max() * 6e4 == pytest.approx(1250.0)
+    with pytest.raises(GCodeError, match="Q239"):
+        read(tap.format(0))

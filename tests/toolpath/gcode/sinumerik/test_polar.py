@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode import Program, interpret
+from robomill.toolpath.gcode import Program, Tool, interpret
 
 
 def read(body: str) -> Program:
@@ -74,3 +74,18 @@ def test_without_a_pole_it_is_the_zero_of_the_part() -> None:
         "G71 G90 G17\nTRANS X5 Y1\nG0 X0 Y0 Z5\nG1 AP=90 RP=20 F100\nAP=180\nM30\n", dialect="sinumerik"
     )
     np.testing.assert_allclose(program.end[-2:] * 1e3, [[5, 21, 5], [-15, 1, 5]], atol=1e-9)
+
+
+@pytest.mark.parametrize("side", ["G41", "G42"])
+def test_places_about_a_pole_are_offset_as_the_same_places_by_x_and_y(side: str) -> None:
+    """Where the tool is, for G110, is where the part's outline is, however far the cutter stands beside it."""
+    start, end = f"T1 D1 M6\n{side} G1 X10 Y0\nX20\n", "G40 X0 Y60\n"
+    polar = "G110 X5 Y5\nAP=90 RP=10\nG112 X0 Y5\nAP=180 RP=20\n"
+    told = "X25 Y15\nX5 Y10\n"
+    tools = {1: Tool(1, 4e-3)}
+    found, expected = (
+        interpret(f"G71 G90 G17 F100\nG0 X0 Y-9\n{start}{body}{end}M30\n", dialect="sinumerik", tools=tools)
+        for body in (polar, told)
+    )
+    assert np.abs(found.end[2, 1]) == pytest.approx(2e-3)
+    np.testing.assert_allclose(found.end, expected.end, atol=1e-12)
