@@ -8,7 +8,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import ToolpathError
-from robomill.simulation.meant import linked, meant
+from robomill.simulation.meant import LEFT_OUT, _stepped, linked, meant
 from robomill.toolpath.sampling import resample
 
 STEP = 1e-3
@@ -83,6 +83,23 @@ def test_the_ends_of_legs_belong_to_their_corners_however_far_they_fall_short(no
         np.testing.assert_allclose(places[i, 2:], corner, atol=1e-6)
         after = i
     assert linked(path, found).sum() >= len(corners) - 2
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_each_sample_is_come_to_from_the_cheapest_before_it(seed: int) -> None:
+    """All of them tried: what is left out between two costs as its length, and nothing is gone back."""
+    rng = np.random.default_rng(seed)
+    for _ in range(20):
+        n = int(rng.integers(1, 40))
+        s = np.cumsum(rng.choice([0.0, 0.3e-3, 1e-3], n))
+        far = rng.choice([0.0, 0.4e-3, 1.2e-3, 5e-3], n)
+        total = np.where(rng.random(n) < 0.2, np.inf, rng.uniform(0.0, 1e-5, n))
+        total[0] = 0.0
+        least, source = _stepped(total, s, far)
+        for i in range(n):
+            costs = [total[j] + LEFT_OUT * max(s[i] - s[j] - far[i], 0.0) for j in range(i + 1)]
+            assert least[i] == pytest.approx(min(costs), abs=1e-11)
+            assert costs[source[i]] == pytest.approx(min(costs), abs=1e-11)
 
 
 def test_a_ring_cut_twice_belongs_turn_by_turn() -> None:
