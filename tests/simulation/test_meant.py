@@ -8,7 +8,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import ToolpathError
-from robomill.simulation.meant import LEFT_OUT, _stepped, linked, meant
+from robomill.simulation.meant import LEFT_OUT, _aligned, _stepped, linked, meant
 from robomill.toolpath.sampling import resample
 
 STEP = 1e-3
@@ -100,6 +100,19 @@ def test_each_sample_is_come_to_from_the_cheapest_before_it(seed: int) -> None:
             costs = [total[j] + LEFT_OUT * max(s[i] - s[j] - far[i], 0.0) for j in range(i + 1)]
             assert least[i] == pytest.approx(min(costs), abs=1e-11)
             assert costs[source[i]] == pytest.approx(min(costs), abs=1e-11)
+
+
+@pytest.mark.parametrize("m", [6, 40, 300])
+def test_the_first_belongs_to_the_first_and_the_last_to_the_last(m: int) -> None:
+    """Though the samples begin two steps later and end two steps earlier; none belongs before the one ahead of it."""
+    p = np.column_stack([np.arange(m) * 1e-3, 0.5e-3 * np.sin(np.arange(m)), np.zeros(m)])
+    u = np.gradient(p, axis=0)
+    u /= np.linalg.norm(u, axis=1)[:, None]
+    at = _aligned(p[2:-2] + np.array([0.0, 1e-4, 0.0]), u[2:-2], p, u)
+    assert (at[0], at[-1]) == (0, m - 1)
+    assert (np.diff(at) >= 0).all()
+    if m > 40:
+        np.testing.assert_array_equal(at[20:-20], np.arange(22, m - 22))
 
 
 def test_a_ring_cut_twice_belongs_turn_by_turn() -> None:
