@@ -8,7 +8,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import ToolpathError
-from robomill.simulation.meant import LEFT_OUT, _aligned, _stepped, linked, meant
+from robomill.simulation.meant import LEFT_OUT, TURNED, _aligned, _stepped, linked, meant
 from robomill.toolpath.sampling import resample
 
 STEP = 1e-3
@@ -113,6 +113,32 @@ def test_the_first_belongs_to_the_first_and_the_last_to_the_last(m: int) -> None
     assert (np.diff(at) >= 0).all()
     if m > 40:
         np.testing.assert_array_equal(at[20:-20], np.arange(22, m - 22))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_of_all_ways_to_belong_the_one_that_costs_least_is_taken(seed: int) -> None:
+    """Off it and turned from it, squared, and what is left out beyond what a sample, or a step of the path, goes on:
+    every sample with every place before it, on a path that winds."""
+    rng, m = np.random.default_rng(seed), 40
+    p = np.cumsum(rng.uniform(-0.3e-3, 1e-3, (m, 3)) * [1.0, 1.0, 0.0], axis=0)
+    q = np.delete(p, rng.choice(np.arange(1, m - 1), 14, replace=False), axis=0) + rng.normal(size=(m - 14, 3)) * 2e-4
+    u, t = (np.gradient(each, axis=0) for each in (p, q))
+    u, t = (each / np.linalg.norm(each, axis=1)[:, None] for each in (u, t))
+    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1)))
+    goes = np.append(0.0, np.linalg.norm(np.diff(q, axis=0), axis=1))
+
+    def own(i: int, j: int) -> float:
+        return float(np.sum((q[i] - p[j]) ** 2) + TURNED**2 * (1.0 - t[i] @ u[j]))
+
+    def left_out(i: int, a: int, b: int) -> float:
+        return float(LEFT_OUT * max(s[b] - s[a] - max(goes[i], s[b] - s[b - 1] if b else 0.0), 0.0))
+
+    least = [0.0] + [np.inf] * (m - 1)
+    for i in range(1, len(q)):
+        least = [min(least[a] + left_out(i, a, b) for a in range(b + 1)) + own(i, b) for b in range(m)]
+    at = _aligned(q, t, p, u)
+    found = sum(left_out(i, at[i - 1], at[i]) + own(i, at[i]) for i in range(1, len(q)))
+    assert found == pytest.approx(least[-1], abs=1e-11)
 
 
 def test_a_ring_cut_twice_belongs_turn_by_turn() -> None:
