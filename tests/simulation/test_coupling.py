@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq, fsolve
 
 import robomill as rm
 from robomill.io.samples import samples_dir
-from robomill.simulation.coupling import LONGEST, MOST, NARROW, TOLERANCE, Coupling, Settled, _by_bracket, settle
+from robomill.simulation.coupling import (
+    AROUND,
+    LONGEST,
+    MOST,
+    NARROW,
+    TOLERANCE,
+    Coupling,
+    Settled,
+    _by_bracket,
+    settle,
+)
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
@@ -399,6 +411,16 @@ def test_a_ramp_that_is_sent_again_is_solved_at_every_step(D, flutes, step):
         assert sum(weight for _, weight in each.mix) == pytest.approx(1.0)
         assert max(np.abs(place - each.x).max() for place, _ in each.mix) <= TOLERANCE * (1 + 1e-9)
         assert np.abs(run.delta - each.x).max(axis=1).min() <= 2 * TOLERANCE, "and that is where C F leads"
+
+
+def test_one_looks_around_a_place_as_far_to_every_side():
+    """The places are the same, seen in a mirror along any axis or with axes exchanged; none of them is asked twice."""
+    places = {tuple(place) for place in AROUND.tolist()}
+    assert len(places) == len(AROUND)
+    for axes in itertools.permutations(range(3)):
+        for signs in itertools.product((1.0, -1.0), repeat=3):
+            assert {tuple(place) for place in (AROUND[:, axes] * signs + 0.0).tolist()} == places
+    assert max(map(max, places)) == 1.0
 
 
 def test_what_pushes_away_from_everywhere_is_told_as_open():

@@ -8,7 +8,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import ToolpathError
-from robomill.simulation.meant import linked, meant
+from robomill.simulation.meant import LEFT_OUT, TURNED, _aligned, _stepped, linked, meant
 from robomill.toolpath.sampling import resample
 
 STEP = 1e-3
@@ -83,6 +83,62 @@ def test_the_ends_of_legs_belong_to_their_corners_however_far_they_fall_short(no
         np.testing.assert_allclose(places[i, 2:], corner, atol=1e-6)
         after = i
     assert linked(path, found).sum() >= len(corners) - 2
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_each_sample_is_come_to_from_the_cheapest_before_it(seed: int) -> None:
+    """All of them tried: what is left out between two costs as its length, and nothing is gone back."""
+    rng = np.random.default_rng(seed)
+    for _ in range(20):
+        n = int(rng.integers(1, 40))
+        s = np.cumsum(rng.choice([0.0, 0.3e-3, 1e-3], n))
+        far = rng.choice([0.0, 0.4e-3, 1.2e-3, 5e-3], n)
+        total = np.where(rng.random(n) < 0.2, np.inf, rng.uniform(0.0, 1e-5, n))
+        total[0] = 0.0
+        least, source = _stepped(total, s, far)
+        for i in range(n):
+            costs = [total[j] + LEFT_OUT * max(s[i] - s[j] - far[i], 0.0) for j in range(i + 1)]
+            assert least[i] == pytest.approx(min(costs), abs=1e-11)
+            assert costs[source[i]] == pytest.approx(min(costs), abs=1e-11)
+
+
+@pytest.mark.parametrize("m", [6, 40, 300])
+def test_the_first_belongs_to_the_first_and_the_last_to_the_last(m: int) -> None:
+    """Though the samples begin two steps later and end two steps earlier; none belongs before the one ahead of it."""
+    p = np.column_stack([np.arange(m) * 1e-3, 0.5e-3 * np.sin(np.arange(m)), np.zeros(m)])
+    u = np.gradient(p, axis=0)
+    u /= np.linalg.norm(u, axis=1)[:, None]
+    at = _aligned(p[2:-2] + np.array([0.0, 1e-4, 0.0]), u[2:-2], p, u)
+    assert (at[0], at[-1]) == (0, m - 1)
+    assert (np.diff(at) >= 0).all()
+    if m > 40:
+        np.testing.assert_array_equal(at[20:-20], np.arange(22, m - 22))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_of_all_ways_to_belong_the_one_that_costs_least_is_taken(seed: int) -> None:
+    """Off it and turned from it, squared, and what is left out beyond what a sample, or a step of the path, goes on:
+    every sample with every place before it, on a path that winds."""
+    rng, m = np.random.default_rng(seed), 40
+    p = np.cumsum(rng.uniform(-0.3e-3, 1e-3, (m, 3)) * [1.0, 1.0, 0.0], axis=0)
+    q = np.delete(p, rng.choice(np.arange(1, m - 1), 14, replace=False), axis=0) + rng.normal(size=(m - 14, 3)) * 2e-4
+    u, t = (np.gradient(each, axis=0) for each in (p, q))
+    u, t = (each / np.linalg.norm(each, axis=1)[:, None] for each in (u, t))
+    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1)))
+    goes = np.append(0.0, np.linalg.norm(np.diff(q, axis=0), axis=1))
+
+    def own(i: int, j: int) -> float:
+        return float(np.sum((q[i] - p[j]) ** 2) + TURNED**2 * (1.0 - t[i] @ u[j]))
+
+    def left_out(i: int, a: int, b: int) -> float:
+        return float(LEFT_OUT * max(s[b] - s[a] - max(goes[i], s[b] - s[b - 1] if b else 0.0), 0.0))
+
+    least = [0.0] + [np.inf] * (m - 1)
+    for i in range(1, len(q)):
+        least = [min(least[a] + left_out(i, a, b) for a in range(b + 1)) + own(i, b) for b in range(m)]
+    at = _aligned(q, t, p, u)
+    found = sum(left_out(i, at[i - 1], at[i]) + own(i, at[i]) for i in range(1, len(q)))
+    assert found == pytest.approx(least[-1], abs=1e-11)
 
 
 def test_a_ring_cut_twice_belongs_turn_by_turn() -> None:

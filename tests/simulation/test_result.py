@@ -351,3 +351,18 @@ def test_a_plunge_is_as_deep_however_the_tool_is_drawn_out_of_it(out: str) -> No
     assert closer.verdict.floor.value == pytest.approx(found.verdict.floor.value, rel=1e-6)
     waited = rm.simulate(PROCESS.replace(source=GCodeSource(text.replace("G1 Z10", "G4 P1\nG1 Z10"))))
     assert waited.verdict.floor.value == (0.0 if out.startswith("G1") else found.verdict.floor.value)
+
+
+def test_a_notebook_names_all_that_a_run_assumes_or_that_it_assumes_nothing() -> None:
+    """The largest deviation and its root mean square are those of its samples, in mm."""
+    run = rm.simulate(SETUP)
+    shown = run._repr_html_()
+    sizes = [float(np.linalg.norm(run.delta[i])) for i in range(len(run.path)) if run.judged[i]]
+    assert f"{1e3 * max(sizes):.3f} mm" in shown
+    assert f"{1e3 * np.sqrt(np.mean(np.square(sizes))):.3f} mm" in shown
+    assert len(run.assumed) > 1
+    assert all(each.what in shown for each in run.assumed)
+    assert "nothing" not in shown
+    stated = dataclasses.replace(run)
+    vars(stated)["assumed"] = ()
+    assert "nothing" in stated._repr_html_()

@@ -1,5 +1,7 @@
 """The free spin of six-axis arms in a set-up: each spin run by itself, the least of them taken, said in the file."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup, setup_from_toml, setup_to_toml
 from robomill.kinematics.transforms import translation
 from robomill.simulation.reach import path_reach
-from robomill.simulation.run import configurations, deviation_over_spin
+from robomill.simulation.run import configurations, deviation_over_spin, spin_of
 from robomill.simulation.samples import sampled
 
 PAPER = load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(step=5e-3)
@@ -39,6 +41,22 @@ def test_least_deviation_is_the_least_of_all_runs(each):
     assert best.deviation[best.path.cutting].max() == pytest.approx(np.nanmin(each), rel=1e-9)
     assert best.ik.spin[0] == pytest.approx(ANGLES[np.nanargmin(each)])
     assert np.ptp(best.ik.spin) == 0
+
+
+@pytest.mark.parametrize("spin", [0.7, -1.2, "least_deviation"])
+def test_held_at_the_one_spin_of_its_configurations_an_arm_stands_the_same(spin):
+    ik = rm.simulate(FANUC.replace(spin=spin)).ik
+    held = configurations(FANUC, sampled(FANUC.toolpath, FANUC.step), spin_of(ik))
+    np.testing.assert_allclose(held.theta, ik.theta, atol=1e-9)
+    assert isinstance(spin_of(ik), float)
+
+
+def test_where_the_spin_changes_or_is_none_there_is_no_one_spin():
+    """The arm is left to move as little as it can; so is one of five axes, and one without a path."""
+    ik = rm.simulate(FANUC.replace(spin=0.7)).ik
+    for spins in (ik.spin + np.linspace(0.0, 1.0, len(ik.spin)), ik.spin + np.linspace(0.0, 1e-3, len(ik.spin)), None):
+        assert spin_of(replace(ik, spin=spins)) == "least_motion"
+    assert spin_of(rm.simulate(PAPER).ik) == "least_motion"
 
 
 def test_how_much_the_spin_matters_here(each):

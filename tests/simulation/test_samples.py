@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import robomill as rm
 from robomill.io.samples import samples_dir
-from robomill.simulation.samples import STILL, clock, moving, sampled, ways
+from robomill.simulation.samples import STILL, chosen, clock, moving, sampled, ways
 from robomill.surface.stock import Stock
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import GCodeSource
@@ -171,3 +173,21 @@ def test_material_shorter_than_a_step_is_met(step, thick):
     assert np.linalg.norm(result.F[:, :2], axis=1).max() == pytest.approx(truth, rel=0.08)
     far = run("G0 X-20 Y200 Z5", "G0 Z-2", "G1 X20.5 F1200", cutter=mill, stock=stock, step=step, cell=1e-4)
     assert len(far.path) < 60  # away from the part the steps stay as they are told
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_wait_is_before_the_next_move_that_is_kept_and_the_last_waits_at_the_last(seed: int) -> None:
+    """Counted sample by sample; none is lost."""
+    rng, m = np.random.default_rng(seed), 12
+    path = replace(toolpath(rng.uniform(0.0, 0.1, (m, 3))), dwell=rng.uniform(0.1, 2.0, m))
+    keep = rng.random(m) < 0.5
+    keep[[0, m - 1 - seed % 2]], keep[m - seed % 2 :] = True, False
+    waited, so_far = [], 0.0
+    for i in range(m):
+        so_far += path.dwell[i]
+        if keep[i]:
+            waited, so_far = [*waited, so_far], 0.0
+    waited[-1] += so_far
+    found = chosen(path, keep)
+    np.testing.assert_allclose(found.dwell, waited)
+    np.testing.assert_array_equal(found.p, path.p[keep])

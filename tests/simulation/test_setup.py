@@ -96,3 +96,13 @@ def test_without_a_stock_the_block_stands_round_what_the_widest_cutter_that_cuts
         np.testing.assert_allclose(block.lower[:2], [-10e-3 - radius - BESIDE, 2e-3 - radius - BESIDE], atol=1e-12)
         np.testing.assert_allclose(block.upper[:2], [30e-3 + radius + BESIDE, 2e-3 + radius + BESIDE], atol=1e-12)
     assert SETUP.stock_block is SETUP.stock
+
+
+@pytest.mark.parametrize("name", ["tolerance", "floor_tolerance", "feed_tolerance"])
+def test_a_tolerance_wider_than_any_part_has_one_is_refused(name):
+    """100 um stated as 100 mm, 0.3 mm as 0.3 m; up to 50 mm are taken."""
+    for wide in (0.06, 0.1, 0.3):
+        with pytest.raises(SetupError, match=r"[Tt]olerance"):
+            SETUP.replace(**{name: wide})
+    for fits in (1e-5, 0.3e-3, 0.049):
+        assert getattr(SETUP.replace(**{name: fits}), name) == fits

@@ -35,6 +35,18 @@ def test_every_edge_is_shared_by_two_faces_that_run_against_each_other(max_faces
     np.testing.assert_allclose(mesh.vertices.max(axis=0), STOCK.upper, atol=1e-15)
 
 
+@pytest.mark.parametrize("ends", [[(-5, 5), (25, 5)], [(-5, 2), (25, 9)], [(8, -5), (12, 17)]])
+def test_a_slot_through_the_block_leaves_a_closed_body_without_a_vertex_too_many(ends):
+    """Its walls run out to the sides: a foot below each place of the rim, one for the two points of a wall."""
+    path = np.array([[x, y, -2.0] for x, y in ends]) * 1e-3
+    mesh = to_mesh(cut(STOCK, 1e-3, Cutter("flat", 0.005), path))
+    edges = np.concatenate([mesh.faces[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))]).tolist()
+    assert {tuple(edge) for edge in edges} == {(b, a) for a, b in edges}
+    assert (np.unique(mesh.faces) == np.arange(len(mesh.vertices))).all()
+    low = mesh.vertices[mesh.vertices[:, 2] == STOCK.lower[2]]
+    assert len(np.unique(low, axis=0)) == len(low)
+
+
 def test_a_solid_tells_what_is_done_of_it_from_nothing_on():
     told = []
     with watched(Progress(say=lambda progress: told.append((progress.stage, progress.share)))):

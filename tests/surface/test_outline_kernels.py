@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from robomill.cutting.tool import Cutter
 from robomill.surface.outline import Outline
-from robomill.surface.outline_kernels import Seen, Tracks, furthest, furthest_block, seen_from, squares_near
+from robomill.surface.outline_kernels import Seen, Tracks, furthest, furthest_block, seen_from, squares_near, upright_at
 
 R = 4e-3
 FLAT = Cutter("flat", 2 * R)
@@ -180,3 +180,18 @@ def test_the_block_that_may_reach_furthest_is_that_of_the_widest_capsule_round_a
         assert found == best
         seen.add(found >= 0)
     assert seen == {True, False}
+
+
+@pytest.mark.parametrize("angle", [60.0, 90.0, 120.0])
+@pytest.mark.parametrize("turn", [0.0, 0.3, 2.0])
+def test_a_cone_leaves_a_side_as_steep_on_the_very_rim_of_its_track_as_within(angle, turn):
+    """The cone's own angle, out to its full radius; beyond that nothing of it lies over the place."""
+    cone, way = Cutter("chamfer", 2 * R, tip_angle=np.radians(angle)), np.array([np.cos(turn), np.sin(turn), 0.0])
+    ends = np.concatenate([-5e-3 * way, 5e-3 * way])[None]
+    outline = Outline(ends, ends, (cone,), np.zeros(1, dtype=int), 1e-3)
+    (told, _), blocks = outline._tracks, outline._blocks
+    place = np.concatenate([np.zeros(3), UP, [-way[1], way[0], 0.0]])
+    for offset in (0.5 * R, R * (1.0 - 1e-13), -R * (1.0 - 1e-13)):
+        low = abs(offset) / np.tan(np.radians(0.5 * angle)) + 1e-12
+        found = upright_at(told, blocks, place, offset, low)
+        assert found == pytest.approx(np.sin(np.radians(0.5 * angle)), abs=1e-6)

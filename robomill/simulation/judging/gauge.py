@@ -16,7 +16,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray, frozen
 from robomill.simulation.judging.leaning import lies
 from robomill.simulation.judging.places import Places, places
-from robomill.simulation.judging.seen import WHOLE, Run
+from robomill.simulation.judging.seen import Run, share_out
 from robomill.surface.outline import SAME, Walls
 from robomill.values import ReadOnly
 
@@ -35,7 +35,6 @@ CROWN = 0.5  # how steep across the feed a floor may be that the heel of a sinki
 BESIDE_ROOT = (1.0, 1.25, 1.5, 1.75, 2.0)  # of how far a groove has gone aside: where nobody may cut below its root
 SLENDER = 0.125  # of its height: a wall as thin gives way to a cutter as the arm does
 ALIKE = 2e-6  # m: readings, and deviations, that differ by less are one
-LEAST = 1e-4  # share of the length that a single place stands for
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +75,7 @@ class Readings(ReadOnly):
     def share_out(self, tolerance: float) -> float:
         """Share of the length that is out of ``tolerance`` (m): 0 where nothing is, and never 0 where something is,
         however short."""
-        out, total = np.abs(self.error) > WHOLE * tolerance, float(self.length.sum())
-        if not out.any():
-            return 0.0
-        return max(float(self.length[out].sum()) / total if total > 0.0 else 1.0, LEAST)
+        return share_out(self.error, self.length, tolerance)
 
 
 @dataclass(frozen=True, eq=False)

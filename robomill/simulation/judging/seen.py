@@ -30,6 +30,7 @@ from robomill.toolpath.sampling import drawn_back
 from robomill.values import Tabled
 
 WHOLE = 1.0 + 1e-9  # of a tolerance: what is out by less is on the limit, and rounding
+LEAST = 1e-4  # share of the length that a single place stands for
 FEW = 0.1
 """Of the length that cuts: where less is judged, no number stands for the cut (stated, not derived)."""
 MOST = 0.5
@@ -195,3 +196,12 @@ class Run(Tabled):
     def early_rapids(self) -> tuple[int, ...]:
         """Source lines of rapids through material that is cut only later."""
         return self._crashes.early
+
+
+def share_out(error: FloatArray, length: FloatArray, tolerance: float) -> float:
+    """Share of the ``length`` (q,) m at whose places the ``error`` (q,) m is out of ``tolerance`` (m): 0 where nothing
+    is, and never 0 where something is, however short."""
+    out, total = np.abs(error) > WHOLE * tolerance, float(length.sum())
+    if not out.any():
+        return 0.0
+    return max(float(length[out].sum()) / total if total > 0.0 else 1.0, LEAST)

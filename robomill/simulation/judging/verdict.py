@@ -8,7 +8,7 @@ from robomill.arrays import IntArray
 from robomill.provenance import Finding, named
 from robomill.simulation.judging.gauge import Gauge, Readings
 from robomill.simulation.judging.premise import Premise, premise
-from robomill.simulation.judging.seen import Run
+from robomill.simulation.judging.seen import Run, share_out
 from robomill.simulation.judging.verdict_words import KINDS, TIP, Deciding, Level, Reading, Verdict, said
 from robomill.simulation.origin.assumed import far_share
 
@@ -70,10 +70,11 @@ def _readings(result: Run, gauge: Gauge) -> tuple[Reading, Reading, Reading, Rea
     along = np.where(i, np.abs(result.delta_in_cut[:, 0]), -np.inf)
     feed = int(np.argmax(along)) if i.any() else -1
     value = float(result.delta_in_cut[feed, 0]) if feed >= 0 else float("nan")
+    out = share_out(result.delta_in_cut[i, 0], result.path.step_length[i], limits["feed"])
     return (
         _reading(gauge.walls, limits["wall"]),
         _reading(gauge.floors, limits["floor"]),
-        Reading(feed, value, limits["feed"], stated=stated),
+        Reading(feed, value, limits["feed"], out, stated),
         _reading(gauge.ends, limits["end"], stated),
     )
 
@@ -81,7 +82,7 @@ def _readings(result: Run, gauge: Gauge) -> tuple[Reading, Reading, Reading, Rea
 def _reading(found: Readings, tolerance: float, stated: bool = True) -> Reading:
     q = found.worst
     if q < 0:
-        return Reading(-1, float("nan"), tolerance, stated=stated)
+        return Reading(-1, float("nan"), tolerance, 0.0, stated)
     return Reading(int(found.sample[q]), float(found.error[q]), tolerance, found.share_out(tolerance), stated)
 
 

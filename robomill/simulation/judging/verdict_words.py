@@ -99,7 +99,7 @@ class Reading:
     worst: int
     value: float
     tolerance: float
-    share_out: float = 0.0
+    share_out: float
     stated: bool = True
 
     @property

@@ -114,3 +114,13 @@ def test_a_place_on_the_edge_of_the_stock_is_read_whatever_its_last_digit(digit:
     result = run("G0 X-36 Y0 Z5", "G0 Z-1.5", "G1 X36 F1800", cutter=Cutter("ball", 2 * R))
     edge = np.array([[-30e-3 - digit, 0.0], [30e-3 + digit, 0.0], [-30e-3 - 2e-9, 0.0]])
     assert np.isfinite(stock_top(result.setup, edge)).tolist() == [True, True, False]
+
+
+@pytest.mark.parametrize("up", [0.15e-3, -0.1e-3])
+def test_a_nose_whose_axis_runs_just_beside_the_edge_is_read_right_next_to_it(up: float) -> None:
+    """There what it leaves is all but level: off by as much as the tip is, up or down."""
+    result = run("G0 X-40 Y-40 Z5", "G0 Y-20.04", "G0 Z-3.5", "G1 X40 F1800", cutter=Cutter("ball", 2 * R))
+    reading = pushed(result, up=up).gauge.floors
+    inside = np.abs(result.path.p[reading.sample, 0]) < 20e-3
+    assert inside.sum() > 20
+    assert np.abs(reading.error[inside]).max() == pytest.approx(abs(up), rel=1e-3)

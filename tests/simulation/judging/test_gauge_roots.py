@@ -94,3 +94,37 @@ def test_the_groove_of_a_ball_is_as_deep_as_its_bottom_line_however_small_the_ba
         floors = pushed(made, left=left, up=up).gauge.floors
         assert len(floors.error) > 5
         np.testing.assert_allclose(floors.error, up, atol=1e-8)
+
+
+@pytest.mark.parametrize("up", [-0.05e-3, 0.05e-3])
+@pytest.mark.parametrize("left", [-0.2e-3, 0.2e-3])
+def test_a_root_stays_one_where_deeper_grooves_are_three_times_as_far_as_it_goes_aside(left, up):
+    """Its neighbours 0.3 mm beside it narrow it on both sides, deeper ones 0.6 mm beside it leave it where it is."""
+    cone = Cutter("chamfer", 2 * R, tip_angle=np.radians(90.0))
+    cuts = [(0.0, -2.0), (0.3, -1.95), (-0.3, -1.95), (0.6, -2.1), (-0.6, -2.1)]
+    lines = [line for y, z in cuts for line in (f"G0 X-4 Y{y} Z5", f"G0 Z{z}", "G1 X4 F1800", "G0 Z5")]
+    made = run(*lines, cutter=cone)
+    floors = pushed(made, left=left, up=up).gauge.floors
+    of_root = np.abs(made.path.p[floors.sample, 1]) < 1e-5
+    assert of_root.sum() > 5
+    np.testing.assert_allclose(floors.error[of_root], up, atol=1e-8)
+
+
+def test_a_slope_of_grooves_is_read_alike_whichever_way_they_are_cut():
+    """Seven grooves in steps, falling from the middle on; cut backwards, and pushed to the same side of the part."""
+    cone, found = Cutter("chamfer", 2 * R, tip_angle=np.radians(90.0)), []
+    for way in (1, -1):
+        lines = []
+        for k in range(7):
+            ends = [(-1.5, -2 + 0.05 * k), (0.0, -2 + 0.05 * k), (1.5, -2.15 + 0.05 * k)][::way]
+            lines += [f"G0 X{ends[0][0]} Y{0.1 * k:g} Z5", f"G0 Z{ends[0][1]:g}"]
+            lines += [*(f"G1 X{x} Z{z:g} F1800" for x, z in ends[1:]), "G0 Z5"]
+        made = run(*lines, cutter=cone, step=0.1e-3)
+        floors = pushed(made, left=-way * 0.2e-3).gauge.floors
+        at = np.round(made.path.p[floors.sample, :2] * 1e7).astype(int)
+        # in the bend itself a sample belongs to the move before it
+        found.append({(x, y): e for (x, y), e in zip(at.tolist(), floors.error, strict=True) if 1 < abs(x) < 14500})
+    assert found[0].keys() == found[1].keys()
+    assert len(found[0]) > 100
+    for place, error in found[0].items():
+        assert error == pytest.approx(found[1][place], abs=1e-8)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from robomill.simulation.judging.places import APART, BETWEEN, Places, places
+from robomill.cutting.tool import Cutter
+from robomill.simulation.judging.places import APART, BETWEEN, Places, _chosen, places
 from robomill.surface.stock import Stock
 from tests.simulation.judging.test_gauge import BLOCK, pushed, run
 
@@ -139,3 +140,46 @@ def test_the_stock_stands_as_high_as_its_mesh_over_the_nearest_cell():
     depth = np.where(inside, np.maximum(top - points[:, 2], 0.0) / np.cos(lean), 0.0)
     np.testing.assert_allclose(at.depth(np.arange(len(points)), points), depth, atol=1e-12)
     assert min(upon.sum(), (inside & ~upon & (depth > 0)).sum(), (~inside).sum()) > 50
+
+
+CUTTERS = (
+    Cutter("flat", 8e-3),
+    Cutter("ball", 8e-3),
+    Cutter("chamfer", 8e-3, tip_angle=np.radians(60.0)),
+    Cutter("chamfer", 8e-3, tip_angle=np.radians(120.0)),
+)
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.05, -0.3, 0.6])
+def test_a_tool_that_rises_on_its_way_is_wider_or_narrower_at_a_height_by_its_own_shape(rise):
+    """By its radius at heights a little lower and a little higher; a plunge's sides stay where they are."""
+    heights, ahead = np.linspace(0.5e-3, 3.5e-3, 13), 1e-6
+    across, many = 1.0 / np.hypot(1.0, rise), len(CUTTERS) * len(heights)
+    steep = np.arange(many) % len(heights) == 5
+    conditions = SimpleNamespace(
+        along=np.full(many, rise * across), across=np.full(many, across), mostly_axial=steep, plunges=steep
+    )
+    every, rows, of = np.arange(many), np.zeros((many, 3)), np.repeat(np.arange(len(CUTTERS)), len(heights))
+    at = Places(SimpleNamespace(conditions=conditions), every, every < 0, *[rows] * 5, CUTTERS, of, None)
+    found = at.wider(every, np.tile(heights, len(CUTTERS)))
+    for q in every:
+        low, high = (heights[q % len(heights)] + side * ahead * abs(rise) for side in (-1.0, 1.0))
+        truth = (CUTTERS[of[q]].radius_at(high) - CUTTERS[of[q]].radius_at(low)) / (2 * ahead)
+        assert found[q] == pytest.approx(0.0 if steep[q] else min(truth, 0.9), rel=1e-4, abs=1e-6)
+
+
+@pytest.mark.parametrize("most", [20, 100])
+def test_of_many_samples_those_in_even_steps_are_chosen_and_those_that_are_most_off(most):
+    """A tenth of them; their steps, short and long, have nothing to do with where they are off."""
+    rng = np.random.default_rng(most)
+    s, off = np.cumsum(rng.uniform(0.0, 2e-3, 1500)), rng.normal(size=(1500, 2))
+    off[3] = np.nan  # not reached
+    chosen = _chosen(s, off, most)
+    worst = np.argsort(np.nan_to_num(np.hypot(*off.T)))[-(most // 10) :]
+    assert set(worst) <= set(chosen)
+    assert most <= len(chosen) + most // 10
+    assert len(chosen) <= most + most // 10
+    even = sorted(set(range(len(s))) & set(chosen))
+    assert (s[even[0]], s[even[-1]]) == (s[0], s[-1])
+    assert np.diff(s[even]).max() <= s[-1] / (most - 1) + 2e-3
+    assert np.diff(s[sorted(set(even) - set(worst))]).min() >= s[-1] / (most - 1) - 2e-3

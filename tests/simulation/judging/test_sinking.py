@@ -46,6 +46,27 @@ def test_a_ramp_that_the_tip_follows_is_cut_as_it_is_told_once_it_goes_on_for_th
     assert (np.diff(steep[20:]) >= -1e-9).all()  # taken up by and by
 
 
+@pytest.mark.parametrize("deeper", [-4e-3, 3e-3])
+def test_a_ramp_after_a_rapid_is_cut_as_if_it_were_the_first(deeper: float) -> None:
+    """Wherever the cut before it has ended, and however far the rapid has gone down."""
+    x = 1e-3 * np.arange(30)
+    fall = 0.1 * np.abs(x - 5e-3)
+    alone = np.column_stack([x, 0.0 * x, -1e-3 - fall - deeper])
+    before = np.column_stack([x, 0.0 * x + 0.02, -1e-3 - fall])
+    found = []
+    for points, begins in ((alone, [0]), (np.vstack([before, alone]), [0, 30])):
+        cutting = np.ones(len(points), dtype=bool)
+        cutting[begins] = False
+        path = Toolpath.from_points(points, 0.03, cutting=cutting)
+        along = ways(path)[:, 2]
+        level = {"along": along, "across": np.sqrt(1.0 - along**2), "cutting": path.cutting}
+        told = CutConditions.steady(0.03, 200.0, 1e-3, **level)
+        told = CutConditions(**{**vars(told), "tooling": Tooling.of(MILL, len(path))})
+        found.append(np.array(sinking(told, path, path.p, None, never).steep)[-29:])
+    np.testing.assert_allclose(found[1], found[0], atol=1e-9)
+    assert 0.1 < found[0].max()
+
+
 @pytest.mark.parametrize("degrees", [0.2, 3.0])
 def test_an_end_that_is_told_down_as_its_arm_is_pushed_up_meets_nothing(degrees):
     told, path = ramp(degrees)

@@ -85,6 +85,24 @@ def test_where_the_levels_begin(result: SimulationResult, edge: float, level: st
     assert judge(toleranced(result, feed=False), gauge(0.1, edge, None)).level == level
 
 
+@pytest.mark.parametrize("feed", [False, True])
+@pytest.mark.parametrize("least", [0.0, 0.3e-3, 0.6e-3, 2e-3])
+def test_how_much_of_the_path_is_out_along_the_feed(result: SimulationResult, feed: bool, least: float) -> None:
+    """Sample by sample, ahead of its place or behind it, by the way that each one ends; pushed aside is not out."""
+    rng = np.random.default_rng(7)
+    m = len(result.path)
+    ahead = rng.choice([-1.0, 1.0], m) * rng.uniform(least, 1e-3 + least, m)
+    pushed = np.column_stack([ahead, np.full(m, 5e-3), np.zeros(m)])
+    bent = dataclasses.replace(result, delta=np.einsum("mij,mj->mi", result.R_MF, pushed))
+    run = toleranced(bent, feed=feed)
+    bound, p = TOLERANCES[2 if feed else 0], run.path.p
+    ways = {i: float(np.linalg.norm(p[i] - p[i - 1])) if i else 0.0 for i in range(m) if run.judged[i]}
+    out = sum(way for i, way in ways.items() if abs(ahead[i]) > bound)
+    found = judge(run, gauge(None, None, None)).feed.share_out
+    assert found == pytest.approx(out / sum(ways.values()))
+    assert (found == 1.0) == (least >= bound)
+
+
 @pytest.mark.parametrize(
     ("share", "unjudged"), [(0.5, "unjudged"), (0.9, "unjudged"), (1.2, "out"), (None, "unjudged")]
 )

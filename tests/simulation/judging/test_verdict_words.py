@@ -202,4 +202,4 @@ def test_a_grade_is_that_of_its_share_unless_a_wall_is_gone_or_the_force_may_be_
 def test_a_reading_decides_where_the_cut_leaves_one_and_its_tolerance_is_its_own(worst, stated, decides) -> None:
     """The first sample of a path is as good as any."""
     value = 1e-4 if worst >= 0 else float("nan")
-    assert Reading(worst, value, 3e-4, stated=stated).decides is decides
+    assert Reading(worst, value, 3e-4, 0.0, stated).decides is decides

@@ -285,8 +285,8 @@ def test_where_a_run_stops_its_front_is_noted_too(axis, way):
     found = []
     for stops in (False, True):
         world = world_of([(FLAT, end - way, end, axis)])
-        note_rim(world, FLAT.solid, 0, stops)
-        found.append(noted(world) == 0)
+        note_rim(world, FLAT.solid, 1, stops)
+        found.append(noted(world) == 1)
     dexels, k = world.dexels, np.array(axis)
     side = np.cross(k, way) / np.linalg.norm(np.cross(k, way))
     ahead = np.cross(side, k)
@@ -300,6 +300,29 @@ def test_where_a_run_stops_its_front_is_noted_too(axis, way):
     clear = counts * step > 0.7 * min(dexels.dx, dexels.dy)
     assert clear.sum() > 8
     assert found[1][tuple(cells[clear].T)].all()
+
+
+@pytest.mark.parametrize("axis", [(0.0, 0.28, 0.96), (-0.28, 0.0, 0.96), (0.6, 0.0, 0.8), (0.36, -0.48, 0.8)])
+@pytest.mark.parametrize("way", [(11.0, 4.0, -0.1), (-9.0, 6.0, -0.1)])
+def test_what_of_a_front_stands_above_the_stock_is_not_noted(axis, way):
+    """A leaning tool stops 0.3 mm under the top: half of its rim or so is out of the material."""
+    end, k = np.array([12.0, 8.0, -0.3]), np.array(axis)
+    found = []
+    for stops in (False, True):
+        world = world_of([(FLAT, end - way, end, axis)])
+        note_rim(world, FLAT.solid, 1, stops)
+        found.append(noted(world) == 1)
+    side = np.cross(k, way) / np.linalg.norm(np.cross(k, way))
+    phi = np.linspace(0.0, np.pi, 4001)[:, None]
+    rim = end + FLAT.radius / MM * (np.cos(phi) * side + np.sin(phi) * np.cross(side, k))
+    i, j = np.floor(rim[:, :2].T * MM / np.array([[world.dexels.dx], [world.dexels.dy]])).astype(int)
+    under, length = np.zeros(found[0].shape), np.pi * FLAT.radius / 4000
+    np.add.at(under, (i[rim[:, 2] < 0.0], j[rim[:, 2] < 0.0]), length)
+    assert not found[1][(under == 0.0) & ~found[0]].any()
+    clear = under > 0.7 * min(world.dexels.dx, world.dexels.dy)
+    assert clear.any()
+    assert found[1][clear].all()
+    assert (rim[:, 2] > 0.0).any()
 
 
 def test_the_side_that_reaches_further_is_noted():

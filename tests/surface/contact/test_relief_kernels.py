@@ -94,6 +94,19 @@ def test_about_a_way_no_longer_than_the_margin_allows():
     assert tops_about(relief, 0.0, 10 * MM) == pytest.approx((0.0, 0.0), abs=1e-15)
 
 
+def test_so_near_to_a_bound_that_rounding_decides_nothing_is_told():
+    """Heights of the same plane come out some 1e-16 m apart by different ways; what is 10 nm off is told."""
+    relief = (
+        March(Stock(LOW, HIGH), 0.25 * MM, MILLS[0], np.array([[-20.0, 0, -2], [20, 0, -2]]) * MM)._stepwise[0].relief
+    )
+    tops = -2.0 * MM, -1.0 * MM
+    for rounding in (-1e-15, 0.0, 1e-15):
+        assert told(relief, tops, tops[1] + rounding, 0.0) == UNKNOWN
+        assert told(relief, tops, -7 * MM, tops[0] + rounding) == UNKNOWN
+    assert told(relief, tops, tops[1] + 1e-8, 0.0) == AIR
+    assert told(relief, tops, -7 * MM, tops[0] - 1e-8) == MATERIAL
+
+
 @pytest.mark.parametrize("turn", [0.0, 0.7, 2.5])
 @pytest.mark.parametrize("ends", [(-7.0, -1.0), (-1.0, -7.0), (-4.0, -4.0)])
 @pytest.mark.parametrize("cutter", MILLS[:2])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from robomill.arrays import FloatArray
+from robomill.cutting.profile_kernels import stretch_ends
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
 from robomill.surface.contact.engagement import engage
@@ -26,6 +27,7 @@ from robomill.surface.contact.rib_kernels import (
     first_change,
     look_about,
     pace,
+    walk_on,
 )
 from robomill.surface.contact.step_kernels import Step, step_at
 from robomill.surface.contact.turn_kernels import ANGLES, PHI
@@ -148,6 +150,26 @@ def test_what_is_told_of_a_whole_gap_holds_at_every_angle_in_it(sense: float, le
             assert ((z > LOW[2]) & (z < 0.0) == (walk.circles[0, WHOLE + row] > 0.5)).all()
             told += 1
     assert told > 1000
+
+
+def test_circles_are_walked_wherever_one_of_them_dips_below_the_top_of_the_stock() -> None:
+    """Tools that lean, their tips a little over the top or under it; the circles are laid out point by point."""
+    rng, phi, seen = np.random.default_rng(3), np.linspace(0.0, 2 * math.pi, 721), {True: 0, False: 0}
+    shapes = [cutter.solid for cutter in (FLAT, BALL, BULL, CHAMFER)]
+    for n in range(200):
+        shape, k = shapes[n % 4], axis(A=rng.uniform(-40, 40), B=rng.uniform(-40, 40))
+        v = np.cross(k, rng.normal(size=3))
+        world, step, _ = looking(k, v / np.linalg.norm(v), np.array([0.0, 0.0, rng.uniform(-1.0, 1.3) * shape.R]))
+        stretches = np.array([stretch_ends(shape, stretch, 5 * MM) for stretch in range(3)])
+        walk = walk_on(world, shape, step, stretches, np.zeros((12, COLUMNS)))
+        across = np.array([step.fz, step.lz]) @ [np.sin(phi), np.cos(phi)]
+        lowest = min(step.z + t * k[2] + r * across.min() for r, t in walk.circles[:, [RADIUS, HEIGHT]])
+        if lowest < -1e-9:
+            assert walk.used > 0
+        if step.z > shape.R:
+            assert walk.used == 0
+        seen[walk.used > 0] += step.z > 0.0  # the heel is in the stock, the tip is not
+    assert min(seen.values()) > 20
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -259,3 +259,31 @@ def test_stations_are_one_list_of_lengths():
     stock, p, cutting, R = slot(0.0)
     with pytest.raises(SurfaceError, match=r"expected a list of lengths, found shape .1, 2."):
         groove_sections(stock, FLAT, CutPath(p, p + R @ DELTA, cutting), [[0.01, 0.02]])
+
+
+def across_x(cutter, *lines, k=None):
+    """The section at x = 0 of the first of straight passes along +X, each (y, z) mm, all pushed aside and down."""
+    ends = np.array([[[-50.0, y, z], [50.0, y, z]] for y, z in lines]).reshape(-1, 3) * 1e-3
+    stock = Stock((-0.03, -0.03, -0.01), (0.03, 0.03, 0.0))
+    cutting = np.arange(len(ends)) % 2 == 1
+    return groove_section(stock, cutter, ends, ends + np.array([0.0, 1e-4, -5e-5]), cutting, None, 0.05, k=k)
+
+
+@pytest.mark.parametrize("turn", [0.0, 3.0, -5.0])
+@pytest.mark.parametrize("flat", [0.8e-3, 1.2e-3, 1.9e-3])
+def test_the_floor_of_a_round_nosed_mill_leans_as_what_its_end_has_of_a_flat(flat, turn):
+    """The flat is less than half as wide as the mill: beyond it the nose rises."""
+    cutter, t = Cutter("bull", 8e-3, corner_radius=4e-3 - flat), np.radians(turn)
+    section = across_x(cutter, (0.0, -3.0), k=np.array([0.0, np.sin(t), np.cos(t)]))
+    assert section.floor_tilt == pytest.approx(-t, abs=1e-6)
+
+
+@pytest.mark.parametrize(("aside", "tilt"), [(6.3, 0.0), (5.7, None), (-6.3, 0.0), (-5.7, None)])
+def test_the_lean_of_a_floor_is_that_of_the_half_of_it_about_the_axis(aside, tilt):
+    """A deeper pass beside it ends the floor 2.3 mm or 1.7 mm from the axis, outside of that half or within it."""
+    section = across_x(FLAT, (0.0, -3.0), (aside, -3.5))
+    if tilt is None:
+        assert np.isnan(section.floor_tilt)
+        assert "not straight across" in section.why["floor_tilt"]
+    else:
+        assert section.floor_tilt == pytest.approx(tilt, abs=1e-9)
