@@ -27,7 +27,7 @@ CLOSE, NEAR = 0.5 * TOLERANCE, 16.0 * TOLERANCE  # m: so far off are forces of w
 AROUND = np.array([*product((-1.0, 0.0, 1.0), repeat=3), *product((-0.3, 0.3), repeat=3)])
 """(35, 3): places around one, of half a cube's edge."""
 STRAIGHT = np.linalg.pinv(np.column_stack([np.ones(len(AROUND)), AROUND]))
-"""(4, 35): of what is found ``AROUND`` a place the value there, and how it changes along x, y and z, by least squares."""
+"""(4, 35): of values ``AROUND`` a place the one there, and how they change along x, y and z, by least squares."""
 Push = Callable[[FloatArray], FloatArray]
 """Where the force that acts with the tool at a place (3,) m bends it to, (3,) m."""
 
@@ -58,7 +58,7 @@ def settle(g: Push, start: FloatArray, free: FloatArray, axis: FloatArray) -> Se
 
     Broyden's method on g(x) - x, whose first step is x <- g(x). Where it does not close in, the height at which the
     end of the tool rests, then a bracket between where the force bends the tool from ``free`` and from there, and last
-    the forces that act around the best place so far, near it and a little further off. A g that is not a number ends it.
+    the forces that act around the best place so far, near it and a little further off. A g that is no number ends it.
     """
     found = _by_broyden(g, start)
     gain = found.gain

@@ -166,8 +166,10 @@ def test_one_length_in_two_units_has_one_digest(places: int) -> None:
 @pytest.mark.parametrize("base", [0.7, -123.456, 1e-9, 0.1 + 0.2, 9.999999999999, 1e300])
 def test_twelve_digits_tell_numbers_apart(base: float) -> None:
     near, other = np.nextafter(base, np.inf), base * (1 + 2e-12)
-    assert digest(near) == digest(base) and digest(np.array([near])) == digest(np.array([base]))
-    assert digest(other) != digest(base) and digest(np.array([other])) != digest(np.array([base]))
+    assert digest(near) == digest(base)
+    assert digest(np.array([near])) == digest(np.array([base]))
+    assert digest(other) != digest(base)
+    assert digest(np.array([other])) != digest(np.array([base]))
 
 
 @pytest.mark.parametrize("power", range(-300, 301, 20))
@@ -179,7 +181,8 @@ def test_a_power_of_ten_is_told_alike_from_both_sides(power: int) -> None:
 
 
 def test_zero_has_no_sign_and_what_is_not_finite_is_told_apart() -> None:
-    assert digest(np.array([-0.0])) == digest(np.array([0.0])) and digest(-0.0) == digest(0.0)
+    assert digest(np.array([-0.0])) == digest(np.array([0.0]))
+    assert digest(-0.0) == digest(0.0)
     ends = [0.0, 5e-324, -5e-324, np.nan, np.inf, -np.inf, 1.7e308, -1.7e308]
     assert len({digest(np.array([end])) for end in ends}) == len(ends)
 

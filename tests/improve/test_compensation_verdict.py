@@ -18,8 +18,10 @@ def test_every_sample_whose_force_is_coupled_is_corrected_and_judged_throughout(
     setup = rm.load_setup(name).replace(coupling=True)
     found = rm.compensate(setup)
     run = rm.simulate(setup.replace(source=found.source))
-    assert run.coupling is not None and run.coupling.converged
-    assert not run.not_judged.any() and run.reached.all()
+    assert run.coupling is not None
+    assert run.coupling.converged
+    assert not run.not_judged.any()
+    assert run.reached.all()
     assert run.verdict.level in ("ok", "tight")
     assert found.after.max < found.before.max
     assert "not-known" not in {each.code for each in found.findings}
@@ -29,9 +31,11 @@ def test_why_a_corrected_program_has_no_verdict_is_said(tmp_path: Path, capsys: 
     setup = rm.load_setup("paper_flute/setup_process").replace(source=rm.GCodeSource(BACK, "back.nc"))
     found = rm.compensate(setup)
     rapid = rm.simulate(setup.replace(source=found.source))
-    assert rapid.rapids and found.level == "unjudged"
+    assert rapid.rapids
+    assert found.level == "unjudged"
     (told,) = (each for each in found.findings if each.code == "not-known")
-    assert "not known" in told.message and "A rapid runs through material" in told.message
+    assert "not known" in told.message
+    assert "A rapid runs through material" in told.message
     rm.write_setup(tmp_path / "back.toml", setup)
     asked = ["compensate", str(tmp_path / "back.toml"), "--out", str(tmp_path / "corrected.nc"), "--json"]
     assert main(asked) == 1
