@@ -14,18 +14,19 @@ from robomill.errors import RobomillError, SetupError, ToolpathError
 from robomill.frames import Columns
 from robomill.improve.judged import check_improvable
 from robomill.improve.ways import fed, in_levels, turned_round
+from robomill.kinematics.spin import spin_matters
 from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.simulation.judging.verdict_words import NO_NUMBER
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import Simulate, simulate
+from robomill.simulation.run import Simulate, simulate, spin_of
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PointsSource
 from robomill.units import format_percent, format_si, from_si
 from robomill.values import Said, Tabled
 
-SLOWEST, FASTEST, HALVED = 0.1, 4.0, 7  # times the feed, and how often the way between is halved
+SLOWEST, FASTEST, HALVED = 0.1, 4.0, 9  # times the feed, and how often the way between is halved
 MOST_LEVELS = 4
 ALLOWANCE = 0.1  # of the depth: what roughing leaves for a last pass
 AGAIN = ("allowance", "once more")  # ways whose last pass cuts what the one before was too far off to take away
@@ -160,6 +161,8 @@ def advise(setup: SimulationSetup, run: Simulate | None = None) -> Advice:
     are coupled runs. Of a path of more than some thousand samples they are not, and their titles say that what they met
     was the stock as it was told.
 
+    An arm that chooses how it turns about its tool is held as it is held now in every way.
+
     Examples
     --------
     >>> import robomill as rm
@@ -189,7 +192,7 @@ def advise(setup: SimulationSetup, run: Simulate | None = None) -> Advice:
             if name in AGAIN:
                 found.append(_again(name, title, now, path, run))
             else:
-                found.append(_way(name, title, partial(_run_along, setup, path, run)))
+                found.append(_way(name, title, partial(_run_along, held(now), path, run)))
     return Advice(setup, tuple(found))
 
 
@@ -227,6 +230,15 @@ def _refused(why: str) -> Toolpath:
     raise ToolpathError(why)
 
 
+def held(now: SimulationResult) -> SimulationSetup:
+    """The set-up of a run with its arm held about the tool as it was held there: ways to cut are compared in one
+    posture, and not with the one that each would choose."""
+    setup = now.setup
+    if isinstance(setup.spin, float) or not spin_matters(setup.robot):
+        return setup
+    return setup.replace(spin=spin_of(now.ik), provenance=dict(setup.provenance))
+
+
 def _along(setup: SimulationSetup, path: Toolpath) -> SimulationSetup:
     """The set-up along another path that cuts the same part."""
     said, source = dict(setup.provenance), PointsSource(path, setup.source.name)
@@ -246,7 +258,7 @@ def _way(name: str, title: str, run: Callable[[], SimulationResult], factor: flo
 
 def _again(name: str, title: str, now: SimulationResult, path: Callable[[], Toolpath], run: Simulate) -> Way:
     """A way whose last pass meets what the one before, deflected, has left: a coupled run, unless that is too long."""
-    setup = now.setup
+    setup = held(now)
     if not setup.coupling and len(now.path) > MARCHED:
         return _way(name, f"{title}{TOLD}", partial(_run_along, setup, path, run))
     coupled = setup.replace(coupling=True, provenance=dict(setup.provenance))
@@ -255,7 +267,7 @@ def _again(name: str, title: str, now: SimulationResult, path: Callable[[], Tool
 
 def _feed(now: SimulationResult, run: Simulate) -> Way:
     """The largest feed that keeps the tolerance, by halving between one that does and one that does not."""
-    setup, path = now.setup, now.setup.toolpath
+    setup, path = held(now), now.setup.toolpath
 
     def at(factor: float) -> Way:
         title = f"{format_percent(factor)} of the feed"
