@@ -147,7 +147,8 @@ def next_best(
 ) -> Plan:
     """The ``count`` candidates to measure next for a goal: "all", a joint number, or a Loads.
 
-    ``candidates`` are those around what was measured unless given. A reading is taken to be as noisy as the residuals
+    ``candidates`` are those around what was measured unless given. Where points of the tool were fitted, what is known
+    before is what the fit knows of the compliances with them. A reading is taken to be as noisy as the residuals
     say. Raises LoadTestError where there are none to judge by.
     """
     if tests.single:
@@ -162,7 +163,7 @@ def next_best(
     scale = np.sqrt((system.A**2).sum(axis=0) + (D**2).mean(axis=(0, 1)))  # above zero wherever either sees anything
     scale[scale == 0] = 1.0  # a spring that neither can see
     A = system.A / scale / (result.noise * system.noise / np.median(system.noise))[:, None]
-    M = A.T @ A
+    M = A.T @ A if not result.points else _known(result, scale)
     before = P = np.linalg.inv(M + PRIOR * float(np.trace(M)) * np.eye(len(M)))
     live = np.array([parameter.label not in result.lumped for parameter in system.parameters])
     blocks = D / scale / result.noise * live
@@ -192,6 +193,15 @@ def next_best(
         path_after=path[1],
         sliding=sliding_joints(robot),
     )
+
+
+def _known(result: IdentificationResult, scale: FloatArray) -> FloatArray:
+    """(p, p) what a fit that found points of the tool, too, knows of its compliances times ``scale`` (p,), whatever the
+    points are: the inverse of their covariance; zero of those that no test has seen."""
+    M = np.zeros_like(result.covariance)
+    seen = np.ix_(*2 * (np.isfinite(np.diag(result.covariance)) & (np.diag(result.covariance) > 0.0),))
+    M[seen] = np.linalg.pinv((result.covariance * np.outer(scale, scale))[seen], hermitian=True)
+    return M
 
 
 def _best(P: FloatArray, blocks: FloatArray, weight: FloatArray | None, picked: list[int]) -> int:

@@ -14,6 +14,7 @@ from robomill.identification.fit.estimate import identify
 from robomill.identification.plan import MARGIN, Loads, _best, box_candidates, candidates_around, next_best
 from robomill.io.measured.load_test_sheets import measuring_sheet
 from robomill.io.samples import samples_dir
+from tests.identification.cables import Arm, Rig, as_csv, make
 from tests.identification.synthetic import simulated_tests
 
 ROBOT = rm.load_robot("slavkovic_5r").with_compliance_set("table_3")
@@ -48,6 +49,23 @@ def test_predicted_intervals_come_true():
     np.testing.assert_allclose(plan.before, RESULT.stderr, rtol=1e-6)
     after = identify(ROBOT, joined(plan, 3))
     np.testing.assert_allclose(plan.after, after.stderr * RESULT.noise / after.noise, rtol=1e-3)
+
+
+@pytest.mark.parametrize(("fit", "off"), [("both", (0.15, 0.08)), ("force", (0.15, 0.0))])
+def test_a_plan_after_points_were_found_begins_with_what_that_fit_knows(fit, off):
+    """The load point is 150 mm, the gauge point 80 mm from where it is stated: intervals before are those of the fit
+    that finds them, and not of one that takes them as stated."""
+    arm, robot, rig = Arm.of("kuka_kr500"), rm.load_robot("kuka_kr500"), Rig(noise=1e-5)
+    made, way = make(arm, rig, 25, seed=2), np.array([0.6, 0.64, -0.48])
+    text = as_csv(arm, made, rig.load_point + off[0] * way, rig.gauge_point + off[1] * way)
+    tests = rm.read_load_tests(text, robot)
+    result = rm.identify(robot, tests, fit_points=fit)
+    assert result.points[0].is_off
+    plan = next_best(robot, tests, result, count=3)
+    seen = np.isfinite(result.parameter_stderr)
+    np.testing.assert_allclose(plan.before[seen], result.parameter_stderr[seen], rtol=1e-4)
+    assert (plan.after[seen] <= plan.before[seen]).all()
+    assert (plan.half_after[seen] < plan.half_before[seen]).all()
 
 
 def test_poses_keep_to_box_limits_and_tilt():
