@@ -319,7 +319,7 @@ def _numbers(body: _Body, wanted: list[Column], open_cells: frozenset[str]) -> F
         values = np.array([[math.nan]])
     if (np.abs(values) <= GREATEST).all():
         return values
-    rows = [_cells(line, body.mark) for line in lines]
+    rows = [_cells(line, body.mark) for line in body.lines]  # what is refused is quoted as it was written
     return np.array(
         [
             [_cell(body, k, column, cells[column.at], column.quantity in open_cells) for column in wanted]
@@ -369,7 +369,7 @@ def _cells(line: str, mark: str) -> list[str]:
 
 def _cell(body: _Body, k: int, column: Column, text: str, is_open: bool) -> float:
     found = text.strip()
-    number = _number(found)
+    number = _number(found.replace(",", ".") if body.mark != "," else found)
     if number is not None and abs(number) <= GREATEST:
         return number
     if not found and is_open:

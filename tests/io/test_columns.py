@@ -153,6 +153,8 @@ def test_anything_else_is_read_or_refused_in_one_sentence(given: str | bytes) ->
         ("Fx [lb]\n1\n2", "Row 1, column 'Fx [lb]': unit 'lb' is not known; write one of Fx_N, Fx_kN."),
         ("joint_N\n1\n2", "Row 1, column 'joint_N': unit 'N' is not known; write one of joint."),
         ("Fx_N,force_kN\n1,2\n1,2", "Row 1: Fx_N and force_kN are the same quantity twice; keep one."),
+        ("Fx_N;m_Nm\n1,5;2\n1.061,579;3", "Row 3, column Fx_N: found '1.061,579', expected a number;"),
+        ("Fx_N;m_Nm\n1,5;2\n3;1e999,0", "Row 3, column m_Nm: found '1e999,0', expected a number;"),
         ("Fx_N,m_Nm\n1,2\n3", "Row 3, column m_Nm: found 1 cells, expected 2 as in the header."),
         ("Fx_N;m_Nm\n1;2\n3;4;5", "Row 3: found 3 cells, expected 2 as in the header."),
         (
