@@ -32,6 +32,7 @@ MANY, FULL, MOST = 10_000, 200, 1_000_000  # draws: usual, usual where each is a
 CHECKED = 6  # draws that are run in full, too: those with the largest errors, and
 DECIDING = 3  # those nearest to the tolerance, which decide how probably it is kept
 AGREES = 0.02  # of the tolerance: by how much these may differ
+DOUBTED, PROBES = 0.01, 24  # where they differ by more, so many others are run, too, spread over the shares
 NAMES = ("wall", "floor", "end", "feed", "tip")
 DIFFERS, REDRAWN, IN_FULL = "draws-differ", "draws-again", "draws-in-full"
 Errors = dict[str, FloatArray]
@@ -122,7 +123,7 @@ def uncertainty(
         floor=frozen(errors["floor"]),
         tip=frozen(errors["tip"]),
         tornado=work.tornado(float(np.nanvar(share))),
-        checked=checked,
+        checked=checked[:2],
         seed=int(seed),
         findings=_findings(unsure, expansion, checked, again / wanted),
     )
@@ -182,27 +183,39 @@ class _Work:
         except RobomillError:
             return nothing
 
-    def checked(self, change: FloatArray, errors: Errors, share: FloatArray) -> tuple[int, float]:
-        """Draws run in full, and by how much of its tolerance an error differs at most from what was said of it."""
+    def checked(self, change: FloatArray, errors: Errors, share: FloatArray) -> tuple[int, float, float]:
+        """Draws run in full, by how much of its tolerance an error differs at most from what was said of it, and by how
+        much the share of the tolerance that is used does."""
         if self.expansion is None:
-            return 0, 0.0
+            return 0, 0.0, 0.0
         names = ("wall", "floor", "tip") if self.measure == "verdict" else (self.measure,)
         ends = [int(np.argmax(np.nan_to_num(errors[name]))) for name in names]
         near = np.argsort(np.abs(np.nan_to_num(share) - 1.0), kind="stable")[:DECIDING]
         worst = np.argsort(-np.nan_to_num(share), kind="stable")[:CHECKED]
-        told = change[list(dict.fromkeys([*ends, *near, *worst]))[:CHECKED]]
+        first = list(dict.fromkeys([*ends, *near, *worst]))[:CHECKED]
+        off = self._off(change[first], names)
+        if max(off) <= DOUBTED:
+            return len(first), *off
+        order = np.argsort(np.nan_to_num(share), kind="stable")
+        more = [int(i) for i in order[:: max(len(order) // PROBES, 1)] if i not in first]
+        also = self._off(change[more], names)
+        return len(first) + len(more), max(off[0], also[0]), max(off[1], also[1])
+
+    def _off(self, change: FloatArray, names: tuple[str, ...]) -> tuple[float, float]:
+        """By how much of its tolerance an error of draws (k, p) that are run in full differs at most from what the
+        expansion says of it, and by how much the share that is used does."""
+        assert self.expansion is not None
+        told = np.array(change)
         told[:, self.unsure.named("springs", "model")] = 0.0  # which no set-up says
-        said, found = self.expansion.errors(told), []
+        said, runs = self.expansion.errors(told), []
         for i, each in enumerate(told):
             with step(i, len(told), "Draws in full"):
-                found.append(self._in_full(each))
-        limits = self.unsure.setup.limits
-        differ = [
-            np.abs([each[name] for each in found] - said[name]) / limits[name]
-            for name in names
-            if np.isfinite(said[name]).all()
-        ]
-        return len(told), float(np.nan_to_num(differ, nan=np.inf).max())
+                runs.append(self._in_full(each))
+        found, setup = {name: np.array([each[name] for each in runs]) for name in NAMES}, self.unsure.setup
+        known = [name for name in names if np.isfinite(said[name]).all()]
+        differ = [np.abs(found[name] - said[name]) / setup.limits[name] for name in known]
+        used = np.abs(share_of(self.measure, setup, found) - share_of(self.measure, setup, said))
+        return float(np.nan_to_num(differ, nan=np.inf).max()), float(np.nan_to_num(used, nan=np.inf).max())
 
     def tornado(self, variance: float) -> Tornado:
         """Each input alone at the ends of its 95 % interval; its part of the variance by three points."""
@@ -221,7 +234,7 @@ class _Work:
 
 
 def _findings(
-    unsure: Unsure, expansion: Expansion | None, checked: tuple[int, float], again: float
+    unsure: Unsure, expansion: Expansion | None, checked: tuple[int, float, float], again: float
 ) -> tuple[Finding, ...]:
     """What a reader of the numbers must know."""
     said = []
@@ -231,10 +244,11 @@ def _findings(
         )
         said.append(Finding("info", text, code=IN_FULL))
     if checked[1] > AGREES:
-        how = format_percent(checked[1]) if np.isfinite(checked[1]) else "all"
+        how, used = (format_percent(off) if np.isfinite(off) else "all" for off in checked[1:])
         text = (
-            f"Of {checked[0]} draws that were run in full, too, an error of wall, floor or tip differs by {how} of its "
-            "tolerance: the spread is too wide to be expanded, or what a gauge reads does not go with the tip there."
+            f"Of {checked[0]} draws that were run in full, too, an error of wall, floor or tip differs by up to {how} "
+            f"of its tolerance, and what is used of the tolerance by up to {used}: the spread is too wide to be "
+            "expanded, or what a gauge reads does not go with the tip there."
         )
         said.append(Finding("warning", text, code=DIFFERS))
     if again > AGREES:

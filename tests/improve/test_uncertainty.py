@@ -1,5 +1,6 @@
 """Monte Carlo against a plain loop over simulate, linear propagation, and probabilities in closed form."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -186,6 +187,26 @@ def test_walls_that_another_tool_has_made_are_said_to_be_off() -> None:
     differs = abs(abs(run.verdict.wall.value) - found.wall[worst])
     assert differs > 1e-6
     assert found.checked[1] >= differs / setup.tolerance * 0.999
+
+
+def test_where_a_few_draws_are_off_more_are_run_and_what_is_used_is_compared_too() -> None:
+    """Against every draw run by hand: what is said holds for all but the few that were not looked at."""
+    setup = rm.load_setup("two_tools").replace(step=4e-3, cell=4e-4)
+    found = rm.uncertainty(setup, samples=60)
+    runs = [
+        by_hand(setup, {each.key: each.value + change[i] for i, each in enumerate(found.inputs)})
+        for change in found.change
+    ]
+    wall = np.abs(np.abs([run.verdict.wall.value for run in runs]) - found.wall) / setup.tolerance
+    used = np.abs(np.array([run.verdict.share for run in runs]) - found.share)
+    assert 24 <= found.checked[0] <= 36
+    assert np.mean(wall <= found.checked[1] * 1.001) >= 0.95
+    (told,) = (each.message for each in found.findings if each.code == "draws-differ")
+    share = re.search(r"of the tolerance by up to (\d+) %", told)
+    assert share is not None
+    assert np.mean(used <= (float(share[1]) + 0.5) / 100.0) >= 0.95
+    assert float(share[1]) <= 100.0 * used.max() + 0.5
+    assert rm.uncertainty(rm.load_setup("paper_flute"), samples=60).checked[0] == 6, "all of them agree"
 
 
 def test_what_draws_differ_by_is_told_of_the_tolerance_that_the_error_has() -> None:
