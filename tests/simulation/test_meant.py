@@ -1,5 +1,6 @@
 """Where the samples of a corrected program were meant to be, against paths offset by hand."""
 
+from dataclasses import replace
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -180,6 +181,18 @@ def test_a_path_with_other_cuts_is_refused_by_their_number() -> None:
     )
     with pytest.raises(ToolpathError, match="2 cuts between rapids, and the program 1 cut"):
         places(cut((0, 0), (60, 0)), two)
+
+
+def test_a_rapid_that_goes_nowhere_parts_no_cut() -> None:
+    """As a canned cycle leaves one, or a line with a tool's length alone."""
+    p = [[0, 0, 5], [0, 0, -2], [30, 0, -2], [30, 0, -2], [60, 0, -2]]
+    path = resample(rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0, 0, 600, 0, 600]), STEP)
+    assert (~path.cutting).sum() == 3
+    aside = replace(path, p=path.p + np.array([0.0, 0.2e-3, 0.0]))
+    found = meant(aside, resample(cut((0, 0), (60, 0)), STEP), STEP)
+    np.testing.assert_allclose(found.p[found.cutting], path.p[path.cutting], atol=1e-9)
+    back = meant(resample(cut((0, 0.2), (60, 0.2)), STEP), path, STEP)
+    np.testing.assert_allclose(back.p[back.cutting][:, 1], 0.0, atol=1e-12)
 
 
 def test_a_plunge_at_feed_belongs_to_the_one_that_was_meant_at_the_same_height_above_its_end() -> None:

@@ -146,3 +146,20 @@ def test_what_presses_a_whole_end_is_its_thrust() -> None:
     thrust = 3 * 4e-3 * (168.8e6 * h + 26.6e3)
     np.testing.assert_allclose((pressed - free)[21:, 2], thrust, rtol=2e-3)
     np.testing.assert_allclose((pressed - free)[:21], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("onset", [-0.4e-3, 0.3e-3])
+def test_how_far_a_tip_is_off_from_its_first_step_on_is_no_fall(onset: float) -> None:
+    """A ramp after a rapid, at whose begin the arm gives way at once: holding and letting go as without that."""
+    x = 1e-3 * np.arange(30)
+    points = np.column_stack([x, 0.0 * x, -1e-3 - np.tan(np.radians(6.0)) * x])
+    path = Toolpath.from_points(points, 0.03, cutting=np.append(False, np.ones(29, dtype=bool)))
+    along = ways(path)[:, 2]
+    told = CutConditions.steady(0.03, 200.0, 1e-3, along=along, across=np.sqrt(1.0 - along**2), cutting=path.cutting)
+    told = CutConditions(**{**vars(told), "tooling": Tooling.of(MILL, len(path))})
+    free = path.p.copy()
+    free[12:, 2] = free[11, 2] + 1.2e-3
+    off = free + np.outer(path.cutting, [0.0, 0.0, onset])
+    steep = steep_of(told, path, free, 2e-3)
+    assert (steep[11], steep[-1]) == (1.0, 0.0)
+    np.testing.assert_allclose(steep_of(told, path, off, 2e-3), steep, atol=1e-9)
