@@ -9,7 +9,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import ToolpathError
-from robomill.simulation.meant import LEFT_OUT, TURNED, _aligned, _stepped, linked, meant
+from robomill.simulation.meant import LEFT_OUT, TURNED, _aligned, _stepped, linked, meant, straight_on
 from robomill.toolpath.sampling import resample
 
 STEP = 1e-3
@@ -195,17 +195,43 @@ def test_a_rapid_that_goes_nowhere_parts_no_cut() -> None:
     np.testing.assert_allclose(back.p[back.cutting][:, 1], 0.0, atol=1e-12)
 
 
-def test_a_plunge_at_feed_belongs_to_the_one_that_was_meant_at_the_same_height_above_its_end() -> None:
-    def plunged(x: float, deep: float) -> rm.Toolpath:
-        p = [(x, 0.0, 5.0), (x, 0.0, 1.0), (x, 0.0, -deep), (40.0, 0.0, -deep)]
-        return rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0.0, 0.0, 300.0, 600.0])
+@pytest.mark.parametrize("stops", [(), (0,), (1,), (0, 1)])
+def test_a_plunge_at_feed_belongs_to_the_one_that_was_meant_at_the_same_height_above_its_end(stops: tuple) -> None:
+    """Wherever one of them, or both, stand still on the way down."""
 
-    path = resample(plunged(0.02, 2.05), STEP)
-    found = meant(path, resample(plunged(0.0, 2.0), STEP), STEP)
+    def plunged(x: float, deep: float, stop: bool) -> rm.Toolpath:
+        p = [(x, 0.0, 5.0), (x, 0.0, 1.0), *[(x, 0.0, -0.6)] * (2 * stop), (x, 0.0, -deep), (40.0, 0.0, -deep)]
+        return rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0.0, 0.0, *[300.0] * (len(p) - 3), 600.0])
+
+    path = resample(plunged(0.02, 2.05, 0 in stops), STEP)
+    found = meant(path, resample(plunged(0.0, 2.0, 1 in stops), STEP), STEP)
     plunge = path.cutting & (np.abs(path.p[:, 0] - 0.02e-3) < 1e-9)
     assert plunge.sum() > 2
     np.testing.assert_allclose(found.p[plunge, :2], 0.0, atol=1e-9)
     np.testing.assert_allclose(found.p[plunge, 2], np.minimum(path.p[plunge, 2] + 0.05e-3, 1e-3), atol=1e-9)
+
+
+TURNING = [(0, 0), (10, 0), (10, 0), (20, 0), (20, 0), (20, 10), (20, 10)]
+RING = [(0, 0), (10, 0), (10, 10), (-10, 10), (-10, 0), (0, 0)]
+BENT = [(0, 0), (10, 0), (10, 0), (20, 0.1), (20, 0.1), (30, 9)]
+
+
+@pytest.mark.parametrize(
+    ("points", "rapids", "expected"),
+    [
+        (TURNING, [], [2]),  # and neither at the corner nor at the end
+        (TURNING, [1], []),  # a cut begins
+        (TURNING, [2], []),
+        (BENT, [0], [2]),
+        (RING, [], []),  # its end is not before its begin
+    ],
+)
+def test_a_move_of_no_length_goes_straight_on_where_its_two_neighbours_do(
+    points: list[tuple[float, float]], rapids: list[int], expected: list[int]
+) -> None:
+    p = np.array([(x, y, -2.0) for x, y in points]) * 1e-3
+    path = rm.Toolpath.from_points(p, 0.01, cutting=~np.isin(np.arange(len(p)), rapids))
+    assert np.flatnonzero(straight_on(path, path)).tolist() == expected
 
 
 def steps(points: list[tuple[float, float]], cutting: list[int]) -> rm.Toolpath:
