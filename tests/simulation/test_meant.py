@@ -174,6 +174,17 @@ def test_another_path_is_refused_by_the_place_where_it_leaves(corrected: rm.Tool
         places(corrected, cut((0, 0), (60, 0)))
 
 
+@pytest.mark.parametrize(("spur", "refused"), [(10.0, True), (1.5, True), (0.6, False)])
+def test_a_program_that_leaves_out_more_than_two_millimetres_on_the_way_is_refused(spur: float, refused: bool) -> None:
+    """A spur that the path goes up and comes back on, and the program does not."""
+    program, wanted = cut((0, 0), (60, 0)), cut((0, 0), (30, 0), (30, spur), (30, 0), (60, 0))
+    if refused:
+        with pytest.raises(ToolpathError, match="give the path that it was corrected for"):
+            places(program, wanted)
+    else:
+        np.testing.assert_allclose(places(program, wanted)[:, 3], 0.0, atol=spur)
+
+
 def test_a_path_with_other_cuts_is_refused_by_their_number() -> None:
     two = rm.Toolpath.from_points(
         p_mm=[[0, 0, 5], [0, 0, -2], [20, 0, -2], [20, 0, 5], [40, 0, 5], [40, 0, -2], [60, 0, -2]],

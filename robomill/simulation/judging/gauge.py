@@ -289,9 +289,8 @@ def _floors(at: Places) -> Readings:
     roots, lost = _roots(at, aside)
     found &= ~lost[q]
     deepest = (at.bottoms | roots)[q] & (told > -SAME)
-    conditions = at.result.conditions
-    rise = np.where(at.steep, 0.0, conditions.along[at.i])
-    root = at.d[:, 2] * np.where(at.steep, 1.0, conditions.across[at.i]) - at.d[:, 0] * rise
+    rise = np.where(at.steep, 0.0, at.along)
+    root = at.d[:, 2] * np.where(at.steep, 1.0, at.across) - at.d[:, 0] * rise
     error[deepest] = np.where(roots[q], root[q], np.fmin(error, root[q]))[deepest]
     where = at.c[q] + offset[:, None] * u + np.where(found, told, 0.0)[:, None] * at.axial[q]
     q, error, where = q[found], error[found], where[found]

@@ -186,3 +186,21 @@ def test_how_far_a_tip_is_off_from_its_first_step_on_is_no_fall(onset: float) ->
     steep = steep_of(told, path, free, 2e-3)
     assert (steep[11], steep[-1]) == (1.0, 0.0)
     np.testing.assert_allclose(steep_of(told, path, off, 2e-3), steep, atol=1e-9)
+
+
+@pytest.mark.parametrize("left", [0.0, 0.2, 0.5, 0.9])
+def test_an_end_that_is_hardly_pressed_cuts_by_the_share_of_its_hollow_that_it_has_taken_up(left: float) -> None:
+    """On a ramp its tip has sunk by more than the 0.5 mm that the end lifts it by, then springs up and goes level."""
+    told, path = ramp(6.0)
+    hollow, free = 4e-3 * np.tan(np.radians(0.5)), path.p.copy()
+    free[30:, 2] = free[29, 2] + 0.5e-3 - left * hollow
+    steep = steep_of(told, path, free, 0.5e-3)
+    assert steep[29] == 1.0
+    np.testing.assert_allclose(steep[-2:], left, atol=1e-9)
+
+
+def test_what_stands_still_presses_nothing() -> None:
+    told, _ = ramp(2.0)
+    i = np.arange(41)
+    stopped = replace(told, v_f=np.where(i % 3 == 1, 0.0, told.v_f), n_s=np.where(i % 3 == 2, 0.0, told.n_s))
+    np.testing.assert_array_equal(pressing(stopped).a_p > 0.0, (i > 20) & (i % 3 == 0))
