@@ -69,6 +69,14 @@ class Places:
         wider[some] = np.minimum(incline[some] * np.sqrt(1.0 - upright**2) / upright, 0.9)
         return wider
 
+    def in_cut(self, q: IntArray, way: FloatArray) -> FloatArray:
+        """(m, 3) along the axes of the cut, as ``delta_in_cut`` is given: ways (m, 3) along the axes of places q, which
+        are others where a ball leans."""
+        world = way[:, :1] * self.feed[q] + way[:, 1:2] * self.left_of[q] + way[:, 2:] * self.axial[q]
+        own = cut_axes(self.result)[self.i[q]]
+        leans = (own[:, 2] != self.axial[q]).any(axis=1)
+        return np.where(leans[:, None], np.einsum("qij,qj->qi", own, world), way)
+
     @property
     def length(self) -> FloatArray:
         """(q,) m along the path that a place stands for."""

@@ -143,7 +143,11 @@ def test_a_ball_is_read_alike_however_it_leans(lean: str, to: tuple[float, float
     found = []
     for made in (leaning, run("G0 Z8", "G0 " + begin.split(" Z")[0], f"G0 {begin}", f"G1 {end} F1800", cutter=ball)):
         delta = np.where(made.path.cutting[:, None], off, 0.0) @ made.setup.T_MW[:3, :3].T
-        gauge = dataclasses.replace(made, delta=delta).gauge
+        bent = dataclasses.replace(made, delta=delta)
+        gauge = bent.gauge
+        for read in (gauge.walls, gauge.floors, gauge.ends):  # what each makes of its own sample, by the run's own axes
+            own = np.einsum("qi,qi->q", bent.delta_in_cut[read.sample], read.way)
+            np.testing.assert_allclose(read.own, own, atol=1e-10)
         along = gauge.walls.length > 0.0
         found.append((gauge.floors.error, gauge.walls.error[along], gauge.walls.place[along]))
     assert min(len(each) for each in found[0]) > 10
