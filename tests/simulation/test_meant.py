@@ -222,6 +222,29 @@ def test_a_plunge_at_feed_belongs_to_the_one_that_was_meant_at_the_same_height_a
     np.testing.assert_allclose(found.p[plunge, 2], np.minimum(path.p[plunge, 2] + 0.05e-3, 1e-3), atol=1e-9)
 
 
+def test_of_two_plunges_in_one_cut_each_belongs_to_its_own() -> None:
+    """The second goes on down where the first has led; both ends are 0.05 mm too deep."""
+
+    def stairs(x: float, deeper: float) -> rm.Toolpath:
+        p = [
+            (x, 0, 5),
+            (x, 0, 1),
+            (x, 0, -2 - deeper),
+            (40 + x, 0, -2 - deeper),
+            (40 + x, 0, -6 - deeper),
+            (60, 0, -6 - deeper),
+        ]
+        return rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0, 0, 300, 600, 300, 600])
+
+    path = resample(stairs(0.02, 0.05), STEP)
+    found = meant(path, resample(stairs(0.0, 0.0), STEP), STEP)
+    for x, top in ((0.0, 1e-3), (40e-3, -2e-3)):
+        down = path.cutting & (np.abs(path.p[:, 0] - x - 0.02e-3) < 1e-9)
+        assert down.sum() > 3
+        np.testing.assert_allclose(found.p[down, 0], x, atol=1e-9)
+        np.testing.assert_allclose(found.p[down, 2], np.minimum(path.p[down, 2] + 0.05e-3, top), atol=1e-9)
+
+
 TURNING = [(0, 0), (10, 0), (10, 0), (20, 0), (20, 0), (20, 10), (20, 10)]
 RING = [(0, 0), (10, 0), (10, 10), (-10, 10), (-10, 0), (0, 0)]
 BENT = [(0, 0), (10, 0), (10, 0), (20, 0.1), (20, 0.1), (30, 9)]

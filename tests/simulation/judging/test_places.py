@@ -198,7 +198,7 @@ def test_moves_are_taken_in_parts_of_one_length():
     assert next(found, None) is None
 
 
-@pytest.mark.parametrize("to", [(20, 8), (14, -16), (-20, 8)])
+@pytest.mark.parametrize("to", [(20, 8), (20, 3), (3, -16), (-20, 8)])
 @pytest.mark.parametrize(("kind", "lean"), [("ball", 20), ("ball", 0), ("bull", 20)])
 def test_a_ball_that_leans_is_taken_upright_over_its_lowest_point(kind, lean, to):
     """Its axes are those of its way on the plan, and its sphere stays where it is; another nose has its own axes."""
@@ -218,3 +218,12 @@ def test_a_ball_that_leans_is_taken_upright_over_its_lowest_point(kind, lean, to
     centre = made.path.p[at.i[whole]] + 4e-3 * k
     lowest = centre - [0.0, 0.0, 4e-3] if upright else made.path.p[at.i[whole]]
     np.testing.assert_allclose(at.c[whole], lowest, atol=1e-12)
+
+
+@pytest.mark.parametrize("lean", [35, 50])
+def test_where_a_leaning_ball_goes_straight_down_its_axes_are_axes(lean):
+    """Though it goes no way over the part."""
+    made = run(f"G0 X0 Y0 Z8 B{lean}", "G0 Z1", "G1 Z-3 F300", "G1 X5", cutter=Cutter("ball", 8e-3))
+    at = places(made)
+    axes = np.stack([at.feed, at.left_of, at.axial], axis=1)
+    np.testing.assert_allclose(axes @ axes.transpose(0, 2, 1), np.tile(np.eye(3), (len(axes), 1, 1)), atol=1e-9)
