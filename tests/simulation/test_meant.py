@@ -35,6 +35,15 @@ def test_beside_a_line_every_sample_belongs_to_its_foot() -> None:
     np.testing.assert_allclose(found[:, 3], 0.0, atol=1e-12)
 
 
+@pytest.mark.parametrize("step", [0.3e-3, 0.35e-3, 0.8e-3])
+def test_between_two_samples_of_the_path_there_are_places_up_to_its_very_end(step: float) -> None:
+    path = resample(cut((0, 0.2), (20, 0.2)), step)
+    found = meant(path, resample(cut((0, 0), (20, 0)), STEP), STEP)
+    np.testing.assert_allclose(
+        found.p[path.cutting] - path.p[path.cutting], [[0.0, -0.2e-3, 0.0]] * path.cutting.sum(), atol=1e-9
+    )
+
+
 def test_round_a_corner_each_leg_belongs_to_its_own_and_the_link_to_the_corner() -> None:
     """The first leg's correction points along the second one, on which its end lies all the same."""
     corrected = cut((0, 0.3), (40, 0.3), (39.7, 0), (39.7, 40))

@@ -108,6 +108,7 @@ def test_each_wall_of_a_terrace_is_painted_with_its_own_error(pocket: Simulation
     made = dataclasses.replace(made, delta=np.einsum("mij,mi->mj", made.R_MF.transpose(0, 2, 1), pushed))
     shown = enlarged(made, 1.0)
     middle = shown.wall[np.abs(shown.drawn.x) < 10e-3]
+    assert (np.isfinite(middle).sum(axis=1) == 3 * 4).all()  # two cells on either side of each
     for y, left in ((4.1e-3, -0.1e-3), (2.95e-3, 0.05e-3), (-5.05e-3, -0.05e-3)):
         beside = middle[:, np.abs(shown.drawn.y - y) < shown.drawn.dx]
         assert beside.size > 50
