@@ -84,8 +84,9 @@ def ball_wall(p: np.ndarray, x: float, z: float, side: float) -> float:
     return float((side * tips[:, 1] + np.sqrt(np.maximum(square, 0.0)))[square > 0.0].max())
 
 
+@pytest.mark.parametrize("lower", [0.0, 0.1e-3])
 @pytest.mark.parametrize("before", [0.2, 0.5, 1.0])
-def test_where_a_tool_is_lifted_as_it_enters_the_stock_the_wall_is_that_of_its_way(before: float) -> None:
+def test_where_a_tool_is_lifted_as_it_enters_the_stock_the_wall_is_that_of_its_way(before: float, lower: float) -> None:
     """Within one step it is pushed aside and then up: a nose has other sides at each height, and moves that were taken
     at the height of their middle read 0.063 mm at the stock's edge where 0.023 mm are."""
     lines = (f"G0 X{-36 - before} Y0 Z5", "G0 Z-1.5", "G1 X36 F1800")
@@ -94,7 +95,7 @@ def test_where_a_tool_is_lifted_as_it_enters_the_stock_the_wall_is_that_of_its_w
     rises = np.searchsorted(x, -31e-3 - 1e-6)
     sample = np.arange(len(x))
     left = np.select([sample < rises, sample == rises], [0.0, 0.144e-3], 0.172e-3)
-    up = np.select([sample < rises, sample == rises], [0.0, 0.038e-3], 0.167e-3)
+    up = np.select([sample < rises, sample == rises], [0.0, 0.038e-3], 0.167e-3) - lower
     result = pushed(result, left=left, up=up)
     walls, read = result.gauge.walls, 0
     for q in np.flatnonzero((walls.place[:, 0] < -28e-3) & (np.abs(walls.out[:, 1]) > 1.0 - 1e-9)):
