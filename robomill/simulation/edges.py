@@ -44,10 +44,11 @@ def _along(setup: SimulationSetup, path: Toolpath, axis: int, way: float) -> Flo
     rim = path.p[:, axis] + way * _rim(setup, path)
     step = np.diff(path.p, axis=0, prepend=path.p[:1])
     length = np.linalg.norm(step, axis=1)
-    within = (path.p[:, other] >= stock.lower[other]) & (path.p[:, other] <= stock.upper[other])
-    meets = path.cutting & within & (path.p[:, 2] < stock.upper[2]) & (path.k[:, 2] >= STRAIGHT)
-    meets &= (np.abs(rim - wall) <= AT_EDGE) & (np.abs(step[:, other]) >= STRAIGHT * length) & (length > 0.0)
-    return _unbroken(length, meets)
+    at = np.clip(path.p[:, other], stock.lower[other], stock.upper[other])
+    beside = np.abs(np.diff(at, prepend=at[:1]))  # what of a step goes past either end of the side counts nothing
+    meets = path.cutting & (path.p[:, 2] < stock.upper[2]) & (path.k[:, 2] >= STRAIGHT) & (beside > 0.0)
+    meets &= (np.abs(rim - wall) <= AT_EDGE) & (np.abs(step[:, other]) >= STRAIGHT * length)
+    return _unbroken(beside, meets)
 
 
 def _rim(setup: SimulationSetup, path: Toolpath) -> FloatArray:

@@ -80,3 +80,15 @@ def test_all_four_sides_a_smaller_cutter_and_a_block_around_the_path() -> None:
 def test_cuts_that_go_out_over_a_side_or_hardly_along_it_are_not_warned_of(lines: tuple[str, ...]) -> None:
     setup = pocket(0.04).replace(source=GCodeSource("\n".join(["G21 G90 S12000 M3", *lines, "M2"])))
     assert edge_notes(setup, setup.toolpath) == ()
+
+
+@pytest.mark.parametrize(("begin", "end"), [(-60, 60), (60, -60), (-55, 55), (-57.5, 10), (10, -57.5), (-20, 57.5)])
+@pytest.mark.parametrize("step", [1.0, 2.5, 5.0])
+def test_no_more_of_a_way_is_said_than_goes_beside_the_block(begin: float, end: float, step: float) -> None:
+    """From beyond one corner, or past the other, in steps that stop on the edge itself or run over it."""
+    x = np.linspace(begin, end, round(abs(end - begin) / step) + 1)
+    p = np.column_stack([x, np.full(len(x), 16.0), np.full(len(x), -2.0)])
+    path = rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0.0, *[900.0] * (len(x) - 1)])
+    (found,) = edge_notes(pocket(0.04), path)
+    beside = min(max(begin, end), 55.0) - max(min(begin, end), -55.0)
+    assert f"for up to {beside:.1f} mm" in found.message.replace("\u00a0", " ")

@@ -1,5 +1,6 @@
 """Where the samples of a corrected program were meant to be, against paths offset by hand."""
 
+from dataclasses import replace
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -8,7 +9,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import ToolpathError
-from robomill.simulation.meant import LEFT_OUT, TURNED, _aligned, _stepped, linked, meant
+from robomill.simulation.meant import LEFT_OUT, TURNED, _aligned, _stepped, linked, meant, straight_on
 from robomill.toolpath.sampling import resample
 
 STEP = 1e-3
@@ -32,6 +33,15 @@ def test_beside_a_line_every_sample_belongs_to_its_foot() -> None:
     found = places(cut((0, 0.2), (60, 0.3)), cut((0, 0), (60, 0)))
     np.testing.assert_allclose(found[:, 2], found[:, 0], atol=1e-9)
     np.testing.assert_allclose(found[:, 3], 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("step", [0.3e-3, 0.35e-3, 0.8e-3])
+def test_between_two_samples_of_the_path_there_are_places_up_to_its_very_end(step: float) -> None:
+    path = resample(cut((0, 0.2), (20, 0.2)), step)
+    found = meant(path, resample(cut((0, 0), (20, 0)), STEP), STEP)
+    np.testing.assert_allclose(
+        found.p[path.cutting] - path.p[path.cutting], [[0.0, -0.2e-3, 0.0]] * path.cutting.sum(), atol=1e-9
+    )
 
 
 def test_round_a_corner_each_leg_belongs_to_its_own_and_the_link_to_the_corner() -> None:
@@ -173,6 +183,17 @@ def test_another_path_is_refused_by_the_place_where_it_leaves(corrected: rm.Tool
         places(corrected, cut((0, 0), (60, 0)))
 
 
+@pytest.mark.parametrize(("spur", "refused"), [(10.0, True), (1.5, True), (0.6, False)])
+def test_a_program_that_leaves_out_more_than_two_millimetres_on_the_way_is_refused(spur: float, refused: bool) -> None:
+    """A spur that the path goes up and comes back on, and the program does not."""
+    program, wanted = cut((0, 0), (60, 0)), cut((0, 0), (30, 0), (30, spur), (30, 0), (60, 0))
+    if refused:
+        with pytest.raises(ToolpathError, match="give the path that it was corrected for"):
+            places(program, wanted)
+    else:
+        np.testing.assert_allclose(places(program, wanted)[:, 3], 0.0, atol=spur)
+
+
 def test_a_path_with_other_cuts_is_refused_by_their_number() -> None:
     two = rm.Toolpath.from_points(
         p_mm=[[0, 0, 5], [0, 0, -2], [20, 0, -2], [20, 0, 5], [40, 0, 5], [40, 0, -2], [60, 0, -2]],
@@ -182,17 +203,78 @@ def test_a_path_with_other_cuts_is_refused_by_their_number() -> None:
         places(cut((0, 0), (60, 0)), two)
 
 
-def test_a_plunge_at_feed_belongs_to_the_one_that_was_meant_at_the_same_height_above_its_end() -> None:
-    def plunged(x: float, deep: float) -> rm.Toolpath:
-        p = [(x, 0.0, 5.0), (x, 0.0, 1.0), (x, 0.0, -deep), (40.0, 0.0, -deep)]
-        return rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0.0, 0.0, 300.0, 600.0])
+def test_a_rapid_that_goes_nowhere_parts_no_cut() -> None:
+    """As a canned cycle leaves one, or a line with a tool's length alone."""
+    p = [[0, 0, 5], [0, 0, -2], [30, 0, -2], [30, 0, -2], [60, 0, -2]]
+    path = resample(rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0, 0, 600, 0, 600]), STEP)
+    assert (~path.cutting).sum() == 3
+    aside = replace(path, p=path.p + np.array([0.0, 0.2e-3, 0.0]))
+    found = meant(aside, resample(cut((0, 0), (60, 0)), STEP), STEP)
+    np.testing.assert_allclose(found.p[found.cutting], path.p[path.cutting], atol=1e-9)
+    back = meant(resample(cut((0, 0.2), (60, 0.2)), STEP), path, STEP)
+    np.testing.assert_allclose(back.p[back.cutting][:, 1], 0.0, atol=1e-12)
 
-    path = resample(plunged(0.02, 2.05), STEP)
-    found = meant(path, resample(plunged(0.0, 2.0), STEP), STEP)
+
+@pytest.mark.parametrize("stops", [(), (0,), (1,), (0, 1)])
+def test_a_plunge_at_feed_belongs_to_the_one_that_was_meant_at_the_same_height_above_its_end(stops: tuple) -> None:
+    """Wherever one of them, or both, stand still on the way down."""
+
+    def plunged(x: float, deep: float, stop: bool) -> rm.Toolpath:
+        p = [(x, 0.0, 5.0), (x, 0.0, 1.0), *[(x, 0.0, -0.6)] * (2 * stop), (x, 0.0, -deep), (40.0, 0.0, -deep)]
+        return rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0.0, 0.0, *[300.0] * (len(p) - 3), 600.0])
+
+    path = resample(plunged(0.02, 2.05, 0 in stops), STEP)
+    found = meant(path, resample(plunged(0.0, 2.0, 1 in stops), STEP), STEP)
     plunge = path.cutting & (np.abs(path.p[:, 0] - 0.02e-3) < 1e-9)
     assert plunge.sum() > 2
     np.testing.assert_allclose(found.p[plunge, :2], 0.0, atol=1e-9)
     np.testing.assert_allclose(found.p[plunge, 2], np.minimum(path.p[plunge, 2] + 0.05e-3, 1e-3), atol=1e-9)
+
+
+def test_of_two_plunges_in_one_cut_each_belongs_to_its_own() -> None:
+    """The second goes on down where the first has led; both ends are 0.05 mm too deep."""
+
+    def stairs(x: float, deeper: float) -> rm.Toolpath:
+        p = [
+            (x, 0, 5),
+            (x, 0, 1),
+            (x, 0, -2 - deeper),
+            (40 + x, 0, -2 - deeper),
+            (40 + x, 0, -6 - deeper),
+            (60, 0, -6 - deeper),
+        ]
+        return rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0, 0, 300, 600, 300, 600])
+
+    path = resample(stairs(0.02, 0.05), STEP)
+    found = meant(path, resample(stairs(0.0, 0.0), STEP), STEP)
+    for x, top in ((0.0, 1e-3), (40e-3, -2e-3)):
+        down = path.cutting & (np.abs(path.p[:, 0] - x - 0.02e-3) < 1e-9)
+        assert down.sum() > 3
+        np.testing.assert_allclose(found.p[down, 0], x, atol=1e-9)
+        np.testing.assert_allclose(found.p[down, 2], np.minimum(path.p[down, 2] + 0.05e-3, top), atol=1e-9)
+
+
+TURNING = [(0, 0), (10, 0), (10, 0), (20, 0), (20, 0), (20, 10), (20, 10)]
+RING = [(0, 0), (10, 0), (10, 10), (-10, 10), (-10, 0), (0, 0)]
+BENT = [(0, 0), (10, 0), (10, 0), (20, 0.1), (20, 0.1), (30, 9)]
+
+
+@pytest.mark.parametrize(
+    ("points", "rapids", "expected"),
+    [
+        (TURNING, [], [2]),  # and neither at the corner nor at the end
+        (TURNING, [1], []),  # a cut begins
+        (TURNING, [2], []),
+        (BENT, [0], [2]),
+        (RING, [], []),  # its end is not before its begin
+    ],
+)
+def test_a_move_of_no_length_goes_straight_on_where_its_two_neighbours_do(
+    points: list[tuple[float, float]], rapids: list[int], expected: list[int]
+) -> None:
+    p = np.array([(x, y, -2.0) for x, y in points]) * 1e-3
+    path = rm.Toolpath.from_points(p, 0.01, cutting=~np.isin(np.arange(len(p)), rapids))
+    assert np.flatnonzero(straight_on(path, path)).tolist() == expected
 
 
 def steps(points: list[tuple[float, float]], cutting: list[int]) -> rm.Toolpath:

@@ -96,3 +96,20 @@ def test_a_cut_without_walls_paints_none(pocket: SimulationResult) -> None:
     shown = enlarged(rm.simulate(pocket.setup.replace(source=GCodeSource(text))), 10.0)
     assert np.isfinite(shown.error).all()
     assert np.isnan(shown.wall).all()
+
+
+def test_each_wall_of_a_terrace_is_painted_with_its_own_error(pocket: SimulationResult) -> None:
+    """Two grooves along X, the deeper one 1 mm aside: above it stands a wall of 1 mm, and beyond it another of 4 mm."""
+    lines = [line for y, z in ((0, -4), (-1, -5)) for line in ("G0 X-40 Z5", f"G0 Y{y}", f"G0 Z{z}", "G1 X40 F900")]
+    text = "\n".join(["G21 G90 S12000 M3", "G0 Z5", *lines, "G0 Z5", "M2", ""])
+    made = rm.simulate(pocket.setup.replace(source=GCodeSource(text)))
+    pushed = np.zeros((len(made.path), 3))
+    pushed[made.path.cutting, 1] = np.where(made.path.p[made.path.cutting, 2] < -4.5e-3, -0.05e-3, 0.1e-3)
+    made = dataclasses.replace(made, delta=np.einsum("mij,mi->mj", made.R_MF.transpose(0, 2, 1), pushed))
+    shown = enlarged(made, 1.0)
+    middle = shown.wall[np.abs(shown.drawn.x) < 10e-3]
+    assert (np.isfinite(middle).sum(axis=1) == 3 * 4).all()  # two cells on either side of each
+    for y, left in ((4.1e-3, -0.1e-3), (2.95e-3, 0.05e-3), (-5.05e-3, -0.05e-3)):
+        beside = middle[:, np.abs(shown.drawn.y - y) < shown.drawn.dx]
+        assert beside.size > 50
+        assert beside == pytest.approx(left, abs=1e-9)

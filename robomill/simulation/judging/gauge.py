@@ -205,7 +205,7 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
     way = rims.sign[:, None] * np.column_stack([ahead * upright, aside * upright, -slanting])
     own = own * upright * rims.sign
     where = (_place(at, rims), rims.u, -rims.sign)
-    readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own, way, *where)
+    readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own, at.in_cut(q, way), *where)
     along = rims.only(rims.length > 0.0)
     return readings, np.unique(at.i[q[lost]]), np.unique(at.i[along.q[_thin(at, along)]])
 
@@ -289,9 +289,8 @@ def _floors(at: Places) -> Readings:
     roots, lost = _roots(at, aside)
     found &= ~lost[q]
     deepest = (at.bottoms | roots)[q] & (told > -SAME)
-    conditions = at.result.conditions
-    rise = np.where(at.steep, 0.0, conditions.along[at.i])
-    root = at.d[:, 2] * np.where(at.steep, 1.0, conditions.across[at.i]) - at.d[:, 0] * rise
+    rise = np.where(at.steep, 0.0, at.along)
+    root = at.d[:, 2] * np.where(at.steep, 1.0, at.across) - at.d[:, 0] * rise
     error[deepest] = np.where(roots[q], root[q], np.fmin(error, root[q]))[deepest]
     where = at.c[q] + offset[:, None] * u + np.where(found, told, 0.0)[:, None] * at.axial[q]
     q, error, where = q[found], error[found], where[found]
@@ -302,7 +301,8 @@ def _floors(at: Places) -> Readings:
     length = at.length[q] / np.maximum(np.bincount(q, minlength=len(at.i)), 1)[q]
     out = -(normal[:, 1:2] * at.left_of[q] + normal[:, 2:] * at.axial[q])
     place = (where, out, np.ones(len(q)))
-    return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q], _dot(normal, at.d[q]), normal, *place)
+    own, way = _dot(normal, at.d[q]), at.in_cut(q, normal)
+    return Readings(at.i[q], error, length, 2.0 * at.number("radius")[q], own, way, *place)
 
 
 def _on_noses(at: Places, where: BoolArray, aside: FloatArray) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
@@ -387,7 +387,7 @@ def _ends(at: Places) -> Readings:
     way = np.concatenate([-np.ones(len(begin)), np.ones(len(end))])
     rims = _rims(at, q, way[:, None] * at.feed[q], way, np.zeros(len(q)))
     rims = rims.only(_standing(at, rims).told <= SAME)
-    way = np.tile([1.0, 0.0, 0.0], (len(rims.q), 1))
+    way = at.in_cut(rims.q, np.tile([1.0, 0.0, 0.0], (len(rims.q), 1)))
     where = (_place(at, rims), rims.u, -rims.sign)
     return Readings(at.i[rims.q], at.d[rims.q, 0], rims.length, rims.deep, at.d[rims.q, 0], way, *where)
 

@@ -26,7 +26,8 @@ REACH = 1.5e-3  # m: walls are looked for so far from where they were commanded,
 class Places:
     """Judged samples i (q,) of a run, and places ``between`` (q,) one and the one before: tip c and axes of the cut
     (feed, left, axial) in {W}, the deviation d along those axes, all (q, 3); ``outline`` holds the surfaces commanded
-    and left, ``of`` (q,) says which cutter cuts."""
+    and left, ``of`` (q,) says which cutter cuts; ``along`` and ``across`` (q,) are the parts of the unit feed along the
+    axis and along ``feed``."""
 
     result: Run
     i: IntArray
@@ -39,6 +40,8 @@ class Places:
     cutters: tuple[Cutter, ...]
     of: IntArray
     outline: Outline
+    along: FloatArray
+    across: FloatArray
 
     def radius_at(self, q: IntArray, height: FloatArray) -> FloatArray:
         """Radius (m) of the cutters at places q, at a height (m) above their tips."""
@@ -65,6 +68,14 @@ class Places:
         upright = self.upright(q[some], height[some])
         wider[some] = np.minimum(incline[some] * np.sqrt(1.0 - upright**2) / upright, 0.9)
         return wider
+
+    def in_cut(self, q: IntArray, way: FloatArray) -> FloatArray:
+        """(m, 3) along the axes of the cut, as ``delta_in_cut`` is given: ways (m, 3) along the axes of places q, which
+        are others where a ball leans."""
+        world = way[:, :1] * self.feed[q] + way[:, 1:2] * self.left_of[q] + way[:, 2:] * self.axial[q]
+        own = cut_axes(self.result)[self.i[q]]
+        leans = (own[:, 2] != self.axial[q]).any(axis=1)
+        return np.where(leans[:, None], np.einsum("qij,qj->qi", own, world), way)
 
     @property
     def length(self) -> FloatArray:
@@ -120,8 +131,7 @@ class Places:
     @property
     def slope(self) -> FloatArray:
         """(q,) how far the path rises or sinks on its way across the tool; a plunge counts as two for one."""
-        conditions = self.result.conditions
-        return np.asarray((np.abs(conditions.along) / np.maximum(conditions.across, STEEP))[self.i])
+        return np.asarray(np.abs(self.along) / np.maximum(self.across, STEEP))
 
     @property
     def incline(self) -> FloatArray:
@@ -156,7 +166,7 @@ def places(result: Run, most: int | None = None) -> Places:
     before = np.maximum(i - 1, 0)
     moves, of = np.flatnonzero(result.removes), np.asarray(tooling.of_step)
     reach = min(REACH, max(cutter.radius for cutter in tooling.cutters))
-    axes, lift = _upright_balls(result)
+    axes, lift, (along, across) = _upright_balls(result)
     off = np.where(share < 1.0, share * result.delta[i] + (1.0 - share) * result.delta[before], result.delta[i])
     d = np.asarray(np.einsum("mij,mj->mi", axes[i], result.setup.to_part(off)))
     tips = path.p + lift
@@ -169,7 +179,8 @@ def places(result: Run, most: int | None = None) -> Places:
     outline = Outline(told, left, tooling.cutters, made_by, reach)
     feed, left_of, axial = np.moveaxis(axes[i], 1, 0)
     c = share * tips[i] + (1.0 - share) * tips[before]
-    return Places(result, i, share[:, 0] < 1.0, c, feed, left_of, axial, d, tooling.cutters, of[i], outline)
+    which = (tooling.cutters, of[i], outline, along[i], across[i])
+    return Places(result, i, share[:, 0] < 1.0, c, feed, left_of, axial, d, *which)
 
 
 def _parted(ends: FloatArray, parts: IntArray) -> FloatArray:
@@ -202,17 +213,20 @@ def cut_axes(result: Run) -> FloatArray:
     return np.einsum("ji,mjk->mki", result.setup.T_MW[:3, :3], result.R_MF)
 
 
-def _upright_balls(result: Run) -> tuple[FloatArray, FloatArray]:
-    """Axes of the cut (m, 3, 3), rows feed, left, axial in {W}, and how far (m, 3) m from the tip the lowest point is:
-    a ball cuts the same however it leans, so it is taken upright; other tools have their own axes and their tip."""
-    path, axes = result.path, cut_axes(result)
+def _upright_balls(result: Run) -> tuple[FloatArray, FloatArray, tuple[FloatArray, FloatArray]]:
+    """Axes of the cut (m, 3, 3), rows feed, left, axial in {W}, how far (m, 3) m from the tip the lowest point is, and
+    the parts (m,) (m,) of the unit feed along the axis and across it: a ball cuts the same however it leans, so it is
+    taken upright; other tools have their own axes and their tip."""
+    path, axes, conditions = result.path, cut_axes(result), result.conditions
     ball = np.array([cutter.flat_radius == 0.0 and not cutter.conical for cutter in result.tooling.cutters])
     leans = ball[result.tooling.of_step] & (path.k[:, 2] < 1.0 - 1e-12)
-    up = np.array([0.0, 0.0, 1.0])
-    feed = axes[:, 0] * [1.0, 1.0, 0.0]
-    length = np.linalg.norm(feed, axis=1, keepdims=True)
-    leans &= length[:, 0] > STEEP
-    feed = feed / np.where(length > 0.0, length, 1.0)
+    up, along, across = np.array([0.0, 0.0, 1.0]), conditions.along, conditions.across
+    way = across[:, None] * axes[:, 0] + along[:, None] * axes[:, 2]
+    leans &= np.hypot(axes[:, 0, 0], axes[:, 0, 1]) > STEEP
+    level = np.where((np.hypot(way[:, 0], way[:, 1]) > STEEP)[:, None], way, axes[:, 0]) * [1.0, 1.0, 0.0]
+    length = np.linalg.norm(level, axis=1, keepdims=True)
+    feed = level / np.where(length > 0.0, length, 1.0)
     upright = np.stack([feed, np.cross(up, feed), np.broadcast_to(up, feed.shape)], axis=1)
     lift = result.tooling.each("radius")[:, None] * (path.k - up)
-    return np.where(leans[:, None, None], upright, axes), np.where(leans[:, None], lift, 0.0)
+    parts = np.where(leans, way[:, 2], along), np.where(leans, np.hypot(way[:, 0], way[:, 1]), across)
+    return np.where(leans[:, None, None], upright, axes), np.where(leans[:, None], lift, 0.0), parts

@@ -33,7 +33,7 @@ def told_to_sink(told: CutConditions) -> BoolArray:
     """(m,) bool: steps of mills with an end face that are told to go down, short of a plunge."""
     assert told.tooling is not None
     ends = told.tooling.each("flat_radius") > 0.0
-    return np.asarray(told.cutting & (told.along < 0.0) & (told.sinks > 0.0) & ~told.mostly_axial & ends)
+    return np.asarray(told.cutting & (told.sinks > 0.0) & ~told.mostly_axial & ends)
 
 
 def clear(told: CutConditions) -> CutConditions:

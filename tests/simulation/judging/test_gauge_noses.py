@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from robomill.arrays import FloatArray
 from robomill.cutting.tool import Cutter
 from robomill.simulation.judging.places import stock_top
 from tests.simulation.judging.test_gauge import R, pushed, run
@@ -82,8 +84,9 @@ def ball_wall(p: np.ndarray, x: float, z: float, side: float) -> float:
     return float((side * tips[:, 1] + np.sqrt(np.maximum(square, 0.0)))[square > 0.0].max())
 
 
+@pytest.mark.parametrize("lower", [0.0, 0.1e-3])
 @pytest.mark.parametrize("before", [0.2, 0.5, 1.0])
-def test_where_a_tool_is_lifted_as_it_enters_the_stock_the_wall_is_that_of_its_way(before: float) -> None:
+def test_where_a_tool_is_lifted_as_it_enters_the_stock_the_wall_is_that_of_its_way(before: float, lower: float) -> None:
     """Within one step it is pushed aside and then up: a nose has other sides at each height, and moves that were taken
     at the height of their middle read 0.063 mm at the stock's edge where 0.023 mm are."""
     lines = (f"G0 X{-36 - before} Y0 Z5", "G0 Z-1.5", "G1 X36 F1800")
@@ -92,7 +95,7 @@ def test_where_a_tool_is_lifted_as_it_enters_the_stock_the_wall_is_that_of_its_w
     rises = np.searchsorted(x, -31e-3 - 1e-6)
     sample = np.arange(len(x))
     left = np.select([sample < rises, sample == rises], [0.0, 0.144e-3], 0.172e-3)
-    up = np.select([sample < rises, sample == rises], [0.0, 0.038e-3], 0.167e-3)
+    up = np.select([sample < rises, sample == rises], [0.0, 0.038e-3], 0.167e-3) - lower
     result = pushed(result, left=left, up=up)
     walls, read = result.gauge.walls, 0
     for q in np.flatnonzero((walls.place[:, 0] < -28e-3) & (np.abs(walls.out[:, 1]) > 1.0 - 1e-9)):
@@ -124,3 +127,30 @@ def test_a_nose_whose_axis_runs_just_beside_the_edge_is_read_right_next_to_it(up
     inside = np.abs(result.path.p[reading.sample, 0]) < 20e-3
     assert inside.sum() > 20
     assert np.abs(reading.error[inside]).max() == pytest.approx(abs(up), rel=1e-3)
+
+
+@pytest.mark.parametrize("lean", ["B20", "A-20", "A15 B-25"])
+@pytest.mark.parametrize(
+    "to", [(20.0, 0.0, 0.0), (20.0, 8.0, 0.0), (-6.0, 15.0, 0.0), (16.0, 8.0, -2.0), (16.0, 8.0, 2.0)]
+)
+@pytest.mark.parametrize("off", [(0.15e-3, 0.1e-3, 0.0), (0.0, 0.0, 0.2e-3), (-0.2e-3, 0.1e-3, -0.1e-3)])
+def test_a_ball_is_read_alike_however_it_leans(lean: str, to: tuple[float, float, float], off: FloatArray) -> None:
+    """Pushed along the axes of the part, against an upright one whose sphere goes the same way."""
+    ball = Cutter("ball", 2 * R)
+    end = np.array([0.0, 0.0, -3.0]) + to
+    leaning = run(f"G0 X0 Y0 Z8 {lean}", "G0 Z-3", "G1 X{:g} Y{:g} Z{:g} F1800".format(*end), cutter=ball)
+    low = 1e3 * R * (leaning.path.k[-1] - [0.0, 0.0, 1.0])
+    begin, end = ("X{:.9f} Y{:.9f} Z{:.9f}".format(*at) for at in (low - [0.0, 0.0, 3.0], end + low))
+    found = []
+    for made in (leaning, run("G0 Z8", "G0 " + begin.split(" Z")[0], f"G0 {begin}", f"G1 {end} F1800", cutter=ball)):
+        delta = np.where(made.path.cutting[:, None], off, 0.0) @ made.setup.T_MW[:3, :3].T
+        bent = dataclasses.replace(made, delta=delta)
+        gauge = bent.gauge
+        for read in (gauge.walls, gauge.floors, gauge.ends):  # what each makes of its own sample, by the run's own axes
+            own = np.einsum("qi,qi->q", bent.delta_in_cut[read.sample], read.way)
+            np.testing.assert_allclose(read.own, own, atol=1e-10)
+        along = gauge.walls.length > 0.0
+        found.append((gauge.floors.error, gauge.walls.error[along], gauge.walls.place[along]))
+    assert min(len(each) for each in found[0]) > 10
+    for leans, upright in zip(*found, strict=True):
+        np.testing.assert_allclose(leans, upright, atol=1e-8)

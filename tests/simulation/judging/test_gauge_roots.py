@@ -128,3 +128,16 @@ def test_a_slope_of_grooves_is_read_alike_whichever_way_they_are_cut():
     assert len(found[0]) > 100
     for place, error in found[0].items():
         assert error == pytest.approx(found[1][place], abs=1e-8)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_root_is_none_where_its_tip_has_gone_into_a_deeper_groove(side: int) -> None:
+    """0.8 mm beside it one is 1 mm deeper: where the tip went, 0.3 mm nearer and 0.2 mm up, that cuts lower by 0.3 mm;
+    0.3 mm further away its side stands above."""
+    cone = Cutter("chamfer", 2 * R, tip_angle=np.radians(60.0))
+    lines = ["F900", "G0 X-5 Y0 Z5", "G0 Z-2", "G1 X5", "G0 Z5", f"G0 X-5 Y{0.8 * side}", "G0 Z-3", "G1 X5"]
+    made = run(*lines, cutter=cone)
+    first = np.isclose(made.path.p[:, 2], -2e-3)
+    for left, some in ((0.3e-3, False), (-0.3e-3, True)):
+        bent = pushed(made, left=np.where(first, side * left, 0.0), up=np.where(first, 0.2e-3, 0.0))
+        assert first[bent.gauge.floors.sample].any() == some

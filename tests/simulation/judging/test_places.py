@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 import trimesh
 
 from robomill.cutting.tool import Cutter
-from robomill.simulation.judging.places import APART, BETWEEN, Places, _chosen, places
+from robomill.simulation.judging.places import APART, BETWEEN, Places, _chosen, _parted, places
 from robomill.surface.stock import Stock
 from tests.simulation.judging.test_gauge import BLOCK, pushed, run
 
@@ -133,7 +134,7 @@ def test_the_stock_stands_as_high_as_its_mesh_over_the_nearest_cell():
     points = points[clear[0] & clear[1]]
     lean = np.radians(20.0)
     many = np.tile([0.0, np.sin(lean), np.cos(lean)], (len(points), 1))
-    at = Places(cases, *[np.arange(len(points))] * 2, *[points] * 3, many, points, (), np.arange(0), None)
+    at = Places(cases, *[np.arange(len(points))] * 2, *[points] * 3, many, points, (), np.arange(0), *[None] * 3)
     inside = ((points > low) & (points < high))[:, :2].all(axis=1)
     upon = ((points > plate[1][0]) & (points < plate[1][1]))[:, :2].all(axis=1)
     top = np.where(upon, 0.0, -5e-3)
@@ -156,11 +157,10 @@ def test_a_tool_that_rises_on_its_way_is_wider_or_narrower_at_a_height_by_its_ow
     heights, ahead = np.linspace(0.5e-3, 3.5e-3, 13), 1e-6
     across, many = 1.0 / np.hypot(1.0, rise), len(CUTTERS) * len(heights)
     steep = np.arange(many) % len(heights) == 5
-    conditions = SimpleNamespace(
-        along=np.full(many, rise * across), across=np.full(many, across), mostly_axial=steep, plunges=steep
-    )
+    conditions = SimpleNamespace(mostly_axial=steep, plunges=steep)
+    parts = np.full(many, rise * across), np.full(many, across)
     every, rows, of = np.arange(many), np.zeros((many, 3)), np.repeat(np.arange(len(CUTTERS)), len(heights))
-    at = Places(SimpleNamespace(conditions=conditions), every, every < 0, *[rows] * 5, CUTTERS, of, None)
+    at = Places(SimpleNamespace(conditions=conditions), every, every < 0, *[rows] * 5, CUTTERS, of, None, *parts)
     found = at.wider(every, np.tile(heights, len(CUTTERS)))
     for q in every:
         low, high = (heights[q % len(heights)] + side * ahead * abs(rise) for side in (-1.0, 1.0))
@@ -183,3 +183,47 @@ def test_of_many_samples_those_in_even_steps_are_chosen_and_those_that_are_most_
     assert (s[even[0]], s[even[-1]]) == (s[0], s[-1])
     assert np.diff(s[even]).max() <= s[-1] / (most - 1) + 2e-3
     assert np.diff(s[sorted(set(even) - set(worst))]).min() >= s[-1] / (most - 1) - 2e-3
+
+
+def test_moves_are_taken_in_parts_of_one_length():
+    """Whole ones to the last digit, others from division to division of their own way."""
+    rng = np.random.default_rng(4)
+    parts = np.array([1, 3, 2, 1, 5, 1])
+    ends = rng.uniform(-1.0, 1.0, (len(parts), 6)) * 1e-2
+    found = iter(_parted(ends, parts))
+    for move, n in zip(ends, parts, strict=True):
+        at = [move[:3] + (move[3:] - move[:3]) * k / n for k in range(n + 1)]
+        for begin, end in pairwise(at):
+            np.testing.assert_allclose(next(found), [*begin, *end] if n > 1 else move, rtol=0.0, atol=1e-14 * (n > 1))
+    assert next(found, None) is None
+
+
+@pytest.mark.parametrize("to", [(20, 8), (20, 3), (3, -16), (-20, 8)])
+@pytest.mark.parametrize(("kind", "lean"), [("ball", 20), ("ball", 0), ("bull", 20)])
+def test_a_ball_that_leans_is_taken_upright_over_its_lowest_point(kind, lean, to):
+    """Its axes are those of its way on the plan, and its sphere stays where it is; another nose has its own axes."""
+    cutter = Cutter(kind, 8e-3, corner_radius=4e-3 if kind == "ball" else 1e-3)
+    made = run(f"G0 X0 Y0 Z8 B{lean}", "G0 Z-2", f"G1 X{to[0]} Y{to[1]} F1800", cutter=cutter)
+    at, k = places(made), made.path.k[-1]
+    way = np.array([*to, 0.0])
+    upright = kind == "ball"
+    feed = way / np.linalg.norm(way)
+    if not upright:
+        feed -= (feed @ k) * k
+        feed /= np.linalg.norm(feed)
+    up = np.array([0.0, 0.0, 1.0]) if upright else k
+    for found, truth in ((at.feed, feed), (at.axial, up), (at.left_of, np.cross(up, feed))):
+        np.testing.assert_allclose(found, np.tile(truth, (len(at.i), 1)), atol=1e-9)
+    whole = ~at.between
+    centre = made.path.p[at.i[whole]] + 4e-3 * k
+    lowest = centre - [0.0, 0.0, 4e-3] if upright else made.path.p[at.i[whole]]
+    np.testing.assert_allclose(at.c[whole], lowest, atol=1e-12)
+
+
+@pytest.mark.parametrize("lean", [35, 50])
+def test_where_a_leaning_ball_goes_straight_down_its_axes_are_axes(lean):
+    """Though it goes no way over the part."""
+    made = run(f"G0 X0 Y0 Z8 B{lean}", "G0 Z1", "G1 Z-3 F300", "G1 X5", cutter=Cutter("ball", 8e-3))
+    at = places(made)
+    axes = np.stack([at.feed, at.left_of, at.axial], axis=1)
+    np.testing.assert_allclose(axes @ axes.transpose(0, 2, 1), np.tile(np.eye(3), (len(axes), 1, 1)), atol=1e-9)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from robomill.arrays import FloatArray
 from robomill.cutting.conditions import CutConditions
+from robomill.cutting.engaged import sinks
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.tool import Cutter
 from robomill.cutting.tooling import Tooling
@@ -55,16 +58,40 @@ def test_a_ramp_after_a_rapid_is_cut_as_if_it_were_the_first(deeper: float) -> N
     before = np.column_stack([x, 0.0 * x + 0.02, -1e-3 - fall])
     found = []
     for points, begins in ((alone, [0]), (np.vstack([before, alone]), [0, 30])):
-        cutting = np.ones(len(points), dtype=bool)
-        cutting[begins] = False
-        path = Toolpath.from_points(points, 0.03, cutting=cutting)
-        along = ways(path)[:, 2]
-        level = {"along": along, "across": np.sqrt(1.0 - along**2), "cutting": path.cutting}
-        told = CutConditions.steady(0.03, 200.0, 1e-3, **level)
-        told = CutConditions(**{**vars(told), "tooling": Tooling.of(MILL, len(path))})
+        told, path = cut_along(points, begins)
         found.append(np.array(sinking(told, path, path.p, None, never).steep)[-29:])
     np.testing.assert_allclose(found[1], found[0], atol=1e-9)
     assert 0.1 < found[0].max()
+
+
+def cut_along(points: FloatArray, begins: list[int]) -> tuple[CutConditions, Toolpath]:
+    """Points (m, 3) m at feed but for rapids to where cuts begin."""
+    path = Toolpath.from_points(points, 0.03, cutting=~np.isin(np.arange(len(points)), begins))
+    along = ways(path)[:, 2]
+    told = CutConditions.steady(0.03, 200.0, 1e-3, along=along, across=np.sqrt(1.0 - along**2), cutting=path.cutting)
+    return CutConditions(**{**vars(told), "tooling": Tooling.of(MILL, len(path))}), path
+
+
+@pytest.mark.parametrize("deeper", [-3e-3, 0.0, 2e-3])
+def test_a_slope_is_that_from_the_mean_height_of_half_a_diameter_to_that_of_the_other(deeper: float) -> None:
+    """By many heights on the way, where a ramp of 0.4 degrees begins behind another; before it all is level."""
+    x, fall = 1e-3 * np.arange(20), np.tan(np.radians(0.4))
+    first = np.column_stack([x, 0.0 * x + 0.02, -1e-3 - fall * x])
+    told, path = cut_along(np.vstack([first, first - [0.0, 0.02, deeper]]), [0, 20])
+    steep = np.array(sinking(told, path, path.p, None, never).steep)
+    half = np.linspace(0.0, 4e-3, 20001)
+    for at, found in zip(x[1:], steep[21:], strict=True):
+        before, after = (np.maximum(at - back + half, 0.0).mean() * fall for back in (8e-3, 4e-3))
+        assert found == pytest.approx(min(sinks(-(after - before) / 4e-3), told.sinks[-1]), abs=1e-4)
+    np.testing.assert_allclose(steep[1:20], steep[21:], atol=1e-9)
+
+
+def test_ways_down_that_differ_in_the_fifth_decimal_press_alike() -> None:
+    told, _ = ramp(2.0)
+    close = replace(told, along=-0.02 + 1e-5 * (np.arange(41) % 5 - 2))
+    assert np.unique(pressing(close).along).tolist() == [-0.02]
+    apart = replace(told, along=-0.02 - 1e-4 * np.arange(41))
+    np.testing.assert_allclose(pressing(apart).along, apart.along, atol=1e-12)
 
 
 @pytest.mark.parametrize("degrees", [0.2, 3.0])
@@ -146,3 +173,34 @@ def test_what_presses_a_whole_end_is_its_thrust() -> None:
     thrust = 3 * 4e-3 * (168.8e6 * h + 26.6e3)
     np.testing.assert_allclose((pressed - free)[21:, 2], thrust, rtol=2e-3)
     np.testing.assert_allclose((pressed - free)[:21], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("onset", [-0.4e-3, 0.3e-3])
+def test_how_far_a_tip_is_off_from_its_first_step_on_is_no_fall(onset: float) -> None:
+    """A ramp after a rapid, at whose begin the arm gives way at once: holding and letting go as without that."""
+    x = 1e-3 * np.arange(30)
+    told, path = cut_along(np.column_stack([x, 0.0 * x, -1e-3 - np.tan(np.radians(6.0)) * x]), [0])
+    free = path.p.copy()
+    free[12:, 2] = free[11, 2] + 1.2e-3
+    off = free + np.outer(path.cutting, [0.0, 0.0, onset])
+    steep = steep_of(told, path, free, 2e-3)
+    assert (steep[11], steep[-1]) == (1.0, 0.0)
+    np.testing.assert_allclose(steep_of(told, path, off, 2e-3), steep, atol=1e-9)
+
+
+@pytest.mark.parametrize("left", [0.0, 0.2, 0.5, 0.9])
+def test_an_end_that_is_hardly_pressed_cuts_by_the_share_of_its_hollow_that_it_has_taken_up(left: float) -> None:
+    """On a ramp its tip has sunk by more than the 0.5 mm that the end lifts it by, then springs up and goes level."""
+    told, path = ramp(6.0)
+    hollow, free = 4e-3 * np.tan(np.radians(0.5)), path.p.copy()
+    free[30:, 2] = free[29, 2] + 0.5e-3 - left * hollow
+    steep = steep_of(told, path, free, 0.5e-3)
+    assert steep[29] == 1.0
+    np.testing.assert_allclose(steep[-2:], left, atol=1e-9)
+
+
+def test_what_stands_still_presses_nothing() -> None:
+    told, _ = ramp(2.0)
+    i = np.arange(41)
+    stopped = replace(told, v_f=np.where(i % 3 == 1, 0.0, told.v_f), n_s=np.where(i % 3 == 2, 0.0, told.n_s))
+    np.testing.assert_array_equal(pressing(stopped).a_p > 0.0, (i > 20) & (i % 3 == 0))
