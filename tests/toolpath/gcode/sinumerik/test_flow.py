@@ -40,6 +40,14 @@ def xs(body: str) -> list[float]:
             "REPEAT ANF ENDE P=9\nRAUS: X9\nENDE2: X8\n",
             [0, 10, 15, 16, 21, 22, 27, 9, 8],
         ),
+        (  # a jump to the first line of what is repeated, or to its last, does not leave it
+            "R1=0\nX0\nANF: X=IC(5)\nR1=R1+1\nIF R1==2 GOTOB ANF\nENDE: X=IC(1)\nX50\nREPEAT ANF ENDE\nX9\n",
+            [0, 5, 6, 50, 55, 60, 61, 9],
+        ),
+        (
+            "R1=0\nX0\nANF: X=IC(5)\nR1=R1+1\nIF R1==2 GOTOF ENDE\nX=IC(2)\nENDE: X=IC(1)\nX50\nREPEAT ANF ENDE\nX9\n",
+            [0, 5, 7, 8, 50, 55, 56, 9],
+        ),
         ("GOTOC NIRGENDS\nX1\n", [1]),
         ("R1=3\nR[R1]=7\nX=R[3]\nX=R[R1]+1\n", [7, 8]),
         ("DEF INT N3=7\nX=7 DIV 2\nX=N3 DIV 2+10\nX=N3 MOD 4\n", [3, 13, 3]),
