@@ -160,3 +160,20 @@ def test_walls_made_between_two_samples_go_with_both() -> None:
         verdict = rm.simulate(setup.replace(T_MW=T)).verdict
         assert found.errors["wall"][k] == pytest.approx(abs(verdict.wall.value), abs=2e-6)
         assert found.errors["floor"][k] == pytest.approx(abs(verdict.floor.value), abs=2e-6)
+
+
+def test_the_largest_readings_of_every_direction_of_the_feed_are_looked_at() -> None:
+    """Each eighth of a turn of the feed, by the angle of its direction, keeps what goes furthest either way."""
+    run = rm.simulate(arcs())
+    at = set(screen(run, most=40).at.tolist())
+    assert len(at) < len(run.path) // 2
+    feed = run.R_MF[:, 0, 0] + 1j * run.R_MF[:, 1, 0]
+    eighth = ((np.degrees(np.angle(feed)) + 180.0) // 45.0) % 8
+    assert len(np.unique(eighth)) == 8
+    for read in (run.gauge.walls, run.gauge.floors):
+        for k in range(8):
+            some = eighth[read.sample] == k
+            sample, error = read.sample[some], read.error[some]
+            kept = error[np.isin(sample, list(at))]
+            assert kept.max() == error.max()
+            assert kept.min() == error.min()

@@ -83,3 +83,11 @@ def test_so_many_pecks_and_no_more_are_made(monkeypatch: pytest.MonkeyPatch, ste
     np.testing.assert_allclose(np.unique(depths[depths < 0.0])[0], -20.0)
     out = np.flatnonzero(np.diff(depths) > 0.0)
     assert len(out) == pecks + 1
+
+
+@pytest.mark.parametrize(
+    ("line", "drills"), [("G0 X9", 1), ("G1 X9", 1), ("G2 X9 CR=9", 1), ("G3 X9 CR=9", 1), ("M8", 0), ("G4 F1", 0)]
+)
+def test_a_cycle_that_mcall_holds_follows_whatever_moves(line: str, drills: int) -> None:
+    program = interpret(f"{HEAD}MCALL CYCLE81(50,1,2,-10)\n{line}\nMCALL\nG1 X20\nM30\n", dialect="sinumerik")
+    assert (program.end[:, 2] < -9e-3).sum() == drills

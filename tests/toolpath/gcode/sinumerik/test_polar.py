@@ -25,6 +25,7 @@ def ends(body: str) -> list[list[float]]:
         ("G111 X0 Y0\nG1 AP=30 RP=10\nAP=IC(60)\n", [[8.660254, 5], [0, 10]]),
         ("R1=2\nG111 X=R1 Y0\nG1 RP=R1*2 AP=R1*90 Z-1\n", [[-2, 0]]),
         ("TRANS X100\nG111 X0 Y0\nG1 AP=90 RP=5\n", [[100, 5]]),
+        ("G111 X10 Y20\nG111 X1 Y2\nG1 AP=0 RP=5\nG110 X1 Y1\nAP=90 RP=1\n", [[6, 2], [7, 4]]),
         ("G111 X0 Y0\nG0 AP=0 RP=10\nG3 AP=90 RP=10\nG2 AP=0\n", [[10, 0], [0, 10], [10, 0]]),
     ],
 )
