@@ -44,6 +44,8 @@ BODIES = {
         [0, 5, 0],
         [0, 5, -2],
     ],
+    # tangential to a polar place: on from (20, 0) along X, half way round to (20, 20)
+    "N1 G01 X+20 F100*\nN2 I+0 J+0*\nN3 G16 R+28.2842712475 H+45*\n": [[20, 0, 0], [20, 20, 0]],
     # a chamfer leaves out 2 of both sides; labels, called and repeated; Q parameters
     "N1 G01 X+20 F100*\nN2 G24 R2*\nN3 Y+10*\n": [[18, 0, 0], [20, 2, 0], [20, 10, 0]],
     "N1 G01 F100*\nN2 G98 L1*\nN3 G91 X+5*\nN4 L1,2*\nN5 L2,0*\n"

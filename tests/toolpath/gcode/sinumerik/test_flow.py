@@ -72,6 +72,8 @@ def test_a_modal_subprogram_follows_every_line_that_moves() -> None:
     [
         ("R1=3\nX=AC(R1*2)\n", 6),
         ("X5\nR1=3\nX=IC(R1-1)\n", 7),
+        ("R1=3\nX=R1  + \t 1  Y=2\n", 4),
+        ("R1=3\nX=2  *  ( R1   -  1 )   Y=2\n", 4),
         ("G0 X10 Y0\nR2=0\nG3 X10 Y0 I=AC(R2) J=AC(0)\n", 10),
     ],
 )
