@@ -177,3 +177,15 @@ def test_the_largest_readings_of_every_direction_of_the_feed_are_looked_at() -> 
             kept = error[np.isin(sample, list(at))]
             assert kept.max() == error.max()
             assert kept.min() == error.min()
+
+
+def test_the_ends_of_a_path_in_every_direction_are_looked_at() -> None:
+    """The eight of a compass, in complex numbers, and the highest and the lowest."""
+    run = rm.simulate(arcs())
+    p, at = run.path.p, screen(run, most=40).at
+    flat = p[:, 0] + 1j * p[:, 1]
+    for k in range(8):
+        along = (flat * np.exp(-1j * np.radians(45.0 * k))).real
+        assert along[at].max() == pytest.approx(along.max(), abs=1e-12)
+    assert p[at, 2].min() == p[:, 2].min()
+    assert p[at, 2].max() == p[:, 2].max()
