@@ -119,6 +119,19 @@ def test_large_whole_factors_count_in_thousandths(said: str, factor: float) -> N
     assert ends(f"G51 X0 Y0 Z0 {said}\nG1 X2.\n")[-1][0] == pytest.approx(2 * factor)
 
 
+@pytest.mark.parametrize(
+    ("said", "factor"),
+    [("P.000001", 1e-6), ("P.0000009", None), ("P1000000", 1e3), ("P1001000", None), ("P999.5", 999.5), ("P-2.", -2.0)],
+)
+def test_a_scale_may_be_a_millionth_to_a_thousand(said: str, factor: float | None) -> None:
+    body = f"G51 X0 Y0 Z0 {said}\nG1 X2.\n"
+    if factor is None:
+        with pytest.raises(GCodeError, match="expected 0.000001 to 1000"):
+            read(body)
+    else:
+        assert read(body).end[-1, 0] == pytest.approx(2e-3 * factor, rel=1e-9)
+
+
 def test_home_and_machine_places_are_not_scaled_and_mirrors_add_up() -> None:
     assert ends("G51 X0 Y0 Z0 P2.\nG1 X3.\nG28 X4.\n")[0] == [6, 0, 0]
     assert ends("G51.1 X0\nG51.1 Y0\nG1 X3. Y4.\nG50.1 X0\nX3. Y4.\n") == [[-3, -4, 0], [3, 4, 0]]
