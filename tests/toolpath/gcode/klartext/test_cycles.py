@@ -85,3 +85,25 @@ def test_a_pattern_repeats_once_to_as_often_as_is_said(monkeypatch: pytest.Monke
     for count in (0, most + 1):
         with pytest.raises(GCodeError, match="6"):
             read(f"{hole}{pattern.format(count)}\n")
+
+
+@pytest.mark.parametrize("number", [200, 201, 203, 205, 206, 240])
+def test_a_hole_needs_a_depth_below_its_surface_and_begins_there(number: int) -> None:
+    cycle = f"CYCL DEF {number} Q200=2 Q201={{}} Q206=150 Q203=0 Q204=10\nL X+5 FMAX M99\n"
+    assert read(cycle.format("-0.5")).end[:, 2].min() == pytest.approx(-0.5e-3)
+    for depth in ("0", "0.5", "+20"):
+        with pytest.raises(GCodeError, match=f"CYCL DEF {number} needs Q201, its depth, below 0"):
+            read(cycle.format(depth))
+    for start in ("0.5", "1", "-0.5"):
+        with pytest.raises(GCodeError, match="starts below the surface"):
+            read(cycle.format(f"-3 Q379={start}"))
+
+
+@pytest.mark.parametrize("waits", [("0.5", "0.25"), ("-1", "0.25"), ("0.5", "-1"), ("0", "0")])
+def test_only_a_dwell_above_nothing_is_waited(waits: tuple[str, str]) -> None:
+    """Q211 at the bottom, Q210 above the hole after its one peck."""
+    at_bottom, above = waits
+    program = read(
+        f"CYCL DEF 200 Q200=2 Q201=-8 Q206=150 Q202=4 Q203=0 Q204=10 Q211={at_bottom} Q210={above}\nL X+5 FMAX M99\n"
+    )
+    assert program.dwell_time == pytest.approx(sum(max(float(each), 0.0) for each in waits))
