@@ -91,3 +91,23 @@ def test_so_many_pecks_and_no_more_are_made(monkeypatch: pytest.MonkeyPatch, ste
 def test_a_cycle_that_mcall_holds_follows_whatever_moves(line: str, drills: int) -> None:
     program = interpret(f"{HEAD}MCALL CYCLE81(50,1,2,-10)\n{line}\nMCALL\nG1 X20\nM30\n", dialect="sinumerik")
     assert (program.end[:, 2] < -9e-3).sum() == drills
+
+
+@pytest.mark.parametrize(
+    ("cycle", "drills"),
+    [
+        ("CYCLE81(50,1,2,-10)", False),
+        ("CYCLE85(50,1,2,-10,,0,60,120)", True),
+        ("CYCLE84(50,1,2,-10,,0,5,,1)", True),
+        ("CYCLE84(50,1,2,-10,,0,5,,1.5)", True),
+    ],
+)
+@pytest.mark.parametrize("feed", ["", "F0.5", "F1"])
+def test_a_hole_needs_a_feed_of_its_own_or_of_the_program(cycle: str, drills: bool, feed: str) -> None:
+    """What taps has one by its pitch and turns."""
+    text = f"G71 G90\nM3 S500 {feed}\nG0 X0 Y0 Z50\n{cycle}\nM30\n"
+    if drills or feed:
+        assert interpret(text, dialect="sinumerik").end[:, 2].min() == pytest.approx(-10e-3)
+        return
+    with pytest.raises(GCodeError, match="Line 4: a drilling cycle needs a feed rate"):
+        interpret(text, dialect="sinumerik")
