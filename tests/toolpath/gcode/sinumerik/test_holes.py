@@ -111,3 +111,12 @@ def test_a_hole_needs_a_feed_of_its_own_or_of_the_program(cycle: str, drills: bo
         return
     with pytest.raises(GCodeError, match="Line 4: a drilling cycle needs a feed rate"):
         interpret(text, dialect="sinumerik")
+
+
+@pytest.mark.parametrize("feeds", [(60.0, 120.0), (0.5, 0.8), (1.0, 1.0), (0.0, 0.0)])
+def test_a_bore_goes_in_and_out_at_feeds_however_slow(feeds: tuple[float, float]) -> None:
+    """FFR and RFF of CYCLE85; in at the feed of the program where nothing is said, and out at rapid."""
+    program = interpret(f"{HEAD}CYCLE85(50,1,2,-10,,0,{feeds[0]},{feeds[1]})\nM30\n", dialect="sinumerik")
+    bottom = int(np.argmin(program.end[:, 2]))
+    assert program.v_f[bottom] * 6e4 == pytest.approx(feeds[0] or 100.0)
+    assert program.v_f[bottom + 1] * 6e4 == pytest.approx(feeds[1])
