@@ -48,6 +48,8 @@ def xs(body: str) -> list[float]:
             "R1=0\nX0\nANF: X=IC(5)\nR1=R1+1\nIF R1==2 GOTOF ENDE\nX=IC(2)\nENDE: X=IC(1)\nX50\nREPEAT ANF ENDE\nX9\n",
             [0, 5, 7, 8, 50, 55, 56, 9],
         ),
+        # a label before REPEAT is meant, and not one of that name on its own line or behind it
+        ("X0\nANF: X=IC(5)\nANF: REPEAT ANF P=2\nX9\nANF: X8\n", [0, 5, 10, 15, 9, 8]),
         ("GOTOC NIRGENDS\nX1\n", [1]),
         ("R1=3\nR[R1]=7\nX=R[3]\nX=R[R1]+1\n", [7, 8]),
         ("DEF INT N3=7\nX=7 DIV 2\nX=N3 DIV 2+10\nX=N3 MOD 4\n", [3, 13, 3]),
