@@ -160,3 +160,36 @@ def test_walls_made_between_two_samples_go_with_both() -> None:
         verdict = rm.simulate(setup.replace(T_MW=T)).verdict
         assert found.errors["wall"][k] == pytest.approx(abs(verdict.wall.value), abs=2e-6)
         assert found.errors["floor"][k] == pytest.approx(abs(verdict.floor.value), abs=2e-6)
+
+
+def test_the_largest_readings_of_every_direction_of_the_feed_are_looked_at() -> None:
+    """Each eighth of a turn of the feed, by the angle of its direction, keeps what goes furthest either way."""
+    run = rm.simulate(arcs())
+    at = set(screen(run, most=40).at.tolist())
+    assert len(at) < len(run.path) // 2
+    feed = run.R_MF[:, 0, 0] + 1j * run.R_MF[:, 1, 0]
+    eighth = ((np.degrees(np.angle(feed)) + 180.0) // 45.0) % 8
+    assert len(np.unique(eighth)) == 8
+    for read in (run.gauge.walls, run.gauge.floors):
+        for k in range(8):
+            some = eighth[read.sample] == k
+            sample, error = read.sample[some], read.error[some]
+            kept = error[np.isin(sample, list(at))]
+            assert kept.max() == error.max()
+            assert kept.min() == error.min()
+
+
+def test_the_ends_of_a_path_in_every_direction_are_looked_at() -> None:
+    """A star with one tip in each direction of a compass, in complex numbers, and the highest and the lowest."""
+    tips = 1e-3 * np.exp(1j * np.pi / 4.0 * np.arange(8)) * [31, 33, 30, 32, 34, 29, 35, 36]
+    corners = np.column_stack([tips, np.zeros(8)]).ravel()
+    p = np.column_stack([corners.real, corners.imag, np.linspace(-1e-3, -3e-3, 16)])
+    run = rm.simulate(slot().replace(source=rm.Toolpath.from_points(p, v_f=0.02), stock=None))
+    p, at = run.path.p, screen(run, most=40).at
+    assert len(at) < len(p) // 4
+    flat = p[:, 0] + 1j * p[:, 1]
+    for k in range(8):
+        along = (flat * np.exp(-1j * np.pi / 4.0 * k)).real
+        assert along[at].max() == along.max()
+    assert p[at, 2].min() == p[:, 2].min()
+    assert p[at, 2].max() == p[:, 2].max()

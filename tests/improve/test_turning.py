@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from random_arms import seven
 
 import robomill as rm
 from robomill.errors import SetupError
+from robomill.improve.placed import Place, place_of
 from robomill.improve.turning import Turning, turn
 from robomill.units import to_si
 
@@ -21,6 +24,11 @@ def circle(**changes: object) -> rm.SimulationSetup:
     arm = rm.load_robot("fanuc_r2000ic")
     setup = rm.load_setup("paper_flute").replace(source=path, stock=None, robot=arm, part_zero=(1.2, 0.0, 0.3))
     return setup.replace(step_mm=7, cell_mm=0.5, **changes)
+
+
+def straight() -> rm.SimulationSetup:
+    path = rm.Toolpath.from_points(p_mm=[[-20, 0, 5], [-20, 0, -2], [20, 0, -2]], feed_mm_min=[0, 0, 1800])
+    return circle().replace(source=path, step_mm=10)
 
 
 @pytest.fixture(scope="module")
@@ -155,6 +163,30 @@ def test_where_nothing_is_left_to_turn_is_said() -> None:
 def test_what_makes_no_sense_is_refused(given: dict, said: str) -> None:
     with pytest.raises(rm.RobomillError, match=said):
         turn(circle(), **given)
+
+
+@pytest.mark.parametrize(("marked", "taken"), [("now", True), ("another", False)])
+def test_near_singular_only_the_spin_of_today_may_stay(
+    monkeypatch: pytest.MonkeyPatch, marked: str, taken: bool
+) -> None:
+    """The one that is marked is best by far, and close to a singular configuration: no other is advised there."""
+    setup, today = straight().replace(spin=0.2), 0.2
+    told = turn(setup, measure="tip")
+    far = (3 * round(np.argmin(np.abs(told.angle - told.spin)) / 3) + 36) % 72
+    least = today if marked == "now" else float(told.angle[far])
+    asked = set()
+
+    def marking(result: rm.SimulationResult, *given: object) -> Place:
+        found = place_of(result, *given)
+        asked.add(result.setup.spin)
+        return replace(found, share=1e-6, det=0.0) if result.setup.spin == least else found
+
+    monkeypatch.setattr("robomill.improve.turning.place_of", marking)
+    monkeypatch.setattr("robomill.improve.turning.agrees", lambda *given: False)  # every third spin is simulated
+    found = turn(setup, measure="tip")
+    assert least in asked
+    assert (found.spin == pytest.approx(least)) == taken
+    assert (found.constant.share == 1e-6) == taken
 
 
 def test_a_path_out_of_reach_at_every_spin_is_refused() -> None:

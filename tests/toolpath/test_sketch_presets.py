@@ -33,6 +33,26 @@ def test_the_lines_of_fig_8_span_the_paper_s_plane():
     np.testing.assert_allclose(lengths, [0.6] * 3 + [1.2] * 3)
 
 
+@pytest.mark.parametrize("diameter", [4e-3, D, 12e-3])
+def test_presets_have_their_sizes_and_neighbouring_passes_overlap_by_less_than_half(diameter):
+    """Of the cutter's centre, mm: a slot of 100, a circle and a spiral of 60 across, a face of 80 by 50; a pocket of 60
+    by 40 with the cutter. Passes beside each other are 0.6 of the cutter apart at most."""
+    cut = {
+        name: np.vstack([e.points for e in preset(name, Sketch(), diameter).elements])
+        for name in ("slot", "circle", "pocket", "face", "spiral")
+    }
+    np.testing.assert_allclose(cut["slot"], [[-0.05, 0], [0.05, 0]])
+    assert np.linalg.norm(np.diff(cut["circle"], axis=0)) == pytest.approx(0.03)
+    np.testing.assert_allclose(np.ptp(cut["pocket"], axis=0) + diameter, [0.06, 0.04])
+    np.testing.assert_allclose(np.ptp(cut["face"], axis=0), [0.08, 0.05])
+    assert np.hypot(*cut["spiral"].T).max() == pytest.approx(0.03)
+    rows = np.diff(np.unique(cut["face"][:, 1].round(9)))
+    angle = np.unwrap(np.arctan2(*cut["spiral"][1:].T[::-1]))
+    turns = np.ptp(angle) / (2.0 * np.pi) - 1.0  # the last one is the circle
+    for apart in (rows.max(), 0.03 / turns):
+        assert 0.5 * diameter < apart < 0.65 * diameter
+
+
 def largest_gap(points, diameter, length, width):
     """How far the worst point of the floor lies from the nearest cutter centre, less the radius (brute force)."""
     at = np.linspace(0, 1, 60)[:, None]

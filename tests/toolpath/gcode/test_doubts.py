@@ -133,3 +133,10 @@ def test_on_a_fanuc_a_third_of_the_points_may_be_forgotten(dialect: str, said: b
     assert ("no-point" in codes(text, dialect)) == said
     many = text.replace("X30.", "X30").replace("X10.", "X10")
     assert "no-point" not in codes(many, dialect)
+
+
+@pytest.mark.parametrize(("dwells", "said"), [((60,), False), ((60.5,), True), ((1, 119), False), ((1, 119.5), True)])
+def test_dwells_of_more_than_a_minute_on_average_are_doubted(dwells: tuple[float, ...], said: bool) -> None:
+    text = "".join(f"G4 P{each}\n" for each in dwells)
+    program = interpret(f"G21 G90 F100\nG1 X1\n{text}G1 X2\nM2\n", dialect="linuxcnc")
+    assert ("long-dwell" in {f.code for f in program.findings}) == said

@@ -276,3 +276,12 @@ def test_g52_and_g92_are_two_shifts_on_a_fanuc_control(first: str, then: str) ->
         interpret(text, dialect="fanuc")
     interpret(text, dialect="linuxcnc")
     interpret(text.replace(first, "G52 X0"), dialect="fanuc")
+
+
+@pytest.mark.parametrize("number", range(1, 10))
+def test_every_work_offset_is_chosen_by_its_own_word(number: int) -> None:
+    """G10 L2 P1 to P9 set what G54 to G59 and G59.1 to G59.3 choose: each shifts a place by its own."""
+    words = ["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"]
+    sets = "".join(f"G10 L2 P{k} X{k * k}\n" for k in range(1, 10))
+    program = interpret(f"G21 G90\n{sets}{words[number - 1]}\nG0 X7\nG54\nX7\nM2\n", dialect="linuxcnc")
+    np.testing.assert_allclose(program.end[:, 0] * 1e3, [7 + number * number, 8], atol=1e-9)

@@ -331,3 +331,14 @@ def test_a_table_and_a_file_of_moves_are_refused_for_tilted_planes(tmp_path: Pat
         read_gcode(text, table="A")
     with pytest.raises(GCodeError, match="its moves stand in that"):
         write_moves_jsonl(interpret(text), tmp_path / "moves.jsonl")
+
+
+@pytest.mark.parametrize("number", [120, 121, 122])
+def test_what_the_axes_need_for_a_plane_is_the_controls_secret_until_it_ends(number: int) -> None:
+    """Q120 to Q122 are A, B and C of the machine: unknown in a tilted plane, 0 behind it."""
+    plane = "PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX\n"
+    place = f"L X+Q{number} Y+5 Z+50 FMAX\n"
+    back = interpret(f"{KLARTEXT}Q{number} = 7\n{plane}PLANE RESET TURN FMAX\n{place}END PGM A MM\n")
+    np.testing.assert_allclose(back.end[-1] * 1e3, [0, 5, 50], atol=1e-9)
+    with pytest.raises(GCodeError, match=f"Q{number} is read before the program sets it"):
+        interpret(f"{KLARTEXT}Q{number} = 7\n{plane}{place}END PGM A MM\n")

@@ -215,3 +215,29 @@ def test_a_fetched_tool_comes_from_above() -> None:
     assert (np.diff(path.p[:, :2], axis=0)[low[:-1] & low[1:] & ~path.cutting[1:]] == 0.0).all(), "no rapid in the part"
     leaves = np.flatnonzero(program.line == 7)[0]
     assert program.away[leaves].tolist() == [False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("word", "bottom", "depths"),
+    [
+        ("Q99", -199, [-98, -197, -199]),
+        ("Q100", 0.75, [0.9, 0.8, 0.75]),
+        ("Q100.5", -199, [-99.5, -199]),
+        ("Q60000", -100, [-59, -100]),
+    ],
+)
+def test_a_depth_per_peck_counts_in_thousandths_from_a_hundred_on(word: str, bottom: float, depths: list) -> None:
+    """From 1 mm down: whole numbers from 100 on are steps of the control, others are lengths."""
+    program = read(f"G99 G83 X0 Y0 Z{bottom} R1 {word}\n")
+    np.testing.assert_allclose(program.end[program.kind == 1, 2] * 1e3, depths, atol=1e-9)
+
+
+@pytest.mark.parametrize("line", ["G70 X50 Y0 I10 J0 L{}", "G71 X50 Y0 I10 J0 K5 L{}"])
+def test_a_circle_has_one_hole_to_as_many_as_are_said(monkeypatch: pytest.MonkeyPatch, line: str) -> None:
+    """The last count that fits, the first that does not."""
+    monkeypatch.setattr("robomill.toolpath.gcode.fanuc.cycles.MOST_BOLTS", 6)
+    for count in (1, 6):
+        assert len(holes(f"G99 G81 Z-5 R2 L0\n{line.format(count)}\n")) == count
+    for count in (0, 7):
+        with pytest.raises(GCodeError, match="for 1 to 6 holes"):
+            read(f"G99 G81 Z-5 R2 L0\n{line.format(count)}\n")

@@ -73,10 +73,11 @@ def test_units_may_change_while_coordinates_are_scaled() -> None:
 
 
 @pytest.mark.parametrize("plane", [17, 18, 19])
+@pytest.mark.parametrize("before", [17, 18, 19])
 @pytest.mark.parametrize("centre", ["", "G90.1 "])
 @pytest.mark.parametrize("factors", [(2, 2, 2), (-1, 1, 1), (1, -1, 1), (1, 1, -1), (-2, 2, -2)])
-def test_an_arc_of_any_plane_is_the_scaled_arc(plane: int, centre: str, factors: tuple[int, ...]) -> None:
-    """Point by point: C + s (p - C) of the arc without scaling, along the whole of it."""
+def test_an_arc_of_any_plane_is_the_scaled_arc(plane: int, before: int, centre: str, factors: tuple[int, ...]) -> None:
+    """Point by point: C + s (p - C) of the arc without scaling, along the whole of it; its line says its plane."""
     first, second, _ = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}[plane]
     middle, begin = np.zeros(3), np.zeros(3)
     middle[first], middle[second], begin[first], begin[second] = 3.0, -4.0, 9.0, -4.0
@@ -86,7 +87,7 @@ def test_an_arc_of_any_plane_is_the_scaled_arc(plane: int, centre: str, factors:
     turn = f"G{plane} {centre}G3 X{end[0]} Y{end[1]} Z{end[2]} {'IJK'[first]}{i[first]} {'IJK'[second]}{i[second]}\n"
     about = np.array([1.0, 2.0, -3.0])
     scaled = f"G51 X1. Y2. Z-3. I{factors[0]}. J{factors[1]}. K{factors[2]}.\n"
-    start = "G0 X{} Y{} Z{}\n".format(*begin)
+    start = f"G{before}\n" + "G0 X{} Y{} Z{}\n".format(*begin)
     plain, found = (interpret(f"G21 G90 F100\n{more}{start}{turn}M30\n", dialect="fanuc") for more in ("", scaled))
     share = np.linspace(0.0, 1.0, 9)
     points = plain.arcs_of(np.array([1])).at(np.zeros(9, dtype=int), share) * 1e3
@@ -117,6 +118,19 @@ def test_more_that_cannot_be_scaled_is_refused(body: str, says: str) -> None:
 )
 def test_large_whole_factors_count_in_thousandths(said: str, factor: float) -> None:
     assert ends(f"G51 X0 Y0 Z0 {said}\nG1 X2.\n")[-1][0] == pytest.approx(2 * factor)
+
+
+@pytest.mark.parametrize(
+    ("said", "factor"),
+    [("P.000001", 1e-6), ("P.0000009", None), ("P1000000", 1e3), ("P1001000", None), ("P999.5", 999.5), ("P-2.", -2.0)],
+)
+def test_a_scale_may_be_a_millionth_to_a_thousand(said: str, factor: float | None) -> None:
+    body = f"G51 X0 Y0 Z0 {said}\nG1 X2.\n"
+    if factor is None:
+        with pytest.raises(GCodeError, match="expected 0.000001 to 1000"):
+            read(body)
+    else:
+        assert read(body).end[-1, 0] == pytest.approx(2e-3 * factor, rel=1e-9)
 
 
 def test_home_and_machine_places_are_not_scaled_and_mirrors_add_up() -> None:

@@ -44,6 +44,8 @@ BODIES = {
         [0, 5, 0],
         [0, 5, -2],
     ],
+    # tangential to a polar place: on from (20, 0) along X, half way round to (20, 20)
+    "N1 G01 X+20 F100*\nN2 I+0 J+0*\nN3 G16 R+28.2842712475 H+45*\n": [[20, 0, 0], [20, 20, 0]],
     # a chamfer leaves out 2 of both sides; labels, called and repeated; Q parameters
     "N1 G01 X+20 F100*\nN2 G24 R2*\nN3 Y+10*\n": [[18, 0, 0], [20, 2, 0], [20, 10, 0]],
     "N1 G01 F100*\nN2 G98 L1*\nN3 G91 X+5*\nN4 L1,2*\nN5 L2,0*\n"
@@ -78,6 +80,16 @@ def test_cycles_of_din_iso_drill_where_they_are_called() -> None:
     rows = program.kind == FEED
     np.testing.assert_allclose(program.end[rows] * 1e3, [[30, 7, -4], [40, 7, -4]], atol=1e-9)
     np.testing.assert_allclose(program.v_f[rows] * 60e3, 120)
+
+
+def test_blocks_that_stand_alone() -> None:
+    """G04 waits, G29 puts the pole where the tool is, G38 stops, G73 of a step adds its angle, G99 defines a tool."""
+    waits = interpret(f"{HEAD}N1 G04 F1.5*\nN2 G01 X+5 F9*\nN9999 %PART G71 *\n")
+    assert waits.dwell_time == pytest.approx(1.5)
+    assert ends("N1 G29*\nN2 G38*\nN3 G11 R+5 H+90 F9*\n") == [[10, 5, 0]]
+    assert ends("N1 G73 G91 H+40*\nN2 G73 G91 H+50*\nN3 G01 G90 X+1 Y+2 F9*\n") == [[-2, 1, 0]]
+    own = "N1 G99 T5 L+0 R+3*\nN2 T5 G17 S900*\nN3 G01 G41 X+20 Y+0 F100*\nN4 X+40*\nN5 G40 Y-20*\n"
+    assert ends(own) == [[20, 3, 0], [40, 3, 0], [40, -20, 0]]
 
 
 def test_inches_feeds_and_rapids() -> None:

@@ -71,6 +71,17 @@ def test_what_angles_cannot_say_is_refused(body: str, says: str) -> None:
     assert str(refused.value).startswith(says)
 
 
+@pytest.mark.parametrize(("off", "fits"), [(0.0, True), (0.002, True), (-0.002, True), (0.004, False), (-0.004, False)])
+def test_an_end_may_lie_beside_its_angle_by_what_printing_rounds(off: float, fits: bool) -> None:
+    """At 45 degrees an end that is too high by 0.004 mm lies 0.0028 mm beside."""
+    line = f"G1 X20 Y{10 + off:.3f} ANG=45\n"
+    if fits:
+        assert ends(line) == [[20, pytest.approx(10 + off)]]
+        return
+    with pytest.raises(GCodeError, match="X and Y do not lie at ANG=45"):
+        ends(line)
+
+
 def test_modes_of_soft_approaches_move_nothing_by_themselves() -> None:
     assert ends("G141 G341\nG1 X20\n") == [[20, 0]]
 

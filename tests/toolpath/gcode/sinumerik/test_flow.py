@@ -40,6 +40,16 @@ def xs(body: str) -> list[float]:
             "REPEAT ANF ENDE P=9\nRAUS: X9\nENDE2: X8\n",
             [0, 10, 15, 16, 21, 22, 27, 9, 8],
         ),
+        (  # a jump to the first line of what is repeated, or to its last, does not leave it
+            "R1=0\nX0\nANF: X=IC(5)\nR1=R1+1\nIF R1==2 GOTOB ANF\nENDE: X=IC(1)\nX50\nREPEAT ANF ENDE\nX9\n",
+            [0, 5, 6, 50, 55, 60, 61, 9],
+        ),
+        (
+            "R1=0\nX0\nANF: X=IC(5)\nR1=R1+1\nIF R1==2 GOTOF ENDE\nX=IC(2)\nENDE: X=IC(1)\nX50\nREPEAT ANF ENDE\nX9\n",
+            [0, 5, 7, 8, 50, 55, 56, 9],
+        ),
+        # a label before REPEAT is meant, and not one of that name on its own line or behind it
+        ("X0\nANF: X=IC(5)\nANF: REPEAT ANF P=2\nX9\nANF: X8\n", [0, 5, 10, 15, 9, 8]),
         ("GOTOC NIRGENDS\nX1\n", [1]),
         ("R1=3\nR[R1]=7\nX=R[3]\nX=R[R1]+1\n", [7, 8]),
         ("DEF INT N3=7\nX=7 DIV 2\nX=N3 DIV 2+10\nX=N3 MOD 4\n", [3, 13, 3]),
@@ -64,6 +74,8 @@ def test_a_modal_subprogram_follows_every_line_that_moves() -> None:
     [
         ("R1=3\nX=AC(R1*2)\n", 6),
         ("X5\nR1=3\nX=IC(R1-1)\n", 7),
+        ("R1=3\nX=R1  + \t 1  Y=2\n", 4),
+        ("R1=3\nX=2  *  ( R1   -  1 )   Y=2\n", 4),
         ("G0 X10 Y0\nR2=0\nG3 X10 Y0 I=AC(R2) J=AC(0)\n", 10),
     ],
 )

@@ -25,6 +25,7 @@ def ends(body: str) -> list[list[float]]:
         ("G111 X0 Y0\nG1 AP=30 RP=10\nAP=IC(60)\n", [[8.660254, 5], [0, 10]]),
         ("R1=2\nG111 X=R1 Y0\nG1 RP=R1*2 AP=R1*90 Z-1\n", [[-2, 0]]),
         ("TRANS X100\nG111 X0 Y0\nG1 AP=90 RP=5\n", [[100, 5]]),
+        ("G111 X10 Y20\nG111 X1 Y2\nG1 AP=0 RP=5\nG110 X1 Y1\nAP=90 RP=1\n", [[6, 2], [7, 4]]),
         ("G111 X0 Y0\nG0 AP=0 RP=10\nG3 AP=90 RP=10\nG2 AP=0\n", [[10, 0], [0, 10], [10, 0]]),
     ],
 )
@@ -89,3 +90,31 @@ def test_places_about_a_pole_are_offset_as_the_same_places_by_x_and_y(side: str)
     )
     assert np.abs(found.end[2, 1]) == pytest.approx(2e-3)
     np.testing.assert_allclose(found.end, expected.end, atol=1e-12)
+
+
+@pytest.mark.parametrize("angle", [0.5, 90.0, 179.5, 180.5, 270.0, 359.5])
+@pytest.mark.parametrize("way", [2, 3])
+@pytest.mark.parametrize("by", ["end", "centre"])
+def test_an_arc_turns_by_its_angle_however_small_or_large(angle: float, way: int, by: str) -> None:
+    """In complex numbers: from (30, 0) about (10, 0)."""
+    turn = np.exp(1j * np.radians(angle if way == 3 else -angle))
+    end = 10.0 + 20.0 * turn
+    said = f"X{end.real:.9f} Y{end.imag:.9f}" if by == "end" else "I-20 J0"
+    program = read(f"G0 X30\nG{way} {said} AR={angle}\n")
+    np.testing.assert_allclose(program.end[-1, :2] * 1e3, [end.real, end.imag], atol=1e-6)
+    np.testing.assert_allclose(program.centre[-1, :2] * 1e3, [10, 0], atol=1e-4)
+    assert np.degrees(program.sweep[-1]) == pytest.approx(angle if way == 3 else -angle, abs=1e-3)
+
+
+@pytest.mark.parametrize("angle", [0, 360, -90, 400])
+def test_an_arc_by_no_angle_or_a_whole_turn_is_refused(angle: float) -> None:
+    for said in ("X0 Y10", "I-10 J0"):
+        with pytest.raises(GCodeError, match="between 0 and 360"):
+            read(f"G0 X10\nG3 {said} AR={angle}\n")
+
+
+def test_a_radius_of_nothing_leads_to_the_pole_and_none_leads_further() -> None:
+    assert ends("G111 X10 Y20\nG1 AP=0 RP=5\nAP=30 RP=0\n") == [[15, 20], [10, 20]]
+    assert ends("G1 AP=90 RP=5\n") == [[0, 5]]  # without a pole about the zero of the part
+    with pytest.raises(GCodeError, match="a radius of 0 or more"):
+        read("G111 X10 Y20\nG1 AP=0 RP=-1\n")

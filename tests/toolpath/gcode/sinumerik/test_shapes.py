@@ -138,6 +138,38 @@ def test_bent_moves_follow_their_circles_in_every_frame(seed: int, turn: str, by
     assert (there / ((found[0] - about[1]) * 1j * np.sign(program.sweep[-1]))).real > 0
 
 
+def test_arcs_of_a_tenth_of_a_millimetre_are_read() -> None:
+    program = read("CIP X0.2 Y0 I1=0.1 J1=0.1\nG1 X0.3\nCT X0.4 Y0.1\n")
+    np.testing.assert_allclose(program.centre[[1, 3], :2] * 1e3, [[0.1, 0], [0.3, 0.1]], atol=1e-9)
+    np.testing.assert_allclose(np.degrees(program.sweep[[1, 3]]), [-180, 90])
+    with pytest.raises(GCodeError, match="CIP that also climbs"):
+        read("CIP X0.2 Y0 Z0.3 I1=0.1 J1=0.1\n")
+    with pytest.raises(GCodeError, match="CIP needs I1 and J1"):
+        read("CIP X0.2 Y0 I1=0.1 J1=0.1 K1=0.3\n")
+
+
+@pytest.mark.parametrize(
+    ("pattern", "most"),
+    [
+        ("HOLES1(0,0,0,5,10,{})", 6),
+        ("HOLES2(0,0,10,0,0,{})", 6),
+        ("CYCLE801(0,0,0,5,5,{},1)", 6),
+        ("CYCLE801(0,0,0,5,5,3,{})", 2),
+    ],
+)
+def test_a_pattern_has_one_hole_to_as_many_as_are_said(
+    monkeypatch: pytest.MonkeyPatch, pattern: str, most: int
+) -> None:
+    """The last count that fits, the first that does not."""
+    monkeypatch.setattr("robomill.toolpath.gcode.sinumerik.shapes.MOST_HOLES", 6)
+    drill = "MCALL CYCLE81(20,0,2,-10)\n"
+    assert len(holes(f"{drill}{pattern.format(1)}\nMCALL\n")) == 6 // most
+    assert len(holes(f"{drill}{pattern.format(most)}\nMCALL\n")) == 6
+    for count in (0, most + 1):
+        with pytest.raises(GCodeError, match="expected 1 to 6"):
+            holes(f"{drill}{pattern.format(count)}\nMCALL\n")
+
+
 @pytest.mark.parametrize(("value", "places"), [(8, [[1, 0], [2, 0], [3, 0]]), (9, [[2, 0], [3, 0]]), (7, [[3, 0]])])
 def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
     lines = "CASE(R1-1) OF 8 GOTOF L_A 9 GOTOF L_B DEFAULT GOTOF L_C\nL_A: G0 X1\nL_B: G0 X2\nL_C: G0 X3\n"
