@@ -130,3 +130,15 @@ def test_lines_behind_the_end_that_are_called_are_not_called_unread() -> None:
 def test_a_colon_begins_a_program_as_an_o_does(dialect: str) -> None:
     text = "%\n:0123\nG21 G90 G1 F100 X1.\nM98 P456\nM30\n:0456 (SUB)\nX2.\nM99\n%\n"
     assert xs(text, dialect) == [1, 2]
+
+
+@pytest.mark.parametrize("deep", range(1, 12))
+def test_subroutines_may_call_one_another_nine_deep(deep: int) -> None:
+    """As RS274/NGC has ten levels, of which the program itself is one."""
+    subs = [f"o{k} sub\n{f'o{k + 1} call' if k < deep else 'X7'}\no{k} endsub\n" for k in range(deep, 0, -1)]
+    text = f"{''.join(subs)}G21 G90 G1 F100 X1\no1 call\nX9\nM2\n"
+    if deep <= 9:
+        assert xs(text, "linuxcnc") == [1, 7, 9]
+    else:
+        with pytest.raises(GCodeError, match="more than 9 levels deep"):
+            xs(text, "linuxcnc")

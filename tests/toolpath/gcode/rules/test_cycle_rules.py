@@ -143,6 +143,15 @@ def test_back_boring_goes_through_aside_and_cuts_upwards(plane, aside):
     np.testing.assert_allclose(found, np.column_stack([kinds, path]), atol=1e-9)
 
 
+def test_back_boring_in_steps_is_that_at_the_places_they_lead_to():
+    """In G91 R counts from where the tool is, Z from R, and K, up to which is bored, from the bottom."""
+    head = "G21 G90 S1000 M3 F100\nG0 X0 Y0 Z5\n"
+    places = interpret(f"{head}G98 G87 X1 Y2 Z-3 R2 I0.4 J-0.7 K1.5\nM2\n")
+    steps = interpret(f"{head}G91 G98 G87 X1 Y2 Z-5 R-3 I0.4 J-0.7 K4.5\nM2\n")
+    np.testing.assert_allclose(steps.end, places.end, atol=1e-12)
+    assert steps.kind.tolist() == places.kind.tolist()
+
+
 def test_the_words_of_a_cycle_stay_in_force_until_it_ends():
     program = interpret("G21 G90 F100\nG0 Z5\nG99 G81 X1 Y1 Z-2 R1\nX2\nY3 Z-1\nG80\nG81 X4 Z-3 R2\nM2\n")
     cut = program.kind == FEED
