@@ -82,9 +82,9 @@ def uncertainty(
     Inputs are normal; compliances and coefficients that would change their sign are drawn again. Each draw is the cut
     run with those numbers, the joints solved anew. Exact in compliances, force components and coefficients per area or
     length; of second order in lengths and places, first in exponents; what a gauge reads moves with the tip. The draws
-    with the largest errors, and those nearest to the tolerance, are run in full besides (``checked``). What a length or
-    the tool's length changes of where the tool stands, rather than of how much it gives, is taken up when the part is
-    set up, and is not in it.
+    with the largest errors, and those nearest to the tolerance, are run in full besides, and more where these differ
+    (``checked``). What a length or the tool's length changes of where the tool stands, rather than of how much it
+    gives, is taken up when the part is set up, and is not in it.
 
     Examples
     --------
