@@ -19,31 +19,49 @@ from robomill.ui.work import beside
 from robomill.ui.work.job import Job
 
 ENDLESS = "o100 while [1 GT 0]\n G1 X1 F100\n G1 X0\no100 endwhile\nM2\n"
+SLOW = "o100 while [1 GT 0]\n M8\n G4 P0\no100 endwhile\nM2\n"
+"""Makes no move, and is followed line by line."""
 NUMBER = itertools.count()
 
 
-def opened(app: AppTest, page: str) -> AppTest:
+def opened(app: AppTest, page: str, text: str = ENDLESS) -> AppTest:
     """A project whose program never ends, on one of the pages."""
     held = store(app)
-    source = GCodeSource(f"{ENDLESS}({next(NUMBER)})\n", "endless.nc")  # nobody has read it, nor was it refused
+    source = GCodeSource(f"{text}({next(NUMBER)})\n", "endless.nc")  # nobody has read it, nor was it refused
     held.put(held.project.replace(setup=held.project.setup.replace(source=source)))
     return go(app, page)
+
+
+def without_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing but cancel ends a reading: a loop is not refused for its length."""
+    monkeypatch.setattr(beside, "FIRST_S", 0.05)
+    monkeypatch.setattr(interpreter, "MAX_STEPS", 1 << 40)
+    monkeypatch.setattr(interpreter, "LOOPING", 1e9)
+
+
+def reading(app: AppTest) -> AppTest:
+    """The page once it reads the program: what else it makes beside itself before takes what it takes."""
+    for _ in range(100):
+        if any(button.key == "run.path.cancel" for button in app.button):
+            break
+        app.run()
+    assert not app.exception
+    return app
 
 
 @pytest.mark.parametrize("page", ["app", "1_Robot", "5_Toolpath", "6_Milling", "7_Improve"])
 def test_the_page_stays_alive_and_cancel_ends_the_reading(
     app: AppTest, monkeypatch: pytest.MonkeyPatch, page: str
 ) -> None:
-    monkeypatch.setattr(beside, "FIRST_S", 0.05)
-    opened(app, page)
-    assert not app.exception
+    without_limit(monkeypatch)
+    reading(opened(app, page, SLOW))
     job = store(app).values["run.path"]
     assert isinstance(job, Job)
     app.button(key="run.path.cancel").click().run()
     began = time.process_time()
     assert job.done.wait(60)
     assert job.made is None
-    assert time.process_time() - began < 2.0  # a reading to its end takes ten seconds and more
+    assert time.process_time() - began < 2.0
     assert not app.exception
     assert app.button(key="run.path.ask")
     assert "Reading the program: not computed yet" in words(app)
@@ -71,12 +89,7 @@ def test_nothing_on_the_page_reads_it_a_second_time(app: AppTest, monkeypatch: p
 
     monkeypatch.setattr(beside, "FIRST_S", 0.05)
     monkeypatch.setattr(GCodeSource, "read", endless)
-    opened(app, page)
-    for _ in range(100):  # what else the page makes beside itself takes what it takes
-        if any(button.key == "run.path.cancel" for button in app.button):
-            break
-        app.run()
-    assert not app.exception
+    reading(opened(app, page))
     app.button(key="run.path.cancel").click().run()
     assert not app.exception
     assert app.button(key="run.path.ask")
@@ -86,8 +99,8 @@ def test_nothing_on_the_page_reads_it_a_second_time(app: AppTest, monkeypatch: p
 
 
 def test_a_program_that_is_not_read_yet_is_not_converted(app: AppTest, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(beside, "FIRST_S", 0.05)
-    opened(app, "5_Toolpath")
+    without_limit(monkeypatch)
+    reading(opened(app, "5_Toolpath", SLOW))
     app.button_group(key="toolpath.kind").set_value("lines").run()
     assert not app.exception
     assert store(app).project.setup.source.kind == "program"
