@@ -14,12 +14,11 @@ from robomill.errors import RobomillError, SetupError, ToolpathError
 from robomill.frames import Columns
 from robomill.improve.judged import check_improvable
 from robomill.improve.ways import fed, in_levels, turned_round
-from robomill.kinematics.spin import spin_matters
 from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.simulation.judging.verdict_words import NO_NUMBER
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import Simulate, simulate, spin_of
+from robomill.simulation.run import Simulate, chooses_spin, simulate, spin_of
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.source import PointsSource
@@ -234,7 +233,7 @@ def held(now: SimulationResult) -> SimulationSetup:
     """The set-up of a run with its arm held about the tool as it was held there: ways to cut are compared in one
     posture, and not with the one that each would choose."""
     setup = now.setup
-    if isinstance(setup.spin, float) or not spin_matters(setup.robot):
+    if not chooses_spin(setup):
         return setup
     return setup.replace(spin=spin_of(now.ik), provenance=dict(setup.provenance))
 

@@ -26,7 +26,7 @@ from robomill.provenance import Finding, named
 from robomill.simulation.band import deviation_band
 from robomill.simulation.judging.gauge import Gauge
 from robomill.simulation.judging.verdict import judge
-from robomill.simulation.judging.verdict_words import LEVELS, NO_NUMBER, Level, level_of_share
+from robomill.simulation.judging.verdict_words import LEVELS, NO_NUMBER, Level, Verdict, level_of_share
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, ran, spin_of
 from robomill.simulation.setup import SimulationSetup
@@ -227,12 +227,17 @@ def _measured(
     """``seen``: the run along the corrected path, and what was measured on the one along the wanted path."""
     wanted, (led, gauge) = found.first, seen
     bound, known = asked
-    before, after = errors_of(wanted, gauge), errors_of(led)
+    left = measured(led)
+    before, after, verdict = errors_of(wanted, gauge), errors_of(led, left), judge(led, left)
     if not after.max < before.max:
-        raise CompensationError(_no_better(before, after, led, chosen))
+        raise CompensationError(_no_better(before, after, verdict, chosen))
     softer, stronger = _wrong(led)
     sprung = springs(led)
-    findings = (*_met(after, softer, stronger, led), *closer(led, after), *_findings(found, led, written, sprung))
+    findings = (
+        *_met(after, graver(softer, stronger, led.setup), led.setup, verdict),
+        *closer(led, after),
+        *_findings(found, led, written, sprung),
+    )
     return Compensation(
         setup=wanted.setup,
         components=chosen,
@@ -254,13 +259,13 @@ def _measured(
     )
 
 
-def _no_better(before: Errors, after: Errors, led: SimulationResult, chosen: tuple[str, ...]) -> str:
-    """Why there is no corrected program that leaves less, by what the best one, run as ``led``, would leave."""
+def _no_better(before: Errors, after: Errors, verdict: Verdict, chosen: tuple[str, ...]) -> str:
+    """Why there is no corrected program that leaves less, by what the best one would leave, with its ``verdict``."""
     became = f"{format_si(before.max, 'mm', 4)} would become {format_si(after.max, 'mm', 4)}"
     if not {"normal", "axial"} <= set(chosen):
         why = "since what is pushed aside here is not what was chosen to be corrected; choose other components."
         return f"The path is not corrected: {became}, {why}"
-    return f"The path is not corrected: {became}. {judge(led, measured(led)).sentence}"
+    return f"The path is not corrected: {became}. {verdict.sentence}"
 
 
 def checked_components(components: Iterable[str]) -> tuple[str, ...]:
@@ -310,16 +315,14 @@ def _half(led: SimulationResult, known: Knowledge | None) -> float:
     return float(np.nanmax(halves))
 
 
-def _met(after: Errors, softer: Errors, stronger: Errors, led: SimulationResult) -> tuple[Finding, ...]:
-    """Whether the corrected program keeps the tolerance, and whether it still does if the numbers are wrong."""
-    setup, found = led.setup, judge(led, measured(led))
-    if found.level in NO_NUMBER:
-        text = f"whether the corrected program keeps the tolerance is not known. {found.sentence}"
+def _met(after: Errors, wrong: Errors, setup: SimulationSetup, verdict: Verdict) -> tuple[Finding, ...]:
+    """Whether the corrected program keeps the tolerance, and whether it still does if the numbers are ``wrong``."""
+    if verdict.level in NO_NUMBER:
+        text = f"whether the corrected program keeps the tolerance is not known. {verdict.sentence}"
         return (Finding("warning", text, code="not-known"),)
     if after.share(setup) > 1.0:
-        text = f"the tolerance is not kept by the corrected program either. {found.sentence}"
+        text = f"the tolerance is not kept by the corrected program either. {verdict.sentence}"
         return (Finding("warning", text, code="not-met"),)
-    wrong = graver(softer, stronger, setup)
     if wrong.share(setup) <= 1.0:
         return ()
     text = (

@@ -168,6 +168,10 @@ class _Work:
         """(k,) m each, with the inputs changed by (k, p)."""
         if self.expansion is not None:
             return self.expansion.errors(change)
+        return self._runs(change, stage)
+
+    def _runs(self, change: FloatArray, stage: str) -> Errors:
+        """The same of a run for each."""
         found = []
         for i, each in enumerate(change):
             with step(i, len(change), stage):
@@ -207,11 +211,7 @@ class _Work:
         assert self.expansion is not None
         told = np.array(change)
         told[:, self.unsure.named("springs", "model")] = 0.0  # which no set-up says
-        said, runs = self.expansion.errors(told), []
-        for i, each in enumerate(told):
-            with step(i, len(told), "Draws in full"):
-                runs.append(self._in_full(each))
-        found, setup = {name: np.array([each[name] for each in runs]) for name in NAMES}, self.unsure.setup
+        said, found, setup = self.expansion.errors(told), self._runs(told, "Draws in full"), self.unsure.setup
         known = [name for name in names if np.isfinite(said[name]).all()]
         differ = [np.abs(found[name] - said[name]) / setup.limits[name] for name in known]
         used = np.abs(share_of(self.measure, setup, found) - share_of(self.measure, setup, said))

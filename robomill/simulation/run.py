@@ -192,9 +192,12 @@ def configurations(setup: SimulationSetup, path: Toolpath, held: Spin | FloatArr
 def spin_along(setup: SimulationSetup, path: Toolpath) -> Spin | None:
     """The spin (rad) that the arm chooses along a path, which a program that was corrected for it keeps, wherever it
     comes from; None where there is none to choose."""
-    if isinstance(setup.spin, float) or not spin_matters(setup.robot):
-        return None
-    return spin_of(configurations(setup, path))
+    return spin_of(configurations(setup, path)) if chooses_spin(setup) else None
+
+
+def chooses_spin(setup: SimulationSetup) -> bool:
+    """Whether the arm is free to choose how it turns about its tool, and it matters."""
+    return not isinstance(setup.spin, float) and spin_matters(setup.robot)
 
 
 def spin_of(ik: IKResult) -> Spin:
