@@ -20,6 +20,8 @@ from robomill.progress import slices
 SLICES = 36
 #: Instants of one tooth pitch.
 INSTANTS = 120
+#: So far before and after the end of an arc a tooth is looked at, rad.
+BESIDE = 1e-9
 #: Angles of a half turn over which the end face that cuts is averaged.
 HALF = 90
 #: Cuts that are looked at together, to bound the memory.
@@ -61,14 +63,16 @@ class Course:
     @classmethod
     def kinds(cls, conditions: CutConditions, cutter: Cutter, index: IntArray) -> tuple[Self, IntArray]:
         """One cut of each kind among some steps (k,), and the kind (k,) of each: alike are those of which each number
-        is the same to a thousandth of the largest of its own cut."""
+        is the same to a thousandth of the largest of its own cut, and angles to one of their arc."""
         known: dict[bytes, int] = {}
         kind, sectors = np.empty(len(index), dtype=np.int64), 0
         for some in slices(len(index), "Kinds of cuts", CASES):
             cuts = cls.of(conditions, cutter, index[some])
             sectors = cuts.sectors.shape[1]
             each = (cuts.c[:, None], cuts.feed, cuts.arc, cuts.sectors.reshape(len(cuts.c), -1))
-            rows = np.concatenate([_to_ten_bits(x) for x in each], axis=1) + 0.0  # one zero only
+            largest = [np.abs(x).max(axis=1) for x in each]
+            largest[2] = np.diff(cuts.arc, axis=1)[:, 0]
+            rows = np.hstack([_to_ten_bits(x, most) for x, most in zip(each, largest, strict=True)]) + 0.0  # one zero
             kind[some] = [known.setdefault(row.tobytes(), len(known)) for row in rows]
         numbers = np.frombuffer(b"".join(known), dtype=np.float64).reshape(len(known), -1)
         c, feed, arc, rest = np.split(numbers, np.cumsum([1, 2, 2]), axis=1)
@@ -84,10 +88,9 @@ class Course:
             yield end + i * step, end + (i + 1) * step, np.full(step.shape, 0.5 * np.pi), step
 
 
-def _to_ten_bits(rows: FloatArray) -> FloatArray:
-    """Every number of a row (k, n) to ten bits of the largest of that row."""
-    largest = np.abs(rows).max(axis=1, keepdims=True)
-    quantum = np.exp2(np.floor(np.log2(np.where(largest > 0.0, largest, 1.0))) - 9.0)
+def _to_ten_bits(rows: FloatArray, largest: FloatArray) -> FloatArray:
+    """Every number of rows (k, n) to ten bits of the ``largest`` (k,) for its row."""
+    quantum = np.exp2(np.floor(np.log2(np.where(largest > 0.0, largest, 1.0))) - 9.0)[:, None]
     return np.asarray(np.round(rows / quantum) * quantum)
 
 
@@ -102,26 +105,46 @@ def _within(sectors: FloatArray, arc: FloatArray) -> FloatArray:
     return result
 
 
-def force_over_pitch(
-    terms: tuple[EdgeTerm, ...], cutter: Cutter, course: Course, instants: int = INSTANTS
-) -> FloatArray:
-    """Force ON the tool at ``instants`` evenly spread over one tooth pitch, (k, instants, 3) N, with helix lag.
+def evenly(cutter: Cutter) -> FloatArray:
+    """(1, ``INSTANTS``) rad: the angle of a tooth, spread evenly over a pitch: forces there have the mean force."""
+    return np.asarray((np.arange(INSTANTS) + 0.5)[None] / INSTANTS * 2.0 * np.pi / cutter.flutes)
+
+
+def about_ends(cutter: Cutter, course: Course) -> FloatArray:
+    """(k, 8) rad: the angle of a tooth just before and after its edge, at its lower and at its upper end, comes into
+    the material or leaves it. There the force changes by a jump (straight edges) or most quickly, and has extremes that
+    instants spread ``evenly`` pass by."""
+    middles = [0.5 * (low + high) for low, high, *_ in course.slices(cutter)] or [np.zeros((len(course.c), 1))]
+    ends = (course.arc[:, :, None] + np.array([-BESIDE, BESIDE])).reshape(len(course.c), 4)
+    sense, base, lag = _turning(cutter)
+    return np.hstack([sense * (ends - base) + lag * height for height in (middles[0], middles[-1])])
+
+
+def _turning(cutter: Cutter) -> tuple[float, float, float]:
+    """How a tooth turns: the sense of its angle in the cut, which is the second number (rad) at an angle of 0, and how
+    far it lags behind for each metre up its edge, rad/m."""
+    sense = 1.0 if cutter.hand == "right" else -1.0
+    lag = math.tan(cutter.helix_angle) / cutter.radius * (cutter.pull or 1)
+    return sense, 0.0 if sense > 0.0 else np.pi, lag
+
+
+def force_at(terms: tuple[EdgeTerm, ...], cutter: Cutter, course: Course, angle: FloatArray) -> FloatArray:
+    """Force ON the tool (k, t, 3) N when a tooth stands at each ``angle`` (1 or k, t) rad, with helix lag.
 
     The edge lags by z tan(helix angle) / R (constant lead); the teeth of the end face do not. The pattern repeats every
     pitch (teeth alike, no run-out), so its mean is the mean force and its extremes are those of a revolution.
     """
-    pitch, sense = 2.0 * np.pi / cutter.flutes, 1.0 if cutter.hand == "right" else -1.0
-    turn = ((np.arange(instants) + 0.5) / instants + np.arange(cutter.flutes)[:, None]).ravel() * pitch
-    lag = math.tan(cutter.helix_angle) / cutter.radius * (cutter.pull or 1)
-    force = np.zeros((len(course.c), instants, 3))
+    sense, base, lag = _turning(cutter)
+    teeth = np.arange(cutter.flutes)[:, None] * (2.0 * np.pi / cutter.flutes)
+    turn = (angle[:, None] + teeth).reshape(len(angle), -1)
+    force = np.zeros((len(course.c), angle.shape[1], 3))
     sectors = course.sectors
     thick = sectors[..., 2] - sectors[..., 1]
     share = np.divide(sectors[..., 0], thick, out=np.zeros(thick.shape), where=thick > 0.0)
     edges = sector_edges(sectors.shape[1])
 
     def add(phi: FloatArray, sector: IntArray, kappa: FloatArray, engaged: FloatArray) -> None:
-        """A slice whose normal leans kappa (k, 1), so much of which (k, teeth instants) m is engaged as teeth stand at
-        phi."""
+        """A slice whose normal leans kappa (k, 1), so much of which (k, teeth t) m is engaged as teeth stand at phi."""
         inside = (sector < sectors.shape[1]) & (phi > np.pi)
         inside |= (phi >= course.arc[:, :1]) & (phi <= course.arc[:, 1:])
         sine, cosine, s, t = np.sin(phi), np.cos(phi), np.sin(kappa), np.cos(kappa)
@@ -132,11 +155,11 @@ def force_over_pitch(
         for term in terms:
             load = engaged * h**term.exponent
             for n, share in enumerate(push(term, cutter, unit)):
-                force[..., n] += (load * share).reshape(len(phi), cutter.flutes, instants).sum(axis=1)
+                force[..., n] += (load * share).reshape(len(phi), cutter.flutes, -1).sum(axis=1)
 
     def seen(height: FloatArray) -> tuple[FloatArray, IntArray]:
         """Angles of the teeth at a height (k, 1) m, and the sectors they are in."""
-        phi = ((0.0 if sense > 0.0 else np.pi) + sense * (turn - height * lag)) % (2.0 * np.pi)
+        phi = (base + sense * (turn - height * lag)) % (2.0 * np.pi)
         return phi, np.searchsorted(edges, phi, side="right") - 1
 
     for low, high, kappa, ds in course.slices(cutter):

@@ -10,7 +10,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray, IntArray
 from robomill.cutting.conditions import CutConditions, beyond_flutes
-from robomill.cutting.course import CASES, TEETH, Course, force_over_pitch
+from robomill.cutting.course import CASES, INSTANTS, TEETH, Course, about_ends, evenly, force_at
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import FACING, full_slot
 from robomill.cutting.force import ForceModel, ForceSpread
@@ -221,9 +221,7 @@ class ProcessForce(ForceModel):
             course, kind = Course.kinds(conditions, cutter, index)
             order = np.argsort(kind, kind="stable")
             for cases in slices(len(course.c), "Force over a turn", max(TEETH // cutter.flutes, 1)):
-                turns = force_over_pitch(edge_terms(self.row, cutter), cutter, course.at(cases))
-                turns[..., 2] *= self.axial
-                turns -= turns.mean(axis=-2, keepdims=True)
+                turns = self._over_turn(cutter, course.at(cases))
                 rows = order[slice(*np.searchsorted(kind[order], [cases.start, cases.stop]))]
                 for some in np.array_split(rows, len(rows) // CASES + 1):
                     checkpoint()
@@ -234,6 +232,14 @@ class ProcessForce(ForceModel):
                     largest = np.argmax(np.linalg.norm(course_of, axis=-1), axis=-1)
                     spread.at_peak[index[some]] = course_of[np.arange(len(some)), largest]
         return spread
+
+    def _over_turn(self, cutter: Cutter, course: Course) -> FloatArray:
+        """Force (k, t, 3) N, less its mean, at instants of a turn that show its extremes."""
+        ends = about_ends(cutter, course)
+        angle = np.hstack([np.broadcast_to(evenly(cutter), (len(ends), INSTANTS)), ends])
+        turns = force_at(edge_terms(self.row, cutter), cutter, course, angle)
+        turns[..., 2] *= self.axial
+        return np.asarray(turns - turns[:, :INSTANTS].mean(axis=-2, keepdims=True))
 
     def _tooling(self, conditions: CutConditions) -> Tooling:
         return Tooling.of(conditions.tooling or self.cutter, len(conditions))

@@ -8,12 +8,18 @@ import pytest
 from scipy.integrate import quad
 
 from robomill.cutting.conditions import CutConditions
-from robomill.cutting.course import Course, force_over_pitch as over_pitch
+from robomill.cutting.course import Course, force_at
 from robomill.cutting.edge import EdgeTerm, mean_force
 from robomill.cutting.engaged import EngagedPart
 from robomill.cutting.forces.mechanistic import MechanisticForce
 from robomill.cutting.tool import DISH, MOST_FLUTES, PRESSED, Cutter
 from tests.cutting.cutters import CHIP, CUTTERS, MILL, REF190, SLOT
+
+
+def over_pitch(terms, cutter, course, instants):
+    """The course of cuts over a pitch, (k, instants, 3) N."""
+    pitch = 2.0 * np.pi / cutter.flutes
+    return force_at(terms, cutter, course, (np.arange(instants) + 0.5)[None] / instants * pitch)
 
 
 def force_over_pitch(terms, cutter, c, a_p, arc, instants=120):
@@ -40,6 +46,40 @@ def test_peak_of_one_straight_tooth_in_a_slot():
     F_y = F_t * np.sin(phi) - F_r * np.cos(phi)
     assert peak.high[0, 1] == pytest.approx(F_y.max(), rel=2e-3)
     assert np.linalg.norm(peak.at_peak[0]) == pytest.approx(np.hypot(F_t, F_r).max(), rel=2e-3)
+
+
+@pytest.mark.parametrize("helix", [0.0, 0.3, 1.0, 10.0])
+@pytest.mark.parametrize("hand", ["right", "left"])
+@pytest.mark.parametrize("climb", [True, False])
+@pytest.mark.parametrize("a_e", [0.05e-3, 0.1e-3, 0.2e-3, 0.5e-3, 2e-3, 3.7e-3])
+def test_peak_of_a_finishing_pass_is_where_a_tooth_comes_or_goes(a_e, climb, hand, helix):
+    """Brute force: the edges of all teeth as points, at every hundredth of a degree; a straight one cuts its thickest
+    chip as it meets the outside of the part, an instant before or after which there is none."""
+    R, a_p, flutes = 4e-3, 2e-3, 3
+    mill = MILL.replace(flutes=flutes, helix_angle=math.radians(helix), hand=hand, helix=hand)
+    width = math.acos(1.0 - a_e / R)
+    first, last = (np.pi - width, np.pi) if climb == (hand == "right") else (0.0, width)
+    arc = CutConditions.steady(0.03, 200.0, a_p, arc=(first, last))
+    force = MechanisticForce(mill, REF190)
+    peak, mean = force.peak(arc), force.components(arc)[0]
+    turn, heights = np.arange(0.0, 360.0 / flutes, 0.01), (np.arange(100) + 0.5) * a_p / 100
+    sense, course = (1.0 if hand == "right" else -1.0), np.zeros((len(turn), 3))
+    for tooth in range(flutes):
+        lagging = np.radians(turn[:, None] + 360.0 / flutes * tooth) - heights * math.tan(mill.helix_angle) / R
+        phi = (lagging if sense > 0 else np.pi - lagging) % (2 * np.pi)
+        h, db = CHIP * np.sin(phi), np.where((phi >= first) & (phi <= last), a_p / 100, 0.0)
+        F_t, F_r, F_a = (
+            (K * h + edge) * db
+            for K, edge in ((REF190.Ktc, REF190.Kte), (REF190.Krc, REF190.Kre), (REF190.Kac, REF190.Kae))
+        )
+        course[:, 0] += (-sense * F_t * np.cos(phi) - F_r * np.sin(phi)).sum(axis=1)
+        course[:, 1] += (sense * F_t * np.sin(phi) - F_r * np.cos(phi)).sum(axis=1)
+        course[:, 2] -= F_a.sum(axis=1) if helix else 0.0  # a straight edge pulls nowhere
+    size = np.linalg.norm(course, axis=1).max()
+    np.testing.assert_allclose(mean, course.mean(axis=0), atol=0.01 * size)
+    assert np.linalg.norm(peak.at_peak[0]) == pytest.approx(size, rel=0.02)
+    np.testing.assert_allclose(peak.high[0], course.max(axis=0), atol=0.02 * size)
+    np.testing.assert_allclose(peak.low[0], course.min(axis=0), atol=0.02 * size)
 
 
 def test_peak_is_at_least_the_mean_and_helix_smooths_it():
