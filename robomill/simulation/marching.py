@@ -1,5 +1,6 @@
 """A coupled run: each step is solved for its deflection, cut where it stands, and the next meets what is left."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from robomill.arrays import FloatArray
 from robomill.compliance.deflection import displacement
 from robomill.cutting.conditions import CutConditions
+from robomill.cutting.engaged import sinks
 from robomill.cutting.force import force_on_tool
 from robomill.cutting.unjudged import Unjudged
 from robomill.progress import checkpoint
@@ -107,10 +109,12 @@ class _Walk:
 
         seen: dict[bytes, tuple[FloatArray, FloatArray, FloatArray]] = {}
 
+        fed = self._fed(i)
+
         def meets(delta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
             if (key := delta.tobytes()) not in seen:
                 shift = to_part(np.nan_to_num(delta))
-                row, sectors = self.march.meet(i, p[i - 1] + shift, p[i] + shift)
+                row, sectors = self.march.meet(i, p[i - 1] + shift, p[i] + shift, fed and fed(shift))
                 seen[key] = row, sectors, pushed(row, sectors)
             return seen[key]
 
@@ -124,7 +128,32 @@ class _Walk:
             row = sum((weight * row for (_, weight), (row, *_) in zip(found.mix, met)), start=np.zeros(len(row)))
             F = pushed(row, sectors)
         self.moved[i] = np.nan_to_num(displacement(bent.C[i], F) + bent.offset[i])
-        if not bent.path.cutting[i - 1]:  # a rapid arrives where the cut begins
+        if not bent.path.cutting[i - 1] and fed is None:  # a rapid arrives where the cut begins
             self.moved[i - 1] = self.moved[i]
         self.march.cut(i, p[i - 1] + to_part(self.moved[i - 1]), p[i] + to_part(self.moved[i]))
         return found, row, sectors
+
+    def _fed(self, i: int) -> Callable[[FloatArray], tuple[FloatArray, float]] | None:
+        """Of a step that is told to go down with an end that cuts: how it really goes (3,), for a unit of the feed, and
+        how steeply its end sinks, pushed off by (3,) m in {W} where it ends. None of others, which go as they are told.
+        """
+        bent = self.bent
+        path, told = bent.path, bent.told
+        assert told.tooling is not None
+        goes = path.p if bent.led is None else bent.led.meant
+        length = float(np.linalg.norm(goes[i] - goes[i - 1]))
+        ends = told.tooling.each("flat_radius")[i] > 0.0 or told.tooling.drills[i]
+        if not (ends and sinks(told.along[i]) > 0.0 and length > 0.0 and bent.setup.force.follows_cut):
+            return None
+        k = path.k[i]
+        way = (goes[i] - goes[i - 1]) / length if bent.led is None else bent.led.way[i]
+        across = way - (way @ k) * k
+        start = path.p[i - 1] + bent.setup.to_part(np.nan_to_num(self.moved[i - 1] if path.cutting[i - 1] else bent.offset[i - 1]))
+
+        def fed(shift: FloatArray) -> tuple[FloatArray, float]:
+            fall = float((start - path.p[i] - shift) @ k) / length
+            v = across - fall * k
+            slope = fall / max(float(np.linalg.norm(across)), 1e-9)
+            return v, float(sinks(-slope / np.hypot(1.0, slope)))
+
+        return fed

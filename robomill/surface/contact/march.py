@@ -281,19 +281,24 @@ class March:
         ends = np.flatnonzero(self._stops[n] & np.append(self._begins, True)[1:][n])
         return int(n.start + 1 + ends[0]) if len(ends) else min(n.stop, len(self.steps))
 
-    def meet(self, i: int, a: FloatArray, b: FloatArray) -> tuple[FloatArray, np.ndarray]:
-        """What step ``i`` meets on the way from a (3,) to b (3,) m: its row (8 n_e + 7,) and sectors; cuts nothing."""
-        rows, sectors = self._one(i, np.concatenate([a, b]), (True, False))
+    def meet(
+        self, i: int, a: FloatArray, b: FloatArray, fed: tuple[FloatArray, float] | None = None
+    ) -> tuple[FloatArray, np.ndarray]:
+        """What step ``i`` meets on the way from a (3,) to b (3,) m: its row (8 n_e + 7,) and sectors; cuts nothing.
+        ``fed``: how it goes (3,), for a unit of the feed it is told, and how steeply its end sinks, if otherwise."""
+        rows, sectors = self._one(i, np.concatenate([a, b]), (True, False), fed)
         return rows[0], sectors[0]
 
     def cut(self, i: int, a: FloatArray, b: FloatArray) -> None:
         """Cut step ``i`` from a (3,) to b (3,) m; every step is cut once, in the order of the path."""
         self._one(i, np.concatenate([a, b]), (False, True))
 
-    def _one(self, i: int, ends: FloatArray, do: tuple[bool, bool]) -> tuple[FloatArray, np.ndarray]:
+    def _one(
+        self, i: int, ends: FloatArray, do: tuple[bool, bool], fed: tuple[FloatArray, float] | None = None
+    ) -> tuple[FloatArray, np.ndarray]:
         n = self._number[[i]]
         alone = np.ones(1, dtype=bool)
-        return self._march(self._stepwise, n, ends[None], (n + 1, alone, alone), do)
+        return self._march(self._stepwise, n, ends[None], (n + 1, alone, alone), do, fed)
 
     def _march(
         self,
@@ -302,6 +307,7 @@ class March:
         ends: FloatArray,
         runs: tuple[IntArray, BoolArray, BoolArray],
         do: tuple[bool, bool],
+        fed: tuple[FloatArray, float] | None = None,
     ) -> tuple[FloatArray, np.ndarray]:
         from robomill.surface.contact.division_kernels import REST
         from robomill.surface.contact.march_kernels import Steps, as_halves, march
@@ -313,11 +319,11 @@ class March:
         steps = Steps(
             np.ascontiguousarray(ends),
             tips,
-            self._feed[n],
+            self._feed[n] if fed is None else fed[0][None],
             self._axes[0][n],
             self._heading[n],
             self._turns[n],
-            self._sinks[n],
+            self._sinks[n] if fed is None else np.array([fed[1]]),
             runs[0],
             runs[1].astype(np.int64),
             runs[2].astype(np.int64),
