@@ -22,6 +22,7 @@ RESTART = 12  # evaluations after which Broyden's matrix is begun anew from the 
 TURNS = 8  # of the way on which a bracket is halved
 COUPLING = "coupling"
 LONGEST = 0.5e-3  # m: no correction goes further at once
+SURE = 0.02 * TOLERANCE  # m: so near to a root on a line nobody looks further
 NARROW = 0.1e-9  # m: to that a jump is found; beside it g may change a thousand times as fast as the tool's place
 CLOSE, NEAR = 0.5 * TOLERANCE, 16.0 * TOLERANCE  # m: so far off are forces of which shares are taken, last and first
 AROUND = np.array([*product((-1.0, 0.0, 1.0), repeat=3), *product((-0.3, 0.3), repeat=3)])
@@ -196,24 +197,49 @@ def _by_shares(g: Push, x: FloatArray, far: float, turns: int) -> Settled:
 
 
 def _halved(g: Push, start: FloatArray, way: FloatArray) -> tuple[Settled, FloatArray, FloatArray]:
-    """The place on a straight way (3,) m from ``start`` where g falls behind, and where its two sides push to."""
+    """The place on a straight way (3,) m from ``start`` where g falls behind, and where its two sides push to.
+
+    By interpolation, truncation and projection (Oliveira and Takahashi 2020): where g goes on it closes in as fast as
+    secants do, and where it jumps as fast as by halving, but for one look.
+    """
     length = float(np.linalg.norm(way))
-    along, low, high = way / length, 0.0, 1.0
+    along, low, high = way / length, 0.0, length
     at_low, at_high, count = g(start), g(start + way), 2
-    while (high - low) * length > NARROW and count < MOST:
-        middle = 0.5 * (low + high)
-        there = g(start + middle * way)
-        count += 1
-        if (there - start) @ along > middle * length:
-            low, at_low = middle, there
+    over_low, over_high = float((at_low - start) @ along), float((at_high - start) @ along) - length
+    room = NARROW * 2.0 ** np.ceil(np.log2(max(length / NARROW, 1.0)))  # twice the way, at most: a look to spare
+    while high - low > NARROW and count < MOST:
+        x = _between((low, over_low), (high, over_high), room, length)
+        there = g(start + x * along)
+        over = float((there - start) @ along) - x
+        count, room = count + 1, 0.5 * room
+        if abs(over) <= SURE:
+            place = start + x * along
+            rest = float(np.abs(there - place).max())
+            return Settled(place, rest, count, float("nan"), ((place, 1.0),)), there, there
+        if over > 0.0:
+            low, at_low, over_low = x, there, over
         else:
-            high, at_high = middle, there
-    x = start + 0.5 * (low + high) * way
+            high, at_high, over_high = x, there, over
+    x = start + 0.5 * (low + high) * along
     apart = float((at_low - at_high) @ along)
     weight = float(np.clip((x - at_high) @ along / apart, 0.0, 1.0)) if apart > 0.0 else 1.0
     pushed = weight * at_low + (1.0 - weight) * at_high
-    mix = ((start + low * way, weight), (start + high * way, 1.0 - weight))
+    mix = ((start + low * along, weight), (start + high * along, 1.0 - weight))
     return Settled(x, float(np.abs(pushed - x).max()), count, float("nan"), mix), at_low, at_high
+
+
+def _between(low: tuple[float, float], high: tuple[float, float], room: float, length: float) -> float:
+    """Where to look between two ends, each its place (m) and how far g leads beyond it (m): where a straight line
+    through both is nothing, drawn a little to the middle, and so near to that that half the ``room`` (m) is enough for
+    what is left; in the middle where it leads out."""
+    (a, over), (b, under) = low, high
+    middle, wide = 0.5 * (a + b), b - a
+    if not over > 0.0 > under:
+        return middle
+    to_middle = middle - (a + wide * over / (over - under))
+    drawn = middle - to_middle + np.copysign(min(0.2 * wide * wide / length, abs(to_middle)), to_middle)
+    radius = max(room - 0.5 * wide, 0.0)
+    return float(np.clip(drawn, middle - radius, middle + radius))
 
 
 @dataclass(frozen=True, eq=False)

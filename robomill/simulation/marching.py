@@ -1,7 +1,8 @@
 """A coupled run: each step is solved for its deflection, cut where it stands, and the next meets what is left."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -62,9 +63,10 @@ def march_coupled(bent: Bent, one_pass: FloatArray) -> Coupled:
     """March the path with every step where its own force bends it to; ``one_pass`` (m, 3) m is the answer without."""
     path, told = bent.path, bent.told
     march = through_stock(bent.setup, path, told, bent.led)
-    walk = _Walk(bent, march, np.zeros((len(path), 3)))
+    walk = _Walk(bent, march, np.zeros((len(path), 3)), told.sinks.copy())
     rows, sectors, settled = walk.every_step()
     found = engagement(march.exponents, rows, sectors)
+    told = replace(told, steep=walk.steep)
     conditions = met_conditions(told, found)
     F = bent.force(conditions, bent.R_MF)
     open_ = np.zeros(len(path), dtype=bool)
@@ -80,11 +82,13 @@ def march_coupled(bent: Bent, one_pass: FloatArray) -> Coupled:
 
 @dataclass(frozen=True, eq=False)
 class _Walk:
-    """The steps of a march one after the other; ``moved`` (m, 3) m in {M} is where each sample went."""
+    """The steps of a march one after the other; ``moved`` (m, 3) m in {M} is where each sample went, ``steep`` (m,) how
+    its end really ``sinks`` there."""
 
     bent: Bent
     march: March
     moved: FloatArray
+    steep: FloatArray
 
     def every_step(self) -> tuple[FloatArray, FloatArray, dict[int, Settled]]:
         """Rows and sectors of what each step meets, and how it was settled."""
@@ -109,12 +113,12 @@ class _Walk:
 
         seen: dict[bytes, tuple[FloatArray, FloatArray, FloatArray]] = {}
 
-        fed = self._fed(i)
+        goes = self._way_down(i)
 
         def meets(delta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
             if (key := delta.tobytes()) not in seen:
                 shift = to_part(np.nan_to_num(delta))
-                row, sectors = self.march.meet(i, p[i - 1] + shift, p[i] + shift, fed and fed(shift))
+                row, sectors = self.march.meet(i, p[i - 1] + shift, p[i] + shift, goes and goes.to(p[i] + shift))
                 seen[key] = row, sectors, pushed(row, sectors)
             return seen[key]
 
@@ -128,32 +132,46 @@ class _Walk:
             row = sum((weight * row for (_, weight), (row, *_) in zip(found.mix, met)), start=np.zeros(len(row)))
             F = pushed(row, sectors)
         self.moved[i] = np.nan_to_num(displacement(bent.C[i], F) + bent.offset[i])
-        if not bent.path.cutting[i - 1] and fed is None:  # a rapid arrives where the cut begins
+        if goes is not None:
+            self.steep[i] = goes.to(p[i] + to_part(found.x))[1]
+        elif not bent.path.cutting[i - 1]:  # a rapid arrives where the cut begins
             self.moved[i - 1] = self.moved[i]
         self.march.cut(i, p[i - 1] + to_part(self.moved[i - 1]), p[i] + to_part(self.moved[i]))
         return found, row, sectors
 
-    def _fed(self, i: int) -> Callable[[FloatArray], tuple[FloatArray, float]] | None:
-        """Of a step that is told to go down with an end that cuts: how it really goes (3,), for a unit of the feed, and
-        how steeply its end sinks, pushed off by (3,) m in {W} where it ends. None of others, which go as they are told.
-        """
-        bent = self.bent
-        path, told = bent.path, bent.told
+    def _way_down(self, i: int) -> WayDown | None:
+        """How step ``i`` goes down, if it is told to with an end that cuts; else it goes as it is told to."""
+        bent, told = self.bent, self.bent.told
         assert told.tooling is not None
-        goes = path.p if bent.led is None else bent.led.meant
+        goes = bent.path.p if bent.led is None else bent.led.meant
         length = float(np.linalg.norm(goes[i] - goes[i - 1]))
         ends = told.tooling.each("flat_radius")[i] > 0.0 or told.tooling.drills[i]
-        if not (ends and sinks(told.along[i]) > 0.0 and length > 0.0 and bent.setup.force.follows_cut):
+        if not (bent.setup.force.follows_cut and ends and sinks(told.along[i]) > 0.0 and length > 0.0):
             return None
-        k = path.k[i]
         way = (goes[i] - goes[i - 1]) / length if bent.led is None else bent.led.way[i]
-        across = way - (way @ k) * k
-        start = path.p[i - 1] + bent.setup.to_part(np.nan_to_num(self.moved[i - 1] if path.cutting[i - 1] else bent.offset[i - 1]))
+        before = self.moved[i - 1] if bent.path.cutting[i - 1] else bent.offset[i - 1]  # after a rapid nothing pushes
+        return WayDown(bent.path.p[i - 1] + bent.setup.to_part(np.nan_to_num(before)), bent.path.k[i], way, length)
 
-        def fed(shift: FloatArray) -> tuple[FloatArray, float]:
-            fall = float((start - path.p[i] - shift) @ k) / length
-            v = across - fall * k
-            slope = fall / max(float(np.linalg.norm(across)), 1e-9)
-            return v, float(sinks(-slope / np.hypot(1.0, slope)))
 
-        return fed
+@dataclass(frozen=True, eq=False)
+class WayDown:
+    """The way of a tip down along its axis, as it really goes: from ``start`` (3,) m, with an axis ``k`` (3,), on a
+    step of this ``length`` (m) that is told to go along a unit ``way`` (3,).
+
+    The end of a tool cuts what it sinks by. On its way down an arm is pushed up the more the deeper it is in, so that
+    it sinks by less than it is told to until its force has grown, which takes some millimetres of a ramp. A chip as
+    thick as it is told at once would make the force a step, on which the tool would stand at one height for long.
+    """
+
+    start: FloatArray
+    k: FloatArray
+    way: FloatArray
+    length: float
+
+    def to(self, tip: FloatArray) -> tuple[FloatArray, float]:
+        """To a ``tip`` (3,) m: how far it goes (3,) for each length that it is told to, and how steeply its end
+        ``sinks``. Beside the axis it goes as it is told."""
+        fall = float((self.start - tip) @ self.k) / self.length
+        across = self.way - (self.way @ self.k) * self.k
+        slope = np.hypot(fall, np.linalg.norm(across))
+        return across - fall * self.k, float(sinks(-fall / slope)) if fall > 0.0 else 0.0
