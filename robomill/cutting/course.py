@@ -69,13 +69,15 @@ class Course:
         for some in slices(len(index), "Kinds of cuts", CASES):
             cuts = cls.of(conditions, cutter, index[some])
             sectors = cuts.sectors.shape[1]
-            each = (cuts.c[:, None], cuts.feed, cuts.arc, cuts.sectors.reshape(len(cuts.c), -1))
+            left = np.abs(cuts.arc - [0.0, np.pi])  # of the half turn: nothing stays nothing
+            each = (cuts.c[:, None], cuts.feed, left, cuts.sectors.reshape(len(cuts.c), -1))
             largest = [np.abs(x).max(axis=1) for x in each]
             largest[2] = np.diff(cuts.arc, axis=1)[:, 0]
             rows = np.hstack([_to_ten_bits(x, most) for x, most in zip(each, largest, strict=True)]) + 0.0  # one zero
             kind[some] = [known.setdefault(row.tobytes(), len(known)) for row in rows]
         numbers = np.frombuffer(b"".join(known), dtype=np.float64).reshape(len(known), -1)
-        c, feed, arc, rest = np.split(numbers, np.cumsum([1, 2, 2]), axis=1)
+        c, feed, left, rest = np.split(numbers, np.cumsum([1, 2, 2]), axis=1)
+        arc = np.column_stack([left[:, 0], np.pi - left[:, 1]])
         return cls(c[:, 0], feed, arc, rest.reshape(-1, sectors, 4)), kind
 
     def slices(self, cutter: Cutter) -> Iterator[tuple[FloatArray, FloatArray, FloatArray, FloatArray]]:
@@ -114,10 +116,10 @@ def about_ends(cutter: Cutter, course: Course) -> FloatArray:
     """(k, 8) rad: the angle of a tooth just before and after its edge, at its lower and at its upper end, comes into
     the material or leaves it. There the force changes by a jump (straight edges) or most quickly, and has extremes that
     instants spread ``evenly`` pass by."""
-    middles = [0.5 * (low + high) for low, high, *_ in course.slices(cutter)] or [np.zeros((len(course.c), 1))]
+    heights = [each for low, high, *_ in course.slices(cutter) for each in (low, high)] or [0.0 * course.c[:, None]]
     ends = (course.arc[:, :, None] + np.array([-BESIDE, BESIDE])).reshape(len(course.c), 4)
     sense, base, lag = _turning(cutter)
-    return np.hstack([sense * (ends - base) + lag * height for height in (middles[0], middles[-1])])
+    return np.hstack([sense * (ends - base) + lag * height for height in (heights[0], heights[-1])])
 
 
 def _turning(cutter: Cutter) -> tuple[float, float, float]:

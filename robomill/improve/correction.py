@@ -90,7 +90,7 @@ def correct(setup: SimulationSetup, first: SimulationResult, components: tuple[s
     P, seeking = directions(first, components), _Seeking.begin(len(wanted))
     if {"normal", "axial"} <= set(components):  # where a plunge ends no step may be left, whichever way the cut goes on
         P[places.then[places.then >= 0]] = np.eye(3)
-    result = first
+    result = first if not setup.coupling else along(setup.replace(coupling=False), wanted, spin=spin_of(first.ik))
     change: list[float] = []
     while True:
         checkpoint(min(len(change) / 6.0, 0.95), "Correcting the path")
