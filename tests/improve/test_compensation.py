@@ -369,6 +369,23 @@ def test_a_full_circle_becomes_some_arcs_that_lie_where_they_are_meant() -> None
     assert np.linalg.norm(meant[:, None] - nearest, axis=2).min(axis=1).max() < 0.5e-6
 
 
+def test_an_arc_that_ends_steeply_is_corrected_along_its_curve() -> None:
+    """In the plane of the tool, 75 degrees up and down at its ends: its last third was measured against the chord."""
+    radius, half, low = 10e-3, 9.659e-3, -4.588e-3
+    lines = ("G21 G90", "S12000 M3", "G0 X-60 Y0 Z5", "G0 Z-2", "G1 X-9.659 F1200", "G18 G3 X9.659 Z-2 I9.659 K-2.588")
+    text = "\n".join([*lines, "G17 G1 X80", "G0 Z5", "M2", ""])
+    setup = rm.load_setup(SLOT).replace(source=rm.GCodeSource(text), force=rm.PathForce(feed=-40, feed_normal=120))
+    found = rm.compensate(setup)
+    p = found.led.path.p
+    on_arc = (np.abs(p[:, 0]) < half - 1e-5) & found.led.path.cutting
+    assert np.hypot(p[on_arc, 0], p[on_arc, 2] - low) == pytest.approx(radius, abs=3e-6)
+    tip, run = tip_of(setup, found.text)
+    curve = run.path.cutting & (np.abs(tip[:, 0]) < half) & (tip[:, 2] > -1.5e-3)
+    assert np.abs(np.hypot(tip[curve, 0], tip[curve, 2] - low) - radius).max() < 6e-6
+    assert np.abs(tip[curve, 1]).max() < 6e-6
+    assert found.after.max < 6e-6
+
+
 def test_paths_that_are_no_program_are_written_as_one() -> None:
     setup = rm.load_setup(SLOT)
     path = rm.Toolpath.from_points(p_mm=[[-50, 0, -2], [50, 0, -2]], feed_mm_min=1800)
