@@ -177,6 +177,18 @@ def test_a_ramp_into_a_level_cut_is_cut_to_its_depth_up_to_its_end() -> None:
     assert np.abs(y[on_ramp | on_level]).max() < 0.02 * found.before.max
 
 
+def test_a_ramp_is_corrected_where_the_level_cut_begins_with_a_short_step() -> None:
+    """Shorter than the tool is pushed along it, as on a circle at the end of a helix: correcting that there, too, sent
+    the tool back, and on its next step down by as much as the ramp pushes it up: 1.06 mm too deep, and refused."""
+    text = "G21 G90\nS12000 M3\nG0 X-20 Y0 Z1\nG1 X0 Z-3 F600\nX0.1\nX20\nG0 Z20\nM2\n"
+    found = rm.compensate(rm.load_setup(SLOT / "setup_process.toml").replace(source=rm.GCodeSource(text)))
+    assert found.after.max < 0.012 * found.before.max
+    level = found.led.path.cutting & (found.led.path.p[:, 0] > 0.0)
+    tip, run = tip_of(found.setup, found.text)
+    assert np.abs(found.led.delta[level][:, 2]).max() < 10e-6
+    assert tip[run.path.cutting & (run.path.p[:, 0] > 0.5e-3), 2] == pytest.approx(-3e-3, abs=10e-6)
+
+
 def test_at_the_corners_of_a_zigzag_nothing_is_cut_deeper_than_elsewhere() -> None:
     """Where the tool just leaves a wall, the push ends at once: it is not sent down against it there."""
     text = "G0 X-20 Y-8 Z10\nG0 Z-2\nG1 X20 F600\nY-4\nX-20\nY0\nX20\nG0 Z20\nM2\n"
