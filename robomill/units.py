@@ -99,6 +99,7 @@ UNITS: dict[str, Unit] = {
 
 SI_NAMES = {
     "1e-7 rad/(N m)": "rad/(N m)",
+    "1e-9 m/N": "m/N",
     "mm": "m",
     "deg": "rad",
     "mm/min": "m/s",

@@ -90,6 +90,7 @@ WORDS: dict[str, dict[str, str]] = {
     },
     "identify": {
         "C_theta": "By joint, rad/(N m) (m/N where it slides); null where the tests do not move the joint.",
+        "C_theta_units": "The unit of each.",
         "stderr": "Standard error of each, of the fit alone.",
         "ci95": "Interval of 95 % of each, with the model's own error.",
         "correlation": "Of all parameters with each other.",
@@ -285,6 +286,7 @@ WORDS: dict[str, dict[str, str]] = {
         "sentence": "The answer in words.",
         "stiffness_ratio": "How many times as stiff each joint is to be.",
         "C_theta": "The compliance of each joint then, rad/(N m); m/N where it slides.",
+        "C_theta_units": "The unit of each.",
         "cost": "Sum of the binary logarithms of the ratios: 1 is one joint made twice as stiff.",
         "share": "The share of the tolerance that is used then.",
         "residual": "How far from the least cost the answer may be, and the solver's residuals; null where the errors "

@@ -14,7 +14,7 @@ from robomill.identification.pull.pull_words import load_point, pull_findings, p
 from robomill.identification.result import IdentificationResult
 from robomill.provenance import Finding
 from robomill.robot.model import Robot
-from robomill.units import from_si
+from robomill.units import SI_NAMES, from_si
 
 NAMES = {"force": "load_point", "gauge": "gauge_point"}
 
@@ -40,6 +40,7 @@ def identification_report(result: IdentificationResult) -> dict[str, Any]:
     return {
         "joints": [p.joint for p in result.labels if p.joint is not None],
         "C_theta": plain(result.C_theta),
+        "C_theta_units": [SI_NAMES[p.unit] for p in result.labels if p.joint is not None],
         "stderr": plain(result.stderr),
         "ci95": plain(result.ci95),
         "correlation": plain(result.correlation),

@@ -89,7 +89,7 @@ def correct(setup: SimulationSetup, first: SimulationResult, components: tuple[s
     wanted, places = first.path, Places.along(first)
     P, seeking = directions(first, components), _Seeking.begin(len(wanted))
     if {"normal", "axial"} <= set(components):  # where a plunge ends no step may be left, whichever way the cut goes on
-        P[places.then[places.then >= 0]] = np.eye(3)
+        P[places.ends(first.delta)] = np.eye(3)
     result = first if not setup.coupling else along(setup.replace(coupling=False), wanted, spin=spin_of(first.ik))
     change: list[float] = []
     while True:
@@ -187,6 +187,13 @@ class Places:
         place = np.cumsum(np.append(False, (np.diff(path.p, axis=0) != 0.0).any(axis=1)))
         then, steep = plunges(path, run.conditions)
         return cls(path, place, then, steep, path.cutting & steep & (run.conditions.along > 0.0))
+
+    def ends(self, delta: FloatArray) -> IntArray:
+        """Samples at which a level cut goes on from a way down; not from a ramp where it is not as far to the next one
+        as the tool is pushed, delta (m, 3) m, which then would have to go back."""
+        room = np.append(self.path.step_length[1:], 0.0) > np.linalg.norm(delta, axis=1)
+        then = self.then[self.then >= 0]
+        return np.unique(then[self.steep[self.then >= 0] | room[then]])
 
     def one_each(self, P: FloatArray, d: FloatArray, known: BoolArray) -> FloatArray:
         """c (m, 3): what undoes deflections d (m, 3) m in directions P; at one place one for all that are ``known``

@@ -15,6 +15,7 @@ from robomill.kinematics.transforms import rotation_z, transform
 from robomill.lazy import cached_property
 from robomill.provenance import Finding, Provenance
 from robomill.simulation.judging.verdict_words import Level
+from robomill.simulation.mapped import MAP_SPIN
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup
 from robomill.units import format_many, format_si, from_si, to_si
@@ -230,6 +231,7 @@ def findings(found: Placement, where: Area, result: SimulationResult) -> tuple[F
             "a force that the cut makes would turn with the part."
         )
         said.append(Finding("warning", text, code=IN_ROBOT))
+    said += [note for note in result.notes if note.code == MAP_SPIN]  # another place or yaw is another turn of the tool
     if setup.coupling:
         text = "The map is without the coupling of force and deflection; now, best, median and worst are with it."
         said.append(Finding("info", text, code=COUPLED))

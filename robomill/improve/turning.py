@@ -13,7 +13,7 @@ from robomill.arrays import BoolArray, FloatArray
 from robomill.errors import SetupError
 from robomill.frames import Columns
 from robomill.improve.area import today
-from robomill.improve.judged import check_improvable
+from robomill.improve.judged import check_improvable, check_joints_known
 from robomill.improve.map_check import LONG, agrees
 from robomill.improve.placed import Place, place_of
 from robomill.improve.screening import ASKED, MOST_SAMPLES, Asked, Screen, screen, uncoupled
@@ -123,7 +123,8 @@ def turn(
     Raises
     ------
     SetupError
-        Where nothing is left to turn: arms of up to five axes, and tools that lie along the last axis.
+        Where nothing is left to turn: arms of up to five axes, and tools that lie along the last axis; where a measured
+        map is in force, which holds for one turn.
 
     Notes
     -----
@@ -147,6 +148,7 @@ def turn(
         raise SetupError(
             f"{WHO}: the tool lies along the last axis, which turns it and moves nothing else; nothing is left to turn."
         )
+    check_joints_known(setup, "to turn the spindle")  # a map is that of one turn, and the same at every other
     if measure not in ASKED:
         raise SetupError(f"{WHO}, measure: found {measure!r:.40}; expected {', '.join(ASKED)}.", where="measure")
     most = one_of(RATE_ASKED, rate, rate_deg_mm, SetupError, WHO, default=RATE)

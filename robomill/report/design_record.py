@@ -6,7 +6,7 @@ from robomill.improve.box_design import BoxDesign
 from robomill.improve.design import Design
 from robomill.report.records import of_setup, shown
 from robomill.simulation.result import SimulationResult
-from robomill.units import format_number, format_significant, format_value
+from robomill.units import SI_NAMES, format_number, format_significant, format_value
 
 
 def design_record(found: Design) -> dict[str, Any]:
@@ -24,6 +24,7 @@ def design_record(found: Design) -> dict[str, Any]:
         sentence=found.sentence,
         stiffness_ratio=shown(found.stiffness_ratio, "1"),
         C_theta=shown(found.C_theta, "1"),
+        C_theta_units=[SI_NAMES[unit] for unit in robot.compliance_units],
         cost=shown(found.cost, "1"),
         share=shown(found.share, "1"),
         residual=shown(found.residual, "1"),
@@ -55,9 +56,10 @@ def design_lines(record: dict[str, Any]) -> list[str]:
 def joint_lines(record: dict[str, Any]) -> list[str]:
     """The answer of a design in a sentence, then joint by joint, and what it costs."""
     lines = [record["sentence"]]
-    for number, ratio, C in zip(record["joints"], record["stiffness_ratio"], record["C_theta"], strict=True):
+    columns = (record[name] for name in ("joints", "stiffness_ratio", "C_theta", "C_theta_units"))
+    for number, ratio, C, unit in zip(*columns, strict=True):
         times, left = format_number(ratio, 3), format_significant(C, 4)
-        lines.append(f"joint {number}   {times:>8} times as stiff   {left} rad/(N m)")
+        lines.append(f"joint {number}   {times:>8} times as stiff   {left} {unit}")
     return [*lines, f"cost      {format_number(record['cost'], 3)} (1 is one joint made twice as stiff)"]
 
 
@@ -77,6 +79,7 @@ def box_record(found: BoxDesign) -> dict[str, Any]:
         "sentence": found.sentence,
         "stiffness_ratio": shown(found.stiffness_ratio, "1"),
         "C_theta": shown(found.C_theta, "1"),
+        "C_theta_units": [SI_NAMES[unit] for unit in robot.compliance_units],
         "cost": shown(found.cost, "1"),
         "residual": shown(found.residual, "1"),
         "before": {"max_deviation_mm": shown(float(found.before.max()), "mm")},

@@ -10,6 +10,7 @@ from robomill.simulation.judging.strays import WORDS
 from robomill.surface.sections.measures import MEASURED
 from robomill.surface.sections.section_law import MEASURES
 from robomill.units import (
+    SI_NAMES,
     format_beside,
     format_limit,
     format_number,
@@ -22,6 +23,7 @@ from robomill.units import (
 )
 
 AXES = "XYZ"
+TURNS, SLIDES = "1e-7 rad/(N m)", "1e-9 m/N"  # what compliances are told in, of joints that turn and that slide
 SHORT = [name for name, of in MEASURED.items() if of.short]
 SECTIONS = {kind: kind if kind != "unknown" else "-" for kind in MEASURES}
 
@@ -227,14 +229,17 @@ def _held(point: dict[str, Any]) -> list[tuple[float, tuple[float, float]]]:
 
 
 def identification_lines(record: dict[str, Any]) -> list[str]:
-    lines = [f"model {record['model']}", "joint   C_theta (1e-7 rad/(N m))   95 % interval"]
-    for joint, value, interval in zip(record["joints"], record["C_theta"], record["ci95"]):
+    lines = [f"model {record['model']}", f"joint   C_theta ({TURNS})   95 % interval"]
+    columns = (record[name] for name in ("joints", "C_theta", "C_theta_units", "ci95"))
+    for joint, value, unit, interval in zip(*columns, strict=True):
+        shows = SLIDES if unit == SI_NAMES[SLIDES] else TURNS
         if value is None:
             lines.append(f"{joint:5d}     not seen")
             continue
-        each = [from_si(float("nan") if v is None else v, "1e-7 rad/(N m)") for v in (value, *interval)]
+        each = [from_si(float("nan") if v is None else v, shows) for v in (value, *interval)]
         shown, low, high = (format_number(v, 3, missing="nan") for v in each)
-        lines.append(f"{joint:5d}   {shown:>10}                 {low:>10} to {high}")
+        slides = "" if shows == TURNS else f"   {shows}: it slides"
+        lines.append(f"{joint:5d}   {shown:>10}                 {low:>10} to {high}{slides}")
     if record["cv_relative_error"] is not None:
         lines.append(
             f"cross-validated error  {format_percent(record['cv_relative_error'], 1)} of the measured displacement"

@@ -77,6 +77,12 @@ class Arm(Tabled):
         return tuple(limit.of_joint(bool(slides)).unit for slides in self.prismatic[self.free])
 
     @cached_property
+    def compliance_units(self) -> tuple[str, ...]:
+        """The unit in which people give the compliance of each free joint."""
+        compliance = quantities(Arm)["C_theta_all"]
+        return tuple(compliance.of_joint(bool(slides)).unit for slides in self.prismatic[self.free])
+
+    @cached_property
     def joint_numbers(self) -> tuple[int, ...]:
         """The 1-based table row of each free joint, for labels."""
         return tuple(int(i) + 1 for i in np.flatnonzero(self.free))

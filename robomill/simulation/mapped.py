@@ -15,6 +15,7 @@ from robomill.units import format_si, to_si
 MOST_TURNED = to_si(2.0, "deg")
 """A map holds for the tool axis it was measured with. Stated, not derived: on the paper's arm 2 degrees change the
 compliance by a few per cent; 30 degrees can change it by times."""
+MAP_SPIN = "map-spin"
 NOTICED = to_si(0.1, "deg")
 MOST_LONGER = to_si(10.0, "mm")
 """A map holds for the tool it was measured with, taken to be the first that cuts. Stated, not derived: on the paper's
@@ -97,7 +98,7 @@ def map_notes(setup: SimulationSetup, path: Toolpath) -> tuple[Finding, ...]:
             "The measured map holds for the turn about the tool axis it was taken with, which is not in it; on this "
             "arm that turn changes the compliance: measure and mill with the same one."
         )
-        notes.append(Finding("warning", text, code="map-spin"))
+        notes.append(Finding("warning", text, code=MAP_SPIN))
     largest = float(turned(setup, path).max())
     if NOTICED < largest <= MOST_TURNED:
         off = format_si(largest, "deg", 1)

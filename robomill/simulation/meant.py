@@ -122,10 +122,15 @@ def _bottoms(p: FloatArray, path: Toolpath, wanted: Toolpath, some: IntArray, al
     ends = np.array([wanted.p[end] for _, end in there])
     for begin, end in here:
         n = int(np.argmin(np.linalg.norm(ends - p[end], axis=1)))
-        top, bottom = wanted.p[there[n][0] - 1], ends[n]
+        first, last = there[n]
+        top, bottom = wanted.p[first - 1], wanted.p[last]
         depth = float(np.linalg.norm(bottom - top))
         if np.linalg.norm(bottom - p[end]) > FARTHEST or depth == 0.0:
             continue
+        between = wanted.p[first:last]
+        line = (np.broadcast_to(each, between.shape) for each in (top, bottom))
+        if nearest_on(between, *line)[1].max(initial=0.0) > LINK:
+            continue  # the steep end of an arc or a helix: its samples stand where they belong along it
         back = np.linalg.norm(path.p[begin : end + 1] - path.p[end], axis=1)
         p[begin : end + 1] = bottom + np.minimum(back / depth, 1.0)[:, None] * (top - bottom)
 

@@ -177,6 +177,18 @@ def test_a_ramp_into_a_level_cut_is_cut_to_its_depth_up_to_its_end() -> None:
     assert np.abs(y[on_ramp | on_level]).max() < 0.02 * found.before.max
 
 
+def test_a_ramp_is_corrected_where_the_level_cut_begins_with_a_short_step() -> None:
+    """Shorter than the tool is pushed along it, as on a circle at the end of a helix: correcting that there, too, sent
+    the tool back, and on its next step down by as much as the ramp pushes it up: 1.06 mm too deep, and refused."""
+    text = "G21 G90\nS12000 M3\nG0 X-20 Y0 Z1\nG1 X0 Z-3 F600\nX0.1\nX20\nG0 Z20\nM2\n"
+    found = rm.compensate(rm.load_setup(SLOT / "setup_process.toml").replace(source=rm.GCodeSource(text)))
+    assert found.after.max < 0.012 * found.before.max
+    level = found.led.path.cutting & (found.led.path.p[:, 0] > 0.0)
+    tip, run = tip_of(found.setup, found.text)
+    assert np.abs(found.led.delta[level][:, 2]).max() < 10e-6
+    assert tip[run.path.cutting & (run.path.p[:, 0] > 0.5e-3), 2] == pytest.approx(-3e-3, abs=10e-6)
+
+
 def test_at_the_corners_of_a_zigzag_nothing_is_cut_deeper_than_elsewhere() -> None:
     """Where the tool just leaves a wall, the push ends at once: it is not sent down against it there."""
     text = "G0 X-20 Y-8 Z10\nG0 Z-2\nG1 X20 F600\nY-4\nX-20\nY0\nX20\nG0 Z20\nM2\n"
@@ -367,6 +379,23 @@ def test_a_full_circle_becomes_some_arcs_that_lie_where_they_are_meant() -> None
     share = np.einsum("mni,ni->mn", meant[:, None] - read[:-1], way) / np.maximum((way**2).sum(axis=1), 1e-30)
     nearest = read[:-1] + np.clip(share, 0.0, 1.0)[..., None] * way
     assert np.linalg.norm(meant[:, None] - nearest, axis=2).min(axis=1).max() < 0.5e-6
+
+
+def test_an_arc_that_ends_steeply_is_corrected_along_its_curve() -> None:
+    """In the plane of the tool, 75 degrees up and down at its ends: its last third was measured against the chord."""
+    radius, half, low = 10e-3, 9.659e-3, -4.588e-3
+    lines = ("G21 G90", "S12000 M3", "G0 X-60 Y0 Z5", "G0 Z-2", "G1 X-9.659 F1200", "G18 G3 X9.659 Z-2 I9.659 K-2.588")
+    text = "\n".join([*lines, "G17 G1 X80", "G0 Z5", "M2", ""])
+    setup = rm.load_setup(SLOT).replace(source=rm.GCodeSource(text), force=rm.PathForce(feed=-40, feed_normal=120))
+    found = rm.compensate(setup)
+    p = found.led.path.p
+    on_arc = (np.abs(p[:, 0]) < half - 1e-5) & found.led.path.cutting
+    assert np.hypot(p[on_arc, 0], p[on_arc, 2] - low) == pytest.approx(radius, abs=3e-6)
+    tip, run = tip_of(setup, found.text)
+    curve = run.path.cutting & (np.abs(tip[:, 0]) < half) & (tip[:, 2] > -1.5e-3)
+    assert np.abs(np.hypot(tip[curve, 0], tip[curve, 2] - low) - radius).max() < 6e-6
+    assert np.abs(tip[curve, 1]).max() < 6e-6
+    assert found.after.max < 6e-6
 
 
 def test_paths_that_are_no_program_are_written_as_one() -> None:

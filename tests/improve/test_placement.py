@@ -286,3 +286,10 @@ def test_places_outside_a_measured_map_are_not_allowed() -> None:
     found = place(setup, x_mm=(-900, 900), y_mm=(-2000, -1100), candidates=60)
     assert found.allowed < found.reached
     assert found.best.known
+
+
+def test_places_of_a_measured_map_say_that_it_holds_for_one_turn_of_the_tool() -> None:
+    setup = rm.load_setup(SLOT / "setup_measured_map.toml").replace(robot=rm.load_robot("fanuc_r2000ic"), step_mm=10)
+    found = place(setup, x_mm=(-20, 20), y_mm=(-1320, -1280), yaw_deg=(0, 30), candidates=20)
+    assert [each.code for each in found.findings].count("map-spin") == 1
+    assert "map-spin" not in [each.code for each in place(slot(), x_mm=(-20, 20), candidates=9).findings]

@@ -44,6 +44,18 @@ def test_the_map_is_what_runs_at_a_constant_spin_say(found: Turning) -> None:
         assert found.deviation[judged, k] == pytest.approx(run.deviation[judged], rel=1e-6)
 
 
+def test_a_measured_map_says_nothing_of_another_turn_of_the_tool() -> None:
+    """It gives one number at every spin, where the joints of this arm give others: no spin is the best by it."""
+    setup = rm.load_setup("paper_flute/setup_measured_map").replace(robot=rm.load_robot("fanuc_r2000ic"), step_mm=10)
+    mapped, joints = setup, setup.replace(measured_map=None)
+    for cut, differs in ((mapped, False), (joints, True)):
+        runs = [rm.simulate(cut.replace(spin=spin)) for spin in (0.0, 1.0)]
+        assert all(run.reached.all() for run in runs)
+        assert (abs(runs[0].max_deviation / runs[1].max_deviation - 1.0) > 0.05) is differs
+    with pytest.raises(SetupError, match="measured map"):
+        turn(setup)
+
+
 def test_no_constant_spin_is_better_than_the_best(found: Turning) -> None:
     shares = [rm.simulate(circle(spin=float(angle))).verdict.share for angle in found.angle[::6]]
     assert found.constant.share <= min(shares) + 1e-9

@@ -23,7 +23,7 @@ from robomill.identification.load_test import LoadTests
 from robomill.io.columns import Columns
 from robomill.io.measured.load_test_columns import ANGLE, GAUGES, ROTVEC, WORLD, axes, directions, group, head_of
 from robomill.kinematics.transforms import invert, rotation_about, rotation_x, rotation_y, rotation_z, transform
-from robomill.provenance import Finding
+from robomill.provenance import UNSTATED, Finding
 from robomill.robot.model import Robot
 from robomill.units import format_si
 
@@ -135,7 +135,8 @@ def _of_frame(table: Columns, robot: Robot | None, T: FloatArray, how: str) -> d
         )
     if frame == "flange":
         T = T @ _needed(table, robot, "poses of the flange").T_tool
-    base = "" if robot is None or "base" not in robot.provenance else f"; {robot.provenance['base'].source}"
+    stated = None if robot is None else robot.provenance.get("base")
+    base = "" if stated in (None, UNSTATED) else f"; {stated.source}"
     text = f"Poses are of the {frame} with {how}{base}."
     return {"x_M": world_of(T), "findings": (Finding("info", text, table.place.head, code="pose-frame"),)}
 

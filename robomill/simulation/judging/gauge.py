@@ -192,17 +192,20 @@ def _walls(at: Places) -> tuple[Readings, IntArray, IntArray]:
     ahead, aside = _dot(rims.u, at.feed[q]), _dot(rims.u, at.left_of[q])
     upright = at.upright(q, rims.height)
     slanting = np.sqrt(1.0 - upright**2)
-    own = at.d[q, 0] * ahead + at.d[q, 1] * aside - at.d[q, 2] * slanting / upright
+    lean = np.where(steep & ~at.bottoms, at.across / np.where(steep, at.along, 1.0), 0.0)
+    level_d = at.d[:, 0] - at.d[:, 2] * lean  # what a steep move is off along itself moves no wall
+    own = level_d[q] * ahead + at.d[q, 1] * aside - at.d[q, 2] * slanting / upright
     # Beside a corner one looks along the wall of another pass: it is off by what that one has carried it, no more.
     carried = np.where(left > told, np.maximum(np.maximum(carried, own), 0.0), carried)
     error = np.where(np.abs(carried) < np.abs(left - told), carried, left - told)
     error = np.where(np.isnan(left) | steep[q] | begin[q] | end[q], own, error)
-    level, up = np.hypot(at.d[:, 0], at.d[:, 1]).max(), np.abs(at.d[:, 2]).max()
+    level, up = np.hypot(level_d, at.d[:, 1]).max(), np.abs(at.d[:, 2]).max()
     most = level * upright + up * slanting  # no wall moves further
     error = np.clip(_normal(at, rims, error, upright), -most, most)
     reached = at.c[q] + (rims.radius + np.nan_to_num(left) + BESIDE)[:, None] * rims.u
     lost = _nothing_stands(at, rims, (left - told > most + SAME) | ~at.stands(q, reached, rims.height))
-    way = rims.sign[:, None] * np.column_stack([ahead * upright, aside * upright, -slanting])
+    axial = -slanting - lean[q] * ahead * upright
+    way = rims.sign[:, None] * np.column_stack([ahead * upright, aside * upright, axial])
     own = own * upright * rims.sign
     where = (_place(at, rims), rims.u, -rims.sign)
     readings = Readings(at.i[q], error * rims.sign, rims.length, rims.deep, own, at.in_cut(q, way), *where)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 
@@ -40,18 +41,24 @@ def sources(setup: SimulationSetup, length: str = "mm") -> list[Source]:
 
 def robot_sources(robot: Robot, given: Mapping[str, Provenance], length: str = "mm") -> list[Source]:
     """The rows of a robot: of each block what is ``given`` of it."""
-    compliances = format_many(robot.C_theta, "1e-7 rad/(N m)", 2)
     name = "Edited" if robot.compliance_set == USER_SET else robot.compliance_set.replace("_", " ").capitalize()
     of_set = given.get(block_in_force(robot), BY_HAND)
     lengths = ", ".join(format_significant(from_si(v, length)) for v in robot_lengths(robot).values())
     geometry = given.get("geometry", UNSTATED)
     return [
-        Source("Joint compliances", f"{name}: {compliances}", of_set),
+        Source("Joint compliances", f"{name}: {_compliances(robot)}", of_set),
         Source("D-H table", f"{robot.rows} joints, {robot.convention}", geometry),
         Source("Link lengths", f"{lengths} {unit_label(length)}", given.get("lengths", geometry)),
         Source("Joint limits", f"{robot.n} ranges", given.get("limits", UNSTATED)),
         Source("Tool in the last axis", _tool(robot, length), given.get("tool", UNSTATED)),
     ]
+
+
+def _compliances(robot: Robot) -> str:
+    """Those of the free joints, the unit once for neighbours that share it: a joint that slides has its own."""
+    each = zip(robot.compliance_units, robot.C_theta, strict=True)
+    alike = groupby(each, key=lambda one: one[0])
+    return ", ".join(format_many([C for _, C in some], unit, 2) for unit, some in alike)
 
 
 def robot_lengths(robot: Robot) -> dict[str, float]:

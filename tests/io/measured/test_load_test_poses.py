@@ -342,3 +342,16 @@ def test_a_pulley_a_millimetre_from_its_hook_still_says_where_to():
         else:
             with pytest.raises(LoadTestError, match="the pulley is where the hook is"):
                 read_load_tests(csv(line, *HEAD), ARMS["kuka_kr270"][1])
+
+
+@pytest.mark.parametrize(("stated", "said"), [(True, True), (False, False)])
+def test_where_the_base_stands_is_said_of_poses_only_where_the_robots_file_says_it(stated, said):
+    """It ended in "; not stated", which reads as if the angles were not, though the head declares them."""
+    robot = ARMS["kuka_kr270"][1]
+    if not stated:
+        robot = robot.replace(provenance={**robot.provenance, "base": rm.Provenance("user", "not stated")})
+    columns = {**pose("kuka_kr270"), **vector("F", [30.0, 40.0, -20.0], "_N"), **vector("d", [0.1, 0.2, 0.1], "_mm")}
+    tests = read_load_tests(csv(columns, "frame: flange", "angles: kuka"), robot)
+    text = next(each.message for each in tests.findings if each.code == "pose-frame")
+    assert (";" in text) is said
+    assert "not stated" not in text

@@ -282,6 +282,22 @@ def test_a_hole_is_judged_by_where_it_stands():
     assert bent.verdict.level == "unjudged"  # a force stated along the path says nothing of a plunge
 
 
+@pytest.mark.parametrize("steep", [62.0, 75.0, 88.0])
+def test_what_a_steep_climb_is_off_along_its_own_way_moves_no_wall(steep):
+    """What a cutter covers that is moved along its straight way is the same, but for its ends."""
+    rise, way = np.radians(steep), 9.0 / np.sin(np.radians(steep))
+    there = f"X{way * np.cos(rise):.6f} Z1"
+    result = run("G0 X-40 Y0 Z5", "G0 Z-8", "G1 X0 F1000", f"G1 {there}", "G0 Z5")
+    climb = result.conditions.along > 0.5
+    assert climb.any()
+    for back, left in ((0.2e-3, 0.0), (0.2e-3, 0.05e-3)):
+        moved = pushed(result, -back * np.cos(rise) * climb, left * climb, -back * np.sin(rise) * climb)
+        walls = gauge(moved).walls
+        of = walls.error[climb[walls.sample]]
+        assert len(of) > 0
+        assert np.abs(of).max() == pytest.approx(left, abs=1e-6)
+
+
 def test_a_tilted_slot_is_judged_in_the_tools_own_axes():
     """A slot 2 mm deep with the tool leaning 10 degrees along the feed."""
     lines = ["G0 X-40 Y0 Z8 B10", "G0 Z-2", "G1 X20 F1800"]
