@@ -10,7 +10,7 @@ import robomill as rm
 from robomill.simulation.edges import AT_EDGE, edge_notes
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
-from tests.simulation.judging.test_gauge import SETUP
+from tests.simulation.judging.pushed_runs import SETUP
 
 MILL = rm.Cutter("flat", diameter_mm=8, flutes=3)
 HALF = np.array([26e-3, 16e-3])  # of the pocket's contour: with the cutter's radius 60 x 40 mm are cut

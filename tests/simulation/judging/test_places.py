@@ -12,7 +12,7 @@ import trimesh
 from robomill.cutting.tool import Cutter
 from robomill.simulation.judging.places import APART, BETWEEN, Places, _chosen, _parted, places
 from robomill.surface.stock import Stock
-from tests.simulation.judging.test_gauge import BLOCK, pushed, run
+from tests.simulation.judging.pushed_runs import BLOCK, pushed, run
 
 PROGRAM = [  # line 2 and what follows
     *["G0 X-40 Y0 Z5", "G0 Z-2", "G1 X0 F1800", "G1 Y10", "G0 Z5", "G0 X12 Y-12"],
