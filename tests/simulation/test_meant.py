@@ -6,10 +6,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import shapely
 
 import robomill as rm
 from robomill.errors import ToolpathError
-from robomill.simulation.meant import LEFT_OUT, TURNED, _aligned, _stepped, linked, meant, straight_on
+from robomill.simulation.meant import LEFT_OUT, TURNED, _aligned, _nearest, _stepped, linked, meant, straight_on
 from robomill.toolpath.sampling import resample
 
 STEP = 1e-3
@@ -149,6 +150,33 @@ def test_of_all_ways_to_belong_the_one_that_costs_least_is_taken(seed: int) -> N
     at = _aligned(q, t, p, u)
     found = sum(left_out(i, at[i - 1], at[i]) + own(i, at[i]) for i in range(1, len(q)))
     assert found == pytest.approx(least[-1], abs=1e-11)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_place_is_the_nearest_on_the_two_steps_about_its_sample(seed: int) -> None:
+    """On a path that bends by up to 20 degrees a sample, begin and end too, as another library measures lines."""
+    rng, m = np.random.default_rng(seed), 30
+    way = np.exp(1j * np.cumsum(rng.uniform(-0.35, 0.35, m)))
+    z = (30.0 - 40.0j) * 1e-3 * way[0] + np.append(0.0, np.cumsum(rng.uniform(0.3e-3, 1e-3, m - 1) * way[1:]))
+    at = np.arange(m)
+    q = z + 1e-4 * (rng.normal(size=m) + 1j * rng.normal(size=m))
+    p, q, t = (np.column_stack([each.real, each.imag, 0.0 * each.real]) for each in (z, q, way))
+    s = np.append(0.0, np.cumsum(np.abs(np.diff(z))))
+    found = _nearest(q, t, p, at)
+    for i in range(m):
+        first = max(i - 1, 0)
+        about = shapely.LineString(p[first : i + 2, :2])
+        assert found[i] == pytest.approx(s[first] + about.project(shapely.Point(q[i, :2])), abs=1e-10)
+
+
+@pytest.mark.parametrize(("angle", "on_it"), [(0.0, True), (55.0, True), (65.0, False), (90.0, False), (180.0, False)])
+def test_what_goes_another_way_than_a_step_stays_at_its_sample(angle: float, on_it: bool) -> None:
+    """Beside the middle of a step: on it where it goes less than 60 degrees another way, whatever is nearer."""
+    p = np.column_stack([np.arange(4) * 1e-3, np.zeros(4), np.zeros(4)])
+    t = np.array([[np.cos(np.radians(angle)), np.sin(np.radians(angle)), 0.0]])
+    for x, at in ((1.4e-3, 1), (1.4e-3, 2)):
+        found = _nearest(np.array([[x, 0.1e-3, 0.0]]), t, p, np.array([at]))
+        assert found[0] == pytest.approx(x if on_it else at * 1e-3, abs=1e-12)
 
 
 def test_a_ring_cut_twice_belongs_turn_by_turn() -> None:
