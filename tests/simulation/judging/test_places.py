@@ -185,6 +185,15 @@ def test_of_many_samples_those_in_even_steps_are_chosen_and_those_that_are_most_
     assert np.diff(s[sorted(set(even) - set(worst))]).min() >= s[-1] / (most - 1) - 2e-3
 
 
+def test_all_are_taken_where_there_are_no_more_than_asked_for(made):
+    judged = np.flatnonzero(made.judged).tolist()
+    for most in (None, len(judged), len(judged) + 1):
+        at = places(made, most)
+        assert at.i[~at.between].tolist() == judged
+    few = places(made, len(judged) - 1)
+    assert set(few.i[~few.between].tolist()) < set(judged)
+
+
 def test_moves_are_taken_in_parts_of_one_length():
     """Whole ones to the last digit, others from division to division of their own way."""
     rng = np.random.default_rng(4)
