@@ -108,6 +108,33 @@ def test_of_two_steps_that_know_it_the_nearer_one_has_made_it() -> None:
     assert found.found.all()
 
 
+@pytest.mark.parametrize(("ahead", "nearest"), [(0.9, 4), (0.7, 13)])
+def test_the_nearer_one_is_told_by_the_place_on_it_and_not_by_its_ends(ahead: float, nearest: int) -> None:
+    """0.2 of the way from sample 3 to 4, 4.8 mm behind sample 8, or 4 mm and that share ahead of it."""
+    run, normal = passes(3), np.array([0.0, 1.0, 0.0])
+    run.delta[:, 1] = -0.1e-3
+    run.delta[4:12, 1], run.delta[12, 1] = 0.15e-3, 0.15e-3
+    run.delta[3, 1] = 0.1e-3 - 0.05e-3 * 0.2 / 0.8
+    run.delta[13, 1] = 0.15e-3 - 0.05e-3 / ahead
+    run.delta[:3, 1] = run.delta[3, 1]
+    run.delta[14:, 1] = run.delta[13, 1]
+    run.delta_in_cut = np.einsum("mij,mj->mi", run.R_MF, run.delta)
+    found = made(reading(run, 8, normal, 0.1e-3), run)
+    assert found.by.tolist() == [[nearest - 1, nearest]]
+
+
+def test_a_step_on_which_the_tool_is_off_alike_all_along_made_it_at_its_end() -> None:
+    """Beside the very last sample, too, after which there is no step."""
+    run, normal = passes(3), np.array([0.0, 1.0, 0.0])
+    run.delta[:, 1], last = -0.1e-3, 3 * N - 1
+    run.delta[last - 4 : last - 2, 1] = 0.1e-3
+    run.delta_in_cut = np.einsum("mij,mj->mi", run.R_MF, run.delta)
+    found = made(reading(run, last, normal, 0.1e-3), run)
+    assert found.found.all()
+    assert found.by.tolist() in [[[last - 4, last - 3]], [[last - 3, last - 2]]]
+    assert goes_as(found, run, normal, last - 3, 1.0) or goes_as(found, run, normal, last - 2, 0.0)
+
+
 @pytest.mark.parametrize("why", ["too far", "in the air", "unknown", "none"])
 def test_what_no_step_within_a_diameter_explains_goes_with_its_own_sample(why: str) -> None:
     run, normal, beside = passes(3), np.array([0.0, 1.0, 0.0]), 8
