@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from robomill.simulation.coupling import AROUND, LONGEST, MOST, NARROW, TOLERANCE, _by_bracket, settle
+from robomill.simulation.coupling import AROUND, LONGEST, MOST, NARROW, TOLERANCE, _bounds, _by_bracket, settle
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -255,3 +255,34 @@ def test_how_often_the_force_was_asked_for_is_counted(seed):
     assert low + high == pytest.approx(1.0)
     both = (low * bends(there) + high * bends(here)) @ along / push
     assert both == pytest.approx(wall, abs=2e-3)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_bounds_of_a_height_lie_on_either_side_of_it(seed):
+    """A push along an axis that falls with the height, or jumps there: from ends beside it or around it."""
+    rng = np.random.default_rng(seed)
+    axis, at = np.linalg.qr(rng.normal(size=(3, 3)))[0][0], rng.uniform(-400e-6, 400e-6)
+    aside = rng.normal(size=3) * 50e-6
+    aside -= (aside @ axis) * axis
+    asked = []
+
+    def over(height):
+        return 300e-6 * (1.0 if height < at else -1.0) if seed % 2 else 0.7 * (at - height)
+
+    def g(x):
+        asked.append(float(x @ axis))
+        return rng.normal(size=3) @ (np.eye(3) - np.outer(axis, axis)) * 1e-6 + (x @ axis + over(x @ axis)) * axis
+
+    ends = tuple(np.sort(at + rng.uniform(-200e-6, 200e-6, 2)))
+    low, high, count = _bounds(g, aside, axis, ends)
+    assert low < at <= high
+    assert over(low) > 0.0 > over(high)
+    assert count == len(asked)
+    assert max(np.abs(np.subtract([low, high], ends))) <= 2.0 * max(np.abs(at - np.array(ends)).max(), TOLERANCE)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_there_are_no_bounds_where_a_height_is_further_than_a_tool_is_corrected_at_once(way):
+    for far, found in ((0.4 * LONGEST, True), (4.0 * LONGEST, False)):
+        low, high, _ = _bounds(lambda x, far=far: way * far * UP, np.zeros(3), UP, (-1e-6, 1e-6))
+        assert bool(low < high) == found

@@ -9,6 +9,7 @@ import pytest
 
 import robomill as rm
 from robomill.cutting.tool import Cutter
+from robomill.simulation.judging.gauge import ACROSS, RIM
 from robomill.surface.stock import Stock
 from tests.simulation.judging.pushed_runs import R, pushed, run
 
@@ -149,3 +150,8 @@ def test_a_ball_along_the_edge_is_off_normal_to_what_it_leaves(y, push):
     assert found.max() < errors.max() + 5e-6
     size = 5e-6 + 0.35 * (errors.max() - errors.min())  # read at a few places, not at every one
     assert abs(np.abs(found).max() - np.abs(errors).max()) < size
+
+
+def test_a_floor_is_looked_for_as_far_to_both_sides_within_what_is_cut_flat():
+    assert sorted(ACROSS) == sorted(-share for share in ACROSS)
+    assert max(map(abs, (*ACROSS, RIM))) < 1.0
