@@ -91,7 +91,7 @@ def test_where_the_tool_is_outside_it_has_the_correction_of_the_next_sample_that
     outside = np.array([1, 1, 0, 0, 0, 1, 1, 1, 1, 0, 0], dtype=bool)
     c = np.column_stack([np.arange(11.0), np.zeros(11), np.zeros(11)])
     found = places.held_outside(c.copy(), pushed, outside)[:, 0]
-    # a rapid, before the push, pushed twice, in the stock, behind the last; a rapid, its end; before, in the stock, at it
+    # a rapid, before the push, pushed twice, in the stock, behind it; a rapid, its end; before, in the stock, at it
     assert found.tolist() == [0, 2, 2, 3, 4, 3, 6, 10, 10, 9, 10]
 
 
