@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -10,7 +11,7 @@ import pytest
 import shapely
 
 from robomill.arrays import FloatArray
-from robomill.simulation.judging.gauge import SLENDER, Rims, _leads, _normal, _thin
+from robomill.simulation.judging.gauge import SLENDER, Rims, _leads, _normal, _roots, _thin
 
 
 @dataclass
@@ -98,3 +99,68 @@ def test_a_wall_is_thin_where_another_pass_comes_by_over_at_least_its_height(
     assert np.flatnonzero(found).tolist() == thin
     np.testing.assert_allclose(asked["behind"][:, 1], 4e-3 + SLENDER * deep)
     assert not asked["radius"].any()
+
+
+ASIDE = 0.2e-3
+
+
+def groove(told: Callable[[FloatArray], FloatArray], wider: float = 0.0, left: float = 0.0, up: float = 0.0) -> object:
+    """One place in the groove of a cone of 90 degrees that has gone aside: ``told`` says how high the floors are told
+    to be across it, and ``left`` (m) how high the floor is that is left where its tip really went."""
+    rows = np.zeros((1, 3))
+    x, y, z = np.eye(3)[:, None]
+
+    def floors(lines: FloatArray, offset: FloatArray, slack: FloatArray) -> tuple[FloatArray]:
+        return (told(offset),)
+
+    return SimpleNamespace(
+        number=lambda name: np.array([{"conical": 4e-3, "flat_radius": 0.0}[name]]),
+        steep=np.array([False]),
+        wider=lambda q, height: np.full(len(q), wider),
+        profile=lambda q, offset: offset,
+        incline=np.zeros(1),
+        slope=np.zeros(1),
+        i=np.zeros(1, dtype=np.int64),
+        c=rows,
+        d=np.array([[0.0, ASIDE, up]]),
+        feed=x,
+        left_of=y,
+        axial=z,
+        result=SimpleNamespace(path=Path(np.array([1e-3]))),
+        outline=SimpleNamespace(floors=floors, left_over=lambda lines: np.array([left])),
+    )
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("begin", [1.0, 1.1, 1.3, 1.6, 1.74, 2.1])
+def test_a_root_is_none_where_somebody_cuts_below_it_up_to_twice_as_far_as_it_has_gone(
+    begin: float, side: float
+) -> None:
+    """A strip on one side, a quarter as wide as that, where both sides are lower than the groove's own."""
+
+    def told(y: FloatArray) -> FloatArray:
+        strip = (side * y > (begin - 1e-9) * ASIDE) & (side * y < (begin + 0.26) * ASIDE)
+        return np.where(strip, -20e-6, 0.5 * np.abs(y))
+
+    roots, lost = _roots(groove(told), np.array([ASIDE]))  # type: ignore[arg-type]
+    assert (roots[0], lost[0]) == (begin > 2.0, False)
+
+
+@pytest.mark.parametrize("wider", [0.0, 0.3, 0.6])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("over", [8e-6, -8e-6])
+def test_a_root_is_one_where_nobody_cuts_below_one_of_its_sides(wider: float, side: float, over: float) -> None:
+    """Of a cone that sinks: its groove is an ellipse's across, flatter than itself; the other side is cut away."""
+    own = ASIDE * np.sqrt(1.0 - wider**2)
+
+    def told(y: FloatArray) -> FloatArray:
+        return np.where(side * y > 0.0, own + over, -50e-6)
+
+    roots, _ = _roots(groove(told, wider), np.array([ASIDE]))  # type: ignore[arg-type]
+    assert roots[0] == (over > 0.0)
+
+
+@pytest.mark.parametrize(("left", "lost"), [(-0.12e-3, True), (-0.1e-3, False), (-0.05e-3, False)])
+def test_a_root_is_lost_where_another_pass_has_cut_below_where_its_tip_went(left: float, lost: bool) -> None:
+    roots, gone = _roots(groove(np.abs, left=left, up=-0.1e-3), np.array([ASIDE]))  # type: ignore[arg-type]
+    assert (roots[0], gone[0]) == (True, lost)

@@ -103,6 +103,15 @@ def test_a_corner_is_one_for_the_sample_before_it_and_after_it(made):
     np.testing.assert_allclose(at.turn[q[~np.isin(i, corner)]], 0.0, atol=1e-9)
 
 
+def test_towards_a_rapid_or_between_two_a_path_has_no_corner():
+    """A slot that ends in the block, and the rapid to one side and back above it, which turns by 90 degrees."""
+    made = run("G0 X-40 Y10 Z5", "G0 Y0", "G0 Z-2", "G1 X0 F1800", "G0 Y4", "G0 X-20 Y10")
+    at = places(made)
+    on_slot = made.path.block[at.i] == 5
+    assert on_slot.sum() > 10
+    np.testing.assert_allclose(at.turn[on_slot], 0.0, atol=1e-9)
+
+
 @pytest.mark.parametrize("lean", [0, 15])
 def test_how_high_the_stock_stands_is_measured_along_the_tool(lean):
     """And how far the tip is below a plate that it cuts through."""
