@@ -216,6 +216,21 @@ def test_moves_are_taken_in_parts_of_one_length():
     assert next(found, None) is None
 
 
+@pytest.mark.parametrize(("kind", "parted"), [("ball", True), ("flat", False)])
+def test_a_move_on_which_a_nose_is_lifted_is_taken_in_parts_of_four_micrometres_each(kind, parted):
+    """At most 32; however high it stands already. What stays at one height is whole, and so is all of a flat end."""
+    made = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X20 F1800", cutter=Cutter(kind, 8e-3))
+    lift = np.random.default_rng(1).choice([0.0, 3e-6, 9e-6, 0.3e-3], len(made.path))
+    made = pushed(made, left=0.1e-3, up=0.5e-3 + np.cumsum(lift))
+    expected = []
+    for i in np.flatnonzero(made.removes):
+        height = [made.p_machined[j, 2] - made.path.p[j, 2] for j in (i - 1, i)]
+        rise = abs(height[1] - height[0])
+        expected += [1 if rise <= 4e-6 or not parted else min(int(np.ceil(rise / 4e-6)), 32)]
+    assert len(places(made).outline.told) == sum(expected)
+    assert (max(expected) == 32) == parted
+
+
 @pytest.mark.parametrize("to", [(20, 8), (20, 3), (3, -16), (-20, 8)])
 @pytest.mark.parametrize(("kind", "lean"), [("ball", 20), ("ball", 0), ("bull", 20)])
 def test_a_ball_that_leans_is_taken_upright_over_its_lowest_point(kind, lean, to):
