@@ -104,14 +104,16 @@ def test_a_wall_is_thin_where_another_pass_comes_by_over_at_least_its_height(
 ASIDE = 0.2e-3
 
 
-def groove(told: Callable[[FloatArray], FloatArray], wider: float = 0.0, left: float = 0.0, up: float = 0.0) -> object:
+def groove(
+    told: Callable[[FloatArray, FloatArray], FloatArray], wider: float = 0.0, left: float = 0.0, up: float = 0.0
+) -> object:
     """One place in the groove of a cone of 90 degrees that has gone aside: ``told`` says how high the floors are told
-    to be across it, and ``left`` (m) how high the floor is that is left where its tip really went."""
+    to be across it and ahead, and ``left`` (m) how high the floor is that is left where its tip really went."""
     rows = np.zeros((1, 3))
     x, y, z = np.eye(3)[:, None]
 
     def floors(lines: FloatArray, offset: FloatArray, slack: FloatArray) -> tuple[FloatArray]:
-        return (told(offset),)
+        return (told(offset, lines[:, 0]),)
 
     return SimpleNamespace(
         number=lambda name: np.array([{"conical": 4e-3, "flat_radius": 0.0}[name]]),
@@ -138,7 +140,7 @@ def test_a_root_is_none_where_somebody_cuts_below_it_up_to_twice_as_far_as_it_ha
 ) -> None:
     """A strip on one side, a quarter as wide as that, where both sides are lower than the groove's own."""
 
-    def told(y: FloatArray) -> FloatArray:
+    def told(y: FloatArray, x: FloatArray) -> FloatArray:
         strip = (side * y > (begin - 1e-9) * ASIDE) & (side * y < (begin + 0.26) * ASIDE)
         return np.where(strip, -20e-6, 0.5 * np.abs(y))
 
@@ -153,7 +155,7 @@ def test_a_root_is_one_where_nobody_cuts_below_one_of_its_sides(wider: float, si
     """Of a cone that sinks: its groove is an ellipse's across, flatter than itself; the other side is cut away."""
     own = ASIDE * np.sqrt(1.0 - wider**2)
 
-    def told(y: FloatArray) -> FloatArray:
+    def told(y: FloatArray, x: FloatArray) -> FloatArray:
         return np.where(side * y > 0.0, own + over, -50e-6)
 
     roots, _ = _roots(groove(told, wider), np.array([ASIDE]))  # type: ignore[arg-type]
@@ -162,5 +164,20 @@ def test_a_root_is_one_where_nobody_cuts_below_one_of_its_sides(wider: float, si
 
 @pytest.mark.parametrize(("left", "lost"), [(-0.12e-3, True), (-0.1e-3, False), (-0.05e-3, False)])
 def test_a_root_is_lost_where_another_pass_has_cut_below_where_its_tip_went(left: float, lost: bool) -> None:
-    roots, gone = _roots(groove(np.abs, left=left, up=-0.1e-3), np.array([ASIDE]))  # type: ignore[arg-type]
+    roots, gone = _roots(groove(lambda y, x: np.abs(y), left=left, up=-0.1e-3), np.array([ASIDE]))  # type: ignore[arg-type]
     assert (roots[0], gone[0]) == (True, lost)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(("far", "lost"), [(0.6, True), (-0.6, True), (0.2, True), (1.3, False), (-1.3, False)])
+def test_a_root_between_others_is_lost_where_they_are_not_alike_as_far_ahead_as_it_has_gone(
+    far: float, side: float, lost: bool
+) -> None:
+    """On one side somebody cuts below it, by more from a place on ahead of it, or behind it."""
+
+    def told(y: FloatArray, x: FloatArray) -> FloatArray:
+        beyond = (side * y < 0.0) & (x * np.sign(far) > abs(far) * ASIDE)
+        return np.where(beyond, -60e-6, np.where(side * y > 0.0, 0.5 * ASIDE, -40e-6))
+
+    roots, gone = _roots(groove(told), np.array([ASIDE]))  # type: ignore[arg-type]
+    assert (roots[0], gone[0]) == (False, lost)
