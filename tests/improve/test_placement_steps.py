@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from robomill.improve.area import grid
+from robomill.improve.placed import KEPT_OUT, NO_ROOM, UNREACHED, WHY
 from robomill.improve.placement import STARTS, _Search, _spacing
 
 AXES = (np.arange(4) * 0.1, np.arange(5) * 0.05, np.array([0.01]), np.radians(np.arange(3) * 30.0))
@@ -87,3 +88,31 @@ def test_a_place_is_allowed_that_is_known_with_room_far_from_singular_and_outsid
 ) -> None:
     found = SimpleNamespace(known=known, room=room, det=det)
     assert bool(_Search.allows(search([0.0] * 4, [1.0] * 4), found, np.array([x, 0.0, 0.0, 0.0]))) == allowed  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("seed", "kept"), [(0, 0), (1, 4), (2, 11), (3, 12)])
+def test_of_places_none_of_which_is_allowed_the_nearest_misses_least_and_of_those_has_most_room(
+    seed: int, kept: int
+) -> None:
+    """One in a keep-out box is none of them; and how many there are for which reason is told."""
+    rng = np.random.default_rng(seed)
+    places = np.column_stack([rng.uniform(-1.0, 1.0, (12, 3)), np.zeros(12)])
+    missed, room = rng.integers(0, 3, 12), rng.uniform(-0.5, 0.5, 12)
+    room[5] = np.nan
+    why = np.where(missed > 0, UNREACHED, NO_ROOM)
+    why[rng.permutation(12)[:kept]] = KEPT_OUT
+    asked = []
+
+    def simulated(at: np.ndarray) -> tuple[SimpleNamespace, None]:
+        asked.append(at)
+        return SimpleNamespace(reason="too far", room=0.01), None
+
+    stands = SimpleNamespace(room=room, missed=missed)
+    words = str(_Search._nowhere(SimpleNamespace(simulated=simulated), places, stands, why))  # type: ignore[arg-type]
+    counts = [(code, int((why == code).sum())) for code in (UNREACHED, NO_ROOM, KEPT_OUT)]
+    assert ", ".join(f"{count} {WHY[code]}" for code, count in counts if count) in words
+    open_ = [i for i in range(12) if why[i] != KEPT_OUT]
+    assert len(asked) == bool(open_)
+    if open_:
+        nearest = min(open_, key=lambda i: (missed[i], -room[i] if room[i] == room[i] else 9.0))
+        np.testing.assert_array_equal(asked[0], places[nearest])
