@@ -170,3 +170,20 @@ def test_an_arm_that_chooses_its_posture_has_the_same_in_every_way() -> None:
         own = rm.simulate(each.run.setup.replace(spin="least_motion"))
         free += own.verdict.share != pytest.approx(each.share, rel=1e-3)
     assert free >= 3, "left to itself the arm would have stood otherwise in some"
+
+
+def test_the_table_has_the_numbers_of_every_way_in_units_of_the_shop_floor(advice: rm.Advice) -> None:
+    table = advice.columns()
+    for n, each in enumerate(advice.ways):
+        assert table["way"][n] == each.name
+        assert table["minutes"][n] == pytest.approx(each.seconds / 60.0, nan_ok=True)
+        assert table["removal_cm3_min"][n] == pytest.approx(each.removal_rate * 60e6, nan_ok=True)
+        assert table["used_%"][n] == pytest.approx(each.share / 0.01, nan_ok=True)
+        if each.run is None:
+            assert np.isnan([table[name][n] for name in ("wall_mm", "floor_mm", "max_deviation_mm")]).all()
+            assert table["verdict"][n] == ""
+            continue
+        sizes = [abs(each.run.verdict.wall.value), abs(each.run.verdict.floor.value), each.run.max_deviation]
+        found = [table[name][n] for name in ("wall_mm", "floor_mm", "max_deviation_mm")]
+        assert found == pytest.approx([size / 1e-3 for size in sizes], nan_ok=True)
+        assert table["verdict"][n] == each.run.verdict.level

@@ -91,6 +91,28 @@ def test_a_part_of_a_turn_is_looked_at_from_end_to_end(degrees: int) -> None:
     np.testing.assert_allclose(np.diff(turns), np.diff(turns)[0])
 
 
+@pytest.mark.parametrize(
+    "box",
+    [
+        {"x_mm": (-200, 200), "y_mm": (-1300, -1300)},
+        {"x_mm": (50, 50), "y_mm": (-1400, -1200)},
+        {"x_mm": (-200, 200), "y_mm": (-1400, -1200)},
+        {"x_mm": (-20, 20), "y_mm": (-1900, -1200), "yaw_deg": (-90, 90)},
+        {"x_mm": (0, 0), "y_mm": (-1300, -1300), "z_mm": (0, 100)},
+    ],
+)
+def test_about_as_many_places_are_looked_at_as_are_asked_for_whichever_ways_are_free(box: dict) -> None:
+    """Along what is free from end to end; one place of what is not."""
+    where = area(setup(), box)
+    axes, span = where.axes(300), where.upper - where.lower
+    for axis, low, high in zip(axes, where.lower, where.upper, strict=True):
+        assert (len(axis) > 1) == (high > low)
+        assert (axis[0], axis[-1]) == (pytest.approx(low), pytest.approx(high))
+    count = np.prod([len(axis) for axis in axes])
+    assert count <= 300
+    assert count > 200 or not span[:2].any()
+
+
 @pytest.mark.parametrize("given", [{}, {"keep_out_mm": []}])
 def test_where_nothing_is_kept_out_of_no_place_is_met_not_even_the_robots_foot(given: dict) -> None:
     assert not area(setup(), given).meets(np.zeros((1, 4))).any()

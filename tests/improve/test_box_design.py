@@ -40,6 +40,25 @@ def test_every_reached_point_keeps_the_tolerance_and_the_worst_one_only_just(set
     assert found.residual < 1e-6
 
 
+def test_a_spindle_that_gives_way_adds_what_no_joint_can_take_back(setup: rm.SimulationSetup) -> None:
+    """Across the tool, which is upright: so much times the force in the plan."""
+    grid, give = rm.box_grid(LOWER, UPPER, 0.2), 0.5e-6
+    sprung = setup.replace(springs=(rm.SpindleSpring(lateral_um_N=give * 1e6),))
+    found = rm.design_box(sprung, grid, F, tolerance_mm=0.25)
+    for robot, sizes in ((setup.robot, found.before), (setup.robot.replace(C_theta=found.C_theta), found.after)):
+        expected = []
+        for point in found.points:
+            theta = rm.inverse_kinematics(robot, pose(point)).theta
+            expected.append(np.linalg.norm(rm.cartesian_compliance(robot, theta) @ F + give * F * [1.0, 1.0, 0.0]))
+        np.testing.assert_allclose(sizes, expected, rtol=1e-9)
+    assert found.worst == int(np.argmax(expected))
+    assert max(expected) == pytest.approx(0.25e-3, rel=1e-6)
+    table = found.columns()
+    np.testing.assert_allclose(np.column_stack([table[f"{axis}_mm"] for axis in "xyz"]), found.points * 1e3)
+    np.testing.assert_allclose(table["before_mm"], found.before * 1e3)
+    np.testing.assert_allclose(table["after_mm"], found.after * 1e3)
+
+
 def test_a_thousandth_of_the_force_within_a_thousandth_of_the_tolerance_asks_for_the_same(
     setup: rm.SimulationSetup,
 ) -> None:

@@ -37,3 +37,16 @@ def test_the_verdict_judges_walls_floors_and_what_has_a_tolerance_along_the_feed
     assert along.share == pytest.approx(np.abs(result.delta_in_cut[result.judged, 0]).max() / 1e-6)
     assert judged(result, "tip").share == pytest.approx(result.max_deviation / setup.tolerance)
     assert judged(result, tolerance=1e-3).share == pytest.approx(both.share * 0.3)
+
+
+def test_the_tip_and_the_way_along_the_feed_go_as_they_do() -> None:
+    """By any displacements along feed, feed-normal and axis: all three of them, or the first."""
+    setup = rm.load_setup("paper_flute").replace(step=10e-3, feed_tolerance=0.2e-3)
+    result = rm.simulate(setup)
+    moved = np.random.default_rng(2).normal(size=(len(result.path), 3))
+    tip, all_ = judged(result, "tip"), judged(result)
+    np.testing.assert_allclose(tip.along(moved), moved[result.judged])
+    along = all_.error[-int(result.judged.sum()) :, 0] == result.delta_in_cut[result.judged, 0]
+    assert along.all()
+    np.testing.assert_allclose(all_.along(moved)[-len(along) :, 0], moved[result.judged, 0])
+    np.testing.assert_allclose(all_.tolerance[-len(along) :], 0.2e-3)

@@ -1,6 +1,7 @@
 """Samples and moves of a program, and pieces against the corrections that they stand for."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -109,3 +110,26 @@ def test_samples_come_closer_where_a_cut_begins() -> None:
     assert step[begins].max() < 0.15e-3
     assert step[finer.wanted.cutting & (x > -45e-3)].max() == pytest.approx(1e-3)
     np.testing.assert_array_equal(np.unique(finer.owner), np.unique(moves.owner))
+
+
+def test_where_a_deflection_changes_samples_are_as_close_as_it_changes_by_ten_micrometres(moves: Moves) -> None:
+    """Not closer than a tenth of a millimetre, and not on a rapid; each new one lies on its way, of the same move."""
+    path = moves.wanted
+    own = np.flatnonzero(path.cutting & (moves.owner == 2))
+    delta = np.zeros((len(path), 3))
+    delta[own[3] :, 1] += 35e-6  # four parts
+    delta[own[5] :, 0] -= 9e-6  # none
+    delta[own[7] :, 2] += 1.0  # as many as there is room for
+    delta[np.flatnonzero(~path.cutting)[-1] :, 1] += 1.0
+    fine = moves.finer(SimpleNamespace(delta=delta))  # type: ignore[arg-type]
+    room = len(fine.wanted) - len(path) - 2
+    assert 0.1e-3 - 1e-9 <= path.step_length[own[7]] / room < 0.12e-3
+    for i, parts in ((own[3], 4), (own[7], room)):
+        begin = int(np.argmin(np.abs(fine.wanted.s - path.s[i - 1])))
+        told = path.p[i - 1] + np.outer(np.arange(1, parts + 1) / parts, path.p[i] - path.p[i - 1])
+        np.testing.assert_allclose(fine.wanted.p[begin + 1 : begin + 1 + parts], told, atol=1e-12)
+        assert (fine.owner[begin + 1 : begin + 1 + parts] == 2).all()
+    length = np.linalg.norm(moves.end[2] - moves.end[1])
+    on = fine.wanted.cutting & (fine.owner == 2)
+    np.testing.assert_allclose(fine.share[on], np.abs(fine.wanted.p[on, 0] - moves.end[1][0]) / length, atol=1e-9)
+    assert moves.finer(SimpleNamespace(delta=np.zeros_like(delta))) is moves  # type: ignore[arg-type]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import get_type_hints
 
 import numpy as np
 import pytest
@@ -30,6 +31,13 @@ def test_every_remedy_has_a_code_a_title_and_what_it_makes_of_its_own() -> None:
     for name in ("code", "title", "makes"):
         assert len({getattr(each, name) for each in REMEDIES}) == len(REMEDIES)
     assert remedy_of(NOW) is None
+
+
+def test_what_joins_others_holds_what_they_make() -> None:
+    made = {each.makes for each in REMEDIES}
+    assert any(each.joins for each in REMEDIES)
+    for each in REMEDIES:
+        assert each.joins == bool(made & set(get_type_hints(each.makes).values())), each.code
 
 
 def test_a_corrected_program_is_graded_by_what_is_left_if_stiffness_or_force_is_20_percent_off() -> None:

@@ -180,11 +180,15 @@ def test_the_largest_readings_of_every_direction_of_the_feed_are_looked_at() -> 
 
 
 def test_the_ends_of_a_path_in_every_direction_are_looked_at() -> None:
-    """A star with one tip in each direction of a compass, in complex numbers, and the highest and the lowest."""
+    """A star with one tip in each direction of a compass, in complex numbers, and the highest and the lowest, on
+    the ways back; and where it begins and ends."""
     tips = 1e-3 * np.exp(1j * np.pi / 4.0 * np.arange(8)) * [31, 33, 30, 32, 34, 29, 35, 36]
-    corners = np.column_stack([tips, np.zeros(8)]).ravel()
-    p = np.column_stack([corners.real, corners.imag, np.linspace(-1e-3, -3e-3, 16)])
-    run = rm.simulate(slot().replace(source=rm.Toolpath.from_points(p, v_f=0.02), stock=None))
+    corners = np.column_stack([tips, 0.6 * tips, np.zeros(8)]).ravel()
+    z = np.full(24, -2e-3)
+    z[7], z[13] = -1e-3, -3e-3
+    p = np.column_stack([corners.real, corners.imag, z])
+    below = rm.Stock((-0.05, -0.05, -0.03), (0.05, 0.05, -0.02))  # nothing is cut, so that no reading is looked at
+    run = rm.simulate(slot().replace(source=rm.Toolpath.from_points(p, v_f=0.02), stock=below))
     p, at = run.path.p, screen(run, most=40).at
     assert len(at) < len(p) // 4
     flat = p[:, 0] + 1j * p[:, 1]
@@ -193,3 +197,16 @@ def test_the_ends_of_a_path_in_every_direction_are_looked_at() -> None:
         assert along[at].max() == along.max()
     assert p[at, 2].min() == p[:, 2].min()
     assert p[at, 2].max() == p[:, 2].max()
+    assert {0, len(p) - 1} <= set(at.tolist())
+
+
+def test_the_first_sample_and_the_first_cut_of_every_tool_are_looked_at() -> None:
+    """And every sample of a path that has no more than are asked for."""
+    run = rm.simulate(tools())
+    path, at = run.path, screen(run, most=24).at.tolist()
+    assert len(at) < len(path) // 4
+    for number in (1, 2):
+        own = [i for i in range(len(path)) if path.tool[i] == number]
+        assert own[0] in at
+        assert next(i for i in own if path.cutting[i]) in at
+    np.testing.assert_array_equal(screen(run, most=len(path)).at, np.arange(len(path)))

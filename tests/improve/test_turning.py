@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,9 @@ from random_arms import seven
 import robomill as rm
 from robomill.errors import SetupError
 from robomill.improve.placed import Place, place_of
-from robomill.improve.turning import Turning, turn
+from robomill.improve.turning import Turning, _Turned, turn
+from robomill.kinematics.choice import every
+from robomill.kinematics.decoupled import decoupled
 from robomill.units import to_si
 
 
@@ -211,3 +214,19 @@ def test_a_turning_is_a_value_with_a_table(found: Turning) -> None:
     assert list(frame.columns) == ["way_mm", "spin_deg"]
     assert "turning" in repr(found)
     assert found == turn(circle())
+
+
+@pytest.mark.parametrize("branch", range(8))
+def test_shoulder_and_elbow_stand_as_in_the_run_and_the_wrist_on_both_sides(branch: int) -> None:
+    """Of all eight ways to stand at a pose: the run's own, and the one whose first three joints are the same."""
+    setup = circle()
+    robot, arm = setup.robot, decoupled(setup.robot)
+    T = rm.tool_pose(robot, np.array([[0.3, 0.2, -0.4, 0.5, 0.7, -0.2]]))
+    all_, _ = every(robot, arm, T)
+    run = SimpleNamespace(ik=SimpleNamespace(branch_index=np.array([branch, -1, branch])))
+    theta, _ = _Turned(setup, "tip", 1.0)._standings(SimpleNamespace(reference=run), T)  # type: ignore[arg-type]
+    turned = np.exp(1j * theta[:, 0])
+    assert np.abs(turned - np.exp(1j * all_[0, branch])).max(axis=1).min() < 1e-9
+    assert len(turned) == 2
+    np.testing.assert_allclose(turned[0, :3], turned[1, :3], atol=1e-9)
+    assert np.abs(turned[0] - turned[1]).max() > 0.1

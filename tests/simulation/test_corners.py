@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robomill.simulation.corners import Ways, at_corners
+from robomill.simulation.corners import STEEP, UPRIGHT, Ways, _aside, at_corners
 
 
 def staircase(step: float) -> tuple[np.ndarray, np.ndarray]:
@@ -32,3 +32,38 @@ def test_where_a_leg_ends_it_belongs_to_the_corner(step: float, off: tuple[float
         assert (found[at:] >= corner - 1e-12).all()
     away = np.abs(s[:, None] - [20e-3, 40e-3]).min(axis=1) > 4.5e-3
     np.testing.assert_array_equal(found[away], np.clip(near, 0.0, s[-1])[away])
+
+
+def test_steps_that_go_nowhere_are_no_steps_and_corners_turn_by_ten_degrees_at_least() -> None:
+    """Level legs that turn by 9 and 11 degrees, each with a stop behind it; a plunge, and one that goes on down."""
+    turns, legs, p = [0.0, 9.0, 11.0, -9.0, -11.0], [], [np.zeros(3)]
+    for angle in np.radians(np.cumsum(turns)):
+        legs.append(2e-3 * np.array([np.cos(angle), np.sin(angle), 0.0]))
+        p += [p[-1] + legs[-1], p[-1] + legs[-1]]
+    for leg in ([0.0, 0.0, -1e-3], [0.1e-3, 0.0, -1e-3], [1e-3, 0.0, -0.2e-3]):
+        legs.append(np.array(leg))
+        p.append(p[-1] + legs[-1])
+    found = Ways.of(np.array(p), np.tile([0.0, 0.0, 1.0], (len(p), 1)))
+    np.testing.assert_allclose(found.s, np.cumsum([np.linalg.norm(leg) for leg in legs]))
+    np.testing.assert_allclose(found.p, np.cumsum(legs, axis=0), atol=1e-15)
+    expected = [leg * [1, 1, 0] / np.hypot(*leg[:2]) if np.hypot(*leg[:2]) > STEEP * 1e-3 else leg * 0 for leg in legs]
+    np.testing.assert_allclose(found.way, expected, atol=1e-12)
+    # behind the second leg, the fourth, the fifth, where it plunges, and the plunge, where it goes on across
+    assert found.corners.tolist() == [1, 3, 4, 6]
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.3])
+def test_a_step_costs_what_it_leads_aside_of_its_way_or_all_of_it_against_it(lean: float) -> None:
+    rng, n = np.random.default_rng(3), 40
+    u, v = np.array([np.cos(lean), 0.0, -np.sin(lean)]), np.array([0.0, 1.0, 0.0])
+    angle, size, to = rng.uniform(-np.pi, np.pi, n), rng.uniform(0.1e-3, 1e-3, n), rng.uniform(-np.pi, np.pi, n)
+    across = size[:, None] * (np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v)
+    way = np.cos(to)[:, None] * u + np.sin(to)[:, None] * v
+    way[:5] = 0.0  # straight down: whatever leads across is aside
+    up = rng.uniform(0.0, 20e-3, n)
+    found = _aside(across, up, way)
+    for i in range(n):
+        between = angle[i] - to[i]
+        cost = size[i] * abs(np.sin(between)) if np.cos(between) > 0.0 and i >= 5 else size[i]
+        cost += UPRIGHT * up[i] if i >= 5 and size[i] < 0.1 * up[i] else 0.0
+        assert found[i] == pytest.approx(cost, abs=1e-15)

@@ -10,7 +10,7 @@ import robomill as rm
 from robomill.simulation.edges import AT_EDGE, edge_notes
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
-from tests.simulation.judging.test_gauge import SETUP
+from tests.simulation.judging.pushed_runs import SETUP
 
 MILL = rm.Cutter("flat", diameter_mm=8, flutes=3)
 HALF = np.array([26e-3, 16e-3])  # of the pocket's contour: with the cutter's radius 60 x 40 mm are cut
@@ -92,3 +92,11 @@ def test_no_more_of_a_way_is_said_than_goes_beside_the_block(begin: float, end: 
     (found,) = edge_notes(pocket(0.04), path)
     beside = min(max(begin, end), 55.0) - max(min(begin, end), -55.0)
     assert f"for up to {beside:.1f} mm" in found.message.replace("\u00a0", " ")
+
+
+def test_a_way_past_the_corner_and_back_is_two_ways_along_the_side() -> None:
+    x = np.concatenate([np.arange(-20.0, 71.0, 5.0), np.arange(65.0, -31.0, -5.0)])
+    p = np.column_stack([x, np.full(len(x), 16.0), np.full(len(x), -2.0)])
+    path = rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0.0, *[900.0] * (len(x) - 1)])
+    (found,) = edge_notes(pocket(0.04), path)
+    assert f"for up to {55.0 + 30.0:.1f} mm" in found.message.replace("\u00a0", " ")

@@ -6,13 +6,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import shapely
 
 import robomill as rm
 from robomill.errors import ToolpathError
-from robomill.simulation.meant import LEFT_OUT, TURNED, _aligned, _stepped, linked, meant, straight_on
+from robomill.simulation.meant import _aligned, _nearest, _places, _stepped, linked, meant, straight_on
 from robomill.toolpath.sampling import resample
 
 STEP = 1e-3
+TURNED = LEFT_OUT = 2e-3  # m: what is left out, or turned, counts as being so far off
 
 
 def cut(*points_mm: tuple[float, float]) -> rm.Toolpath:
@@ -151,6 +153,45 @@ def test_of_all_ways_to_belong_the_one_that_costs_least_is_taken(seed: int) -> N
     assert found == pytest.approx(least[-1], abs=1e-11)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_place_is_the_nearest_on_the_two_steps_about_its_sample(seed: int) -> None:
+    """On a path that bends by up to 20 degrees a sample, begin and end too, as another library measures lines."""
+    rng, m = np.random.default_rng(seed), 30
+    way = np.exp(1j * np.cumsum(rng.uniform(-0.35, 0.35, m)))
+    z = (30.0 - 40.0j) * 1e-3 * way[0] + np.append(0.0, np.cumsum(rng.uniform(0.3e-3, 1e-3, m - 1) * way[1:]))
+    at = np.arange(m)
+    q = z + 1e-4 * (rng.normal(size=m) + 1j * rng.normal(size=m))
+    p, q, t = (np.column_stack([each.real, each.imag, 0.0 * each.real]) for each in (z, q, way))
+    s = np.append(0.0, np.cumsum(np.abs(np.diff(z))))
+    found = _nearest(q, t, p, at)
+    for i in range(m):
+        first = max(i - 1, 0)
+        about = shapely.LineString(p[first : i + 2, :2])
+        assert found[i] == pytest.approx(s[first] + about.project(shapely.Point(q[i, :2])), abs=1e-10)
+
+
+@pytest.mark.parametrize(("angle", "on_it"), [(0.0, True), (55.0, True), (65.0, False), (90.0, False), (180.0, False)])
+def test_what_goes_another_way_than_a_step_stays_at_its_sample(angle: float, on_it: bool) -> None:
+    """Beside the middle of a step: on it where it goes less than 60 degrees another way, whatever is nearer."""
+    p = np.column_stack([np.arange(4) * 1e-3, np.zeros(4), np.zeros(4)])
+    t = np.array([[np.cos(np.radians(angle)), np.sin(np.radians(angle)), 0.0]])
+    for x, at in ((1.4e-3, 1), (1.4e-3, 2)):
+        found = _nearest(np.array([[x, 0.1e-3, 0.0]]), t, p, np.array([at]))
+        assert found[0] == pytest.approx(x if on_it else at * 1e-3, abs=1e-12)
+
+
+@pytest.mark.parametrize(("last", "at", "worst"), [(10e-3, 6, 0.4e-3), (7e-3, 9, 3e-3), (9.3e-3, 9, 0.7e-3)])
+def test_what_is_left_out_at_the_end_is_of_the_last_sample(last: float, at: int, worst: float) -> None:
+    """Ten samples beside a line of 10 mm, one of which is 0.4 mm off."""
+    s = np.linspace(0.0, last, 10)
+    p = np.column_stack([np.linspace(0.0, 10e-3, 5), np.zeros(5), np.zeros(5)])
+    q = np.column_stack([s, np.full(10, 0.1e-3), np.zeros(10)])
+    q[6, 1] = 0.4e-3
+    found, far, which = _places(q, p, s)
+    np.testing.assert_allclose(found, q * [1.0, 0.0, 0.0], atol=1e-12)
+    assert (far, which) == (pytest.approx(worst), at)
+
+
 def test_a_ring_cut_twice_belongs_turn_by_turn() -> None:
     angle = np.linspace(0.0, 4.0 * np.pi, 721)
     ring = [(20.0 * np.cos(a), 20.0 * np.sin(a)) for a in angle]
@@ -272,7 +313,7 @@ BENT = [(0, 0), (10, 0), (10, 0), (20, 0.1), (20, 0.1), (30, 9)]
 def test_a_move_of_no_length_goes_straight_on_where_its_two_neighbours_do(
     points: list[tuple[float, float]], rapids: list[int], expected: list[int]
 ) -> None:
-    p = np.array([(x, y, -2.0) for x, y in points]) * 1e-3
+    p = np.array([(x + 200.0, y - 300.0, -2.0) for x, y in points]) * 1e-3
     path = rm.Toolpath.from_points(p, 0.01, cutting=~np.isin(np.arange(len(p)), rapids))
     assert np.flatnonzero(straight_on(path, path)).tolist() == expected
 

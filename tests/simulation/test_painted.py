@@ -113,3 +113,26 @@ def test_each_wall_of_a_terrace_is_painted_with_its_own_error(pocket: Simulation
         beside = middle[:, np.abs(shown.drawn.y - y) < shown.drawn.dx]
         assert beside.size > 50
         assert beside == pytest.approx(left, abs=1e-9)
+
+
+@pytest.mark.parametrize("times", [1.0, 10.0])
+def test_the_sides_of_a_cones_groove_are_painted_with_their_error_along_their_normals(times: float) -> None:
+    """As far as it goes aside, by the cosine of their lean, though they are drawn up to a diameter further on."""
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml")
+    cone = rm.Cutter("chamfer", 1.5e-3, tip_angle=np.radians(60.0))
+    text = "G21 G90 S12000 M3\nG0 X-8 Y0 Z5\nG0 Z-1.2\nG1 X8 F600\nG0 Z5\nM2\n"
+    stock = Stock([-5e-3, -3e-3, -4e-3], [5e-3, 8e-3, 0.0])
+    made = rm.simulate(
+        setup.replace(
+            source=GCodeSource(text), stock=stock, cutter=cone, cell=5e-5, step=5e-4, force=PathForce(feed_normal=10.0)
+        )
+    )
+    aside = np.where(made.path.cutting, 0.2e-3, 0.0)
+    made = dataclasses.replace(made, delta=aside[:, None] * made.R_MF[:, 1])
+    shown = enlarged(made, times)
+    x, y = np.meshgrid(shown.drawn.x, shown.drawn.y, indexing="ij")
+    told, moved = (np.abs(y - off) < 0.5e-3 for off in (0.0, times * 0.2e-3))
+    for sign, cells in ((1.0, told & ~moved), (-1.0, moved & ~told)):
+        inner = cells & (np.abs(x) < 3e-3)
+        assert inner.sum() > 400
+        assert shown.error[inner] == pytest.approx(sign * 0.2e-3 * np.cos(np.radians(30.0)), rel=1e-3)

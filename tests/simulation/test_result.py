@@ -133,6 +133,12 @@ def test_a_station_beyond_the_path_says_how_far_it_goes_and_whether_mm_were_mean
         bent.grooves([0.01, station])
 
 
+@pytest.mark.parametrize(("stations", "count"), [([0.01, 0.02], 2), ([0.01], 1), (np.full((2, 3), 0.01), 6)])
+def test_several_stations_are_asked_of_grooves_and_one_of_groove(bent, stations, count: int) -> None:
+    with pytest.raises(SurfaceError, match=f"expected one station, found {count}; give several to grooves"):
+        bent.groove(stations)
+
+
 def test_what_is_not_reached_is_not_cut():
     found = program("G0 X0 Y0 Z-2", "G1 X50 F1800", "G1 Y-3000", "G1 Y0", step=10e-3)
     for i in range(1, len(found.path)):

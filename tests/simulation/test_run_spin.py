@@ -11,7 +11,7 @@ from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup, setup_from_toml, setup_to_toml
 from robomill.kinematics.transforms import translation
 from robomill.simulation.reach import path_reach
-from robomill.simulation.run import configurations, deviation_over_spin, spin_of
+from robomill.simulation.run import chooses_spin, configurations, deviation_over_spin, spin_along, spin_of
 from robomill.simulation.samples import sampled
 
 PAPER = load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(step=5e-3)
@@ -54,7 +54,8 @@ def test_held_at_the_one_spin_of_its_configurations_an_arm_stands_the_same(spin)
 def test_where_the_spin_changes_or_is_none_there_is_no_one_spin():
     """The arm is left to move as little as it can; so is one of five axes, and one without a path."""
     ik = rm.simulate(FANUC.replace(spin=0.7)).ik
-    for spins in (ik.spin + np.linspace(0.0, 1.0, len(ik.spin)), ik.spin + np.linspace(0.0, 1e-3, len(ik.spin)), None):
+    turning = [ik.spin + np.linspace(0.0, far, len(ik.spin)) for far in (1.0, 1e-3)]
+    for spins in (*turning, ik.spin[:0], None):
         assert spin_of(replace(ik, spin=spins)) == "least_motion"
     assert spin_of(rm.simulate(PAPER).ik) == "least_motion"
 
@@ -81,6 +82,18 @@ def test_five_axes_have_no_spin():
     for spin in ("least_deviation", 0.4):
         run = rm.simulate(PAPER.replace(spin=spin))
         assert run.max_deviation == pytest.approx(rm.simulate(PAPER).max_deviation)
+
+
+def test_an_arm_chooses_its_spin_where_it_is_free_to_and_it_matters():
+    """Not where one is given, nor with five axes, nor with the tool on axis 6: there is none that a path would keep."""
+    path = sampled(FANUC.toolpath, FANUC.step)
+    assert chooses_spin(FANUC)
+    stiff = FANUC.replace(spin="least_deviation")
+    assert chooses_spin(stiff)
+    assert spin_along(stiff, path) == rm.simulate(stiff).ik.spin[0]
+    for setup in (FANUC.replace(spin=0.7), PAPER, KUKA):
+        assert not chooses_spin(setup)
+        assert spin_along(setup, path) is None
 
 
 @pytest.mark.parametrize("spin", ["least_motion", "least_deviation", 0.123456789012345, -1.0])

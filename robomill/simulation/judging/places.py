@@ -1,6 +1,7 @@
 """Where a gauge is put on the part: the judged samples of a run, with the axes of their cut and the outlines there."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -166,20 +167,20 @@ def places(result: Run, most: int | None = None) -> Places:
     before = np.maximum(i - 1, 0)
     moves, of = np.flatnonzero(result.removes), np.asarray(tooling.of_step)
     reach = min(REACH, max(cutter.radius for cutter in tooling.cutters))
-    axes, lift, (along, across) = _upright_balls(result)
+    cut = _upright_balls(result)
     off = np.where(share < 1.0, share * result.delta[i] + (1.0 - share) * result.delta[before], result.delta[i])
-    d = np.asarray(np.einsum("mij,mj->mi", axes[i], result.setup.to_part(off)))
-    tips = path.p + lift
+    d = np.asarray(np.einsum("mij,mj->mi", cut.axes[i], result.setup.to_part(off)))
+    tips = path.p + cut.lift
 
-    told, left = (np.hstack([p[moves - 1], p[moves]]) for p in (path.p + lift, result.p_machined + lift))
-    rise = np.einsum("mi,mi->m", (left - told)[:, 3:] - (left - told)[:, :3], axes[moves, 2])
+    told, left = (np.hstack([p[moves - 1], p[moves]]) for p in (tips, result.p_machined + cut.lift))
+    rise = np.einsum("mi,mi->m", (left - told)[:, 3:] - (left - told)[:, :3], cut.axes[moves, 2])
     nosed = tooling.each("nose_height")[moves] > 0.0
     parts = np.where(nosed, np.clip(np.ceil(np.abs(rise) / LIFTED), 1, MOST_PARTS), 1).astype(np.int64)
     told, left, made_by = _parted(told, parts), _parted(left, parts), np.repeat(of[moves], parts)
     outline = Outline(told, left, tooling.cutters, made_by, reach)
-    feed, left_of, axial = np.moveaxis(axes[i], 1, 0)
+    feed, left_of, axial = np.moveaxis(cut.axes[i], 1, 0)
     c = share * tips[i] + (1.0 - share) * tips[before]
-    which = (tooling.cutters, of[i], outline, along[i], across[i])
+    which = (tooling.cutters, of[i], outline, cut.along[i], cut.across[i])
     return Places(result, i, share[:, 0] < 1.0, c, feed, left_of, axial, d, *which)
 
 
@@ -213,10 +214,18 @@ def cut_axes(result: Run) -> FloatArray:
     return np.einsum("ji,mjk->mki", result.setup.T_MW[:3, :3], result.R_MF)
 
 
-def _upright_balls(result: Run) -> tuple[FloatArray, FloatArray, tuple[FloatArray, FloatArray]]:
-    """Axes of the cut (m, 3, 3), rows feed, left, axial in {W}, how far (m, 3) m from the tip the lowest point is, and
-    the parts (m,) (m,) of the unit feed along the axis and across it: a ball cuts the same however it leans, so it is
-    taken upright; other tools have their own axes and their tip."""
+class _Cut(NamedTuple):
+    """As a gauge takes it: ``axes`` (m, 3, 3), rows feed, left, axial in {W}; how far its lowest point is from the tip,
+    ``lift`` (m, 3) m; the parts of the unit feed ``along`` (m,) the axis and ``across`` (m,) it."""
+
+    axes: FloatArray
+    lift: FloatArray
+    along: FloatArray
+    across: FloatArray
+
+
+def _upright_balls(result: Run) -> _Cut:
+    """A ball cuts the same however it leans, so it is taken upright; other tools have their own axes and their tip."""
     path, axes, conditions = result.path, cut_axes(result), result.conditions
     ball = np.array([cutter.flat_radius == 0.0 and not cutter.conical for cutter in result.tooling.cutters])
     leans = ball[result.tooling.of_step] & (path.k[:, 2] < 1.0 - 1e-12)
@@ -228,5 +237,7 @@ def _upright_balls(result: Run) -> tuple[FloatArray, FloatArray, tuple[FloatArra
     feed = level / np.where(length > 0.0, length, 1.0)
     upright = np.stack([feed, np.cross(up, feed), np.broadcast_to(up, feed.shape)], axis=1)
     lift = result.tooling.each("radius")[:, None] * (path.k - up)
-    parts = np.where(leans, way[:, 2], along), np.where(leans, np.hypot(way[:, 0], way[:, 1]), across)
-    return np.where(leans[:, None, None], upright, axes), np.where(leans[:, None], lift, 0.0), parts
+    along = np.where(leans, way[:, 2], along)
+    across = np.where(leans, np.hypot(way[:, 0], way[:, 1]), across)
+    axes, lift = np.where(leans[:, None, None], upright, axes), np.where(leans[:, None], lift, 0.0)
+    return _Cut(axes, lift, along, across)

@@ -13,7 +13,7 @@ from robomill.arrays import FloatArray
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.tool import Cutter
 from robomill.io.samples import samples_dir
-from robomill.simulation.judging.finished import Finished, Spread
+from robomill.simulation.judging.finished import Finished, Spread, _bend
 from robomill.simulation.result import SimulationResult
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
@@ -161,3 +161,21 @@ def test_what_is_out_has_its_area_and_is_never_nothing() -> None:
     assert found.out(150e-6) == pytest.approx((78.0, 83.0))
     # A place between samples that stands for no area of its own is still out: a ten-thousandth.
     assert spread(100, 5, 400, 0).out(300e-6) == pytest.approx((5e-4, 5.0))
+
+
+def test_a_path_bends_at_its_corners_half_before_and_half_after() -> None:
+    """To the left +; not where a cut begins or ends, nor between two cuts, whichever way they go, nor in a plunge."""
+    made = rm.simulate(
+        SETUP.replace(
+            source=GCodeSource(
+                "G21 G90 S12000 M3\nG0 X-20 Y-10 Z5\nG1 Z-2 F300\nG1 X0 F1800\nY10\nX-10 Y20\nG0 Z5\n"
+                "G0 X20 Y0\nG0 Z-2\nG1 X10\nX20 Y-10\nM2\n"
+            )
+        )
+    )
+    bend, block = np.degrees(_bend(made)), made.path.block
+    for line, first, last in ((4, 0.0, 45.0), (5, 45.0, 22.5), (6, 22.5, 0.0), (10, 0.0, 67.5), (11, 67.5, 0.0)):
+        on = bend[(block == line) & (made.path.step_length > 0.0)]
+        assert (on[0], on[-1]) == pytest.approx((first, last), abs=1e-6)
+        np.testing.assert_allclose(on[1:-1], 0.0, atol=1e-6)
+    assert not bend[~np.isin(block, (4, 5, 6, 10, 11))].any()

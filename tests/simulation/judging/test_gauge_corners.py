@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from robomill.report.simulation_record import judged_record
 from robomill.simulation.result import SimulationResult
 from robomill.surface.stock import Stock
-from tests.simulation.judging.test_gauge import BLOCK, R, pushed, run
+from tests.simulation.judging.pushed_runs import BLOCK, R, pushed, run
 
 SLOT = ["G0 X-40 Y0 Z5", "G0 Z-2", "G1 X40 F1800", "G0 Z5"]
 PARTS = {

@@ -11,7 +11,7 @@ import pytest
 from robomill.arrays import FloatArray
 from robomill.cutting.tool import Cutter
 from robomill.simulation.judging.places import stock_top
-from tests.simulation.judging.test_gauge import R, pushed, run
+from tests.simulation.judging.pushed_runs import R, pushed, run
 
 NOSES = {"ball": R, "bull": 1.5e-3}
 

@@ -7,7 +7,7 @@ import pytest
 
 from robomill.cutting.tool import Cutter
 from robomill.simulation.result import SimulationResult
-from tests.simulation.judging.test_gauge import R, pushed, run
+from tests.simulation.judging.pushed_runs import R, pushed, run
 
 ACROSS = np.arange(-0.8e-3, 0.8e-3, 5e-6)
 

@@ -12,7 +12,7 @@ import trimesh
 from robomill.cutting.tool import Cutter
 from robomill.simulation.judging.places import APART, BETWEEN, Places, _chosen, _parted, places
 from robomill.surface.stock import Stock
-from tests.simulation.judging.test_gauge import BLOCK, pushed, run
+from tests.simulation.judging.pushed_runs import BLOCK, pushed, run
 
 PROGRAM = [  # line 2 and what follows
     *["G0 X-40 Y0 Z5", "G0 Z-2", "G1 X0 F1800", "G1 Y10", "G0 Z5", "G0 X12 Y-12"],
@@ -103,6 +103,15 @@ def test_a_corner_is_one_for_the_sample_before_it_and_after_it(made):
     np.testing.assert_allclose(at.turn[q[~np.isin(i, corner)]], 0.0, atol=1e-9)
 
 
+def test_towards_a_rapid_or_between_two_a_path_has_no_corner():
+    """A slot that ends in the block, and the rapid to one side and back above it, which turns by 90 degrees."""
+    made = run("G0 X-40 Y10 Z5", "G0 Y0", "G0 Z-2", "G1 X0 F1800", "G0 Y4", "G0 X-20 Y10")
+    at = places(made)
+    on_slot = made.path.block[at.i] == 5
+    assert on_slot.sum() > 10
+    np.testing.assert_allclose(at.turn[on_slot], 0.0, atol=1e-9)
+
+
 @pytest.mark.parametrize("lean", [0, 15])
 def test_how_high_the_stock_stands_is_measured_along_the_tool(lean):
     """And how far the tip is below a plate that it cuts through."""
@@ -185,6 +194,15 @@ def test_of_many_samples_those_in_even_steps_are_chosen_and_those_that_are_most_
     assert np.diff(s[sorted(set(even) - set(worst))]).min() >= s[-1] / (most - 1) - 2e-3
 
 
+def test_all_are_taken_where_there_are_no_more_than_asked_for(made):
+    judged = np.flatnonzero(made.judged).tolist()
+    for most in (None, len(judged), len(judged) + 1):
+        at = places(made, most)
+        assert at.i[~at.between].tolist() == judged
+    few = places(made, len(judged) - 1)
+    assert set(few.i[~few.between].tolist()) < set(judged)
+
+
 def test_moves_are_taken_in_parts_of_one_length():
     """Whole ones to the last digit, others from division to division of their own way."""
     rng = np.random.default_rng(4)
@@ -196,6 +214,21 @@ def test_moves_are_taken_in_parts_of_one_length():
         for begin, end in pairwise(at):
             np.testing.assert_allclose(next(found), [*begin, *end] if n > 1 else move, rtol=0.0, atol=1e-14 * (n > 1))
     assert next(found, None) is None
+
+
+@pytest.mark.parametrize(("kind", "parted"), [("ball", True), ("flat", False)])
+def test_a_move_on_which_a_nose_is_lifted_is_taken_in_parts_of_four_micrometres_each(kind, parted):
+    """At most 32; however high it stands already. What stays at one height is whole, and so is all of a flat end."""
+    made = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X20 F1800", cutter=Cutter(kind, 8e-3))
+    lift = np.random.default_rng(1).choice([0.0, 3e-6, 9e-6, 0.3e-3], len(made.path))
+    made = pushed(made, left=0.1e-3, up=0.5e-3 + np.cumsum(lift))
+    expected = []
+    for i in np.flatnonzero(made.removes):
+        height = [made.p_machined[j, 2] - made.path.p[j, 2] for j in (i - 1, i)]
+        rise = abs(height[1] - height[0])
+        expected += [1 if rise <= 4e-6 or not parted else min(int(np.ceil(rise / 4e-6)), 32)]
+    assert len(places(made).outline.told) == sum(expected)
+    assert (max(expected) == 32) == parted
 
 
 @pytest.mark.parametrize("to", [(20, 8), (20, 3), (3, -16), (-20, 8)])

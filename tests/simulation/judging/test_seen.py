@@ -17,7 +17,7 @@ from robomill.io.materials import load_material
 from robomill.io.setups.projects import setup_to_toml
 from robomill.report.plain import simulation_lines
 from robomill.report.simulation_record import simulation_record
-from tests.simulation.judging.test_gauge import SETUP, pushed, run
+from tests.simulation.judging.pushed_runs import SETUP, pushed, run
 
 BLIND = load_material("al6061_t6_carbide_ref160")  # gives no axial coefficients
 MILL = Cutter("flat", 8e-3, flutes=3)

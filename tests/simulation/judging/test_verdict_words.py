@@ -19,7 +19,7 @@ from robomill.simulation.judging.verdict_words import LEVELS, Reading, gauge_end
 from robomill.simulation.run import simulate
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
-from tests.simulation.judging.test_gauge import pushed, run
+from tests.simulation.judging.pushed_runs import pushed, run
 
 
 @pytest.mark.parametrize(
