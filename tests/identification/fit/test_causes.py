@@ -240,3 +240,23 @@ def test_rows_that_count_from_below_zero_are_asked_too():
     found = [rm.identify(ROBOT, replace(tests, row=np.arange(20) + first)).inquest for first in (1, 0, -19)]
     assert np.ptp([each.before for each in found]) == 0.0
     assert [len(each.suspects) for each in found] == [0, 0, 0]
+
+
+@pytest.mark.parametrize("kind", ["zero", "points"])
+def test_cables_are_aimed_anew_where_a_zero_or_a_point_is_sought(kind):
+    """Forces are calculated from the pulley and the stated posture; the cable pulled from where the arm really was."""
+    off, aside = np.radians(3.0) * (np.arange(6) == 1), np.array([0.09, 0.096, -0.072])
+    pulley = np.array([3.4, -2.2, 1.6])
+    q = postures(ARM, 16, np.random.default_rng(8))
+    said, point = (q - off, TIP) if kind == "zero" else (q, TIP + aside)
+    rig = Rig(load_point=point, gauge_point=TIP, pulleys=(tuple(pulley),), noise=2e-6)
+    made = make(ARM, rig, q=q, seed=8)
+    tip = np.array([flange[:3, :3] @ TIP + flange[:3, 3] for *_, flange in map(ARM.frames, said)])
+    way = (pulley - tip) / np.linalg.norm(pulley - tip, axis=1)[:, None]
+    F = way * np.linalg.norm(made.F, axis=1)[:, None]
+    result = rm.identify(ROBOT, rm.LoadTests(F, made.moved, theta=said, pulley=np.tile(pulley, (16, 1))))
+    first = result.inquest.likeliest[0]
+    assert first.cause.kind == kind
+    if kind == "zero":
+        assert (first.cause.at, np.degrees(first.off)) == (2, pytest.approx(3.0, abs=0.05))
+    assert first.error < 0.1 * result.inquest.before

@@ -276,3 +276,33 @@ def test_a_fit_that_makes_up_for_what_its_model_lacks_is_told_by_the_lines_of_pu
     whole = rm.identify(ROBOT, tests, "joints+bending", bending="auto", fit_points="both")
     assert whole.choice.bending_joints == (2,)
     assert "points-disagree" not in {f.code for f in identification_record(ROBOT, tests, whole)[1]}
+
+
+@pytest.mark.parametrize("first", [12, 28])
+def test_the_pulley_that_is_recorded_is_that_of_most_rows(first):
+    rig = Rig(pulleys=PULLEYS[:2])
+    tests = read(make(ARM, rig, 60, seed=1), rig)
+    tests = tests.select(np.sort(np.concatenate([2 * np.arange(first), 2 * np.arange(40 - first) + 1])))
+    record = lines_of_pull_record(lines_of_pull(ROBOT, tests), ROBOT, tests)
+    np.testing.assert_allclose(record["pulley_mm"], 1e3 * np.array(PULLEYS[first < 20]), atol=1e-2)
+
+
+@pytest.mark.parametrize("turns", [False, True])
+def test_a_tool_that_turns_from_pulley_to_pulley_alone_cannot_tell_its_load_point(turns):
+    """Each pulley moves with the load point then, as turned as the tool is; taken for one pulley they would hold it."""
+    robot, rng = rm.load_robot("slavkovic_5r"), np.random.default_rng(8)
+    place = rng.uniform([-0.5, -1.6, -0.3], [0.5, -1.1, 0.1], (40, 3))
+    second = np.arange(40) >= 20
+    lean = np.where(second[:, None], [0.2, -0.15], [-0.1, 0.1]) + turns * rng.uniform(-0.2, 0.2, (40, 2))
+    tests = rm.LoadTests(np.ones((40, 3)), np.full((40, 3), 1e-4), x_M=np.concatenate([place, lean], axis=1))
+    T = tests.with_joints(robot).tool_poses(robot)  # five joints turn it about its own axis as they must
+    point, pulleys = np.array([0.0, 0.0, 0.1]), np.array([[1.5, -3.0, 0.5], [-1.8, -2.5, 1.2]])
+    F = pulleys[second.astype(int)] - T[:, :3, 3] - T[:, :3, :3] @ point
+    found = lines_of_pull(robot, replace(tests, wrench=np.pad(F, ((0, 0), (0, 3)))).with_joints(robot))
+    assert found.says == "met"
+    assert (found.shift is None) == (not turns)
+    if turns:
+        np.testing.assert_allclose(found.shift, point, atol=1e-5)
+    moved = 0.0 if turns else T[[0, 20], :3, :3] @ point
+    order = [0, 1] if found.which[0] == 0 else [1, 0]
+    np.testing.assert_allclose(found.pulley[order], pulleys - moved, atol=1e-5)

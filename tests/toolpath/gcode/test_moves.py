@@ -122,3 +122,11 @@ def test_cuts_from_where_only_the_machine_knows_are_no_cuts_and_that_is_said() -
 def test_sideways_from_a_home_in_x_and_y_nothing_is_cut() -> None:
     path = read_gcode("G21 G90 G0 X1 Y1 Z-1\nG28 X5 Y5\nG1 X9 Y9 F100\nX12\nM30\n")
     assert [int(b) for b in path.block[path.cutting]] == [4]
+
+
+@pytest.mark.parametrize("dwell", ["", " P100"])
+@pytest.mark.parametrize("dialect", ["auto", "fanuc"])
+def test_a_retract_by_hand_is_said_whether_or_not_the_line_waits(dwell: str, dialect: str) -> None:
+    program = interpret(f"G21 G90 S100 M3\nG0 X0. Y0. Z9.\nG88 X1. Z-1. R1. F9.{dwell}\nG80\nM30\n", dialect=dialect)
+    assert [each.line for each in program.findings if each.code == "manual-retract"] == [3]
+    np.testing.assert_allclose(program.end[-1] * 1e3, [1, 0, -1])
