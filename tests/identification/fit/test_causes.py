@@ -260,3 +260,20 @@ def test_cables_are_aimed_anew_where_a_zero_or_a_point_is_sought(kind):
     if kind == "zero":
         assert (first.cause.at, np.degrees(first.off)) == (2, pytest.approx(3.0, abs=0.05))
     assert first.error < 0.1 * result.inquest.before
+
+
+def test_a_drift_of_the_gauges_leaves_what_was_read_as_rotation():
+    """A drift along z beside an offset along x, and rotations that are right: those are no reading of the gauges."""
+    plain = pulled(count=16, noise=0.0)
+    turned = np.zeros((16, 3))
+    for k, (q, F) in enumerate(zip(plain.theta, plain.wrench[:, :3], strict=True)):
+        *joints, flange = ARM.frames(q)
+        for c, frame in zip(ARM.C_theta, joints, strict=True):
+            arm = flange[:3, :3] @ TIP + flange[:3, 3] - frame[:3, 3]
+            turned[k] += c * float(frame[:3, 2] @ np.cross(arm, F)) * frame[:3, 2]
+    read = plain.displacement[:, :3] + np.linspace(0.0, 2e-4, 16)[:, None] * [0, 0, 1] + 1e-4 * np.array([1.0, 0, 0])
+    noise = 1e-6 * np.random.default_rng(3).standard_normal((16, 6))
+    result = rm.identify(ROBOT, rm.LoadTests(plain.wrench, np.hstack([read, turned]) + noise, theta=plain.theta))
+    first = result.inquest.likeliest[0]
+    assert first.cause.kind == "drift"
+    assert first.error < 0.05 * result.inquest.before
