@@ -148,12 +148,18 @@ def left_by_joints(q, F, moved):
     return (moved.ravel() - A / size @ z).reshape(-1, 3), (A / size @ z).reshape(-1, 3)
 
 
+@pytest.mark.parametrize("stated", [None, 4e-6, 1e3])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_readings_that_springs_make_exactly_show_no_growth(sign):
+def test_readings_that_springs_make_exactly_show_no_growth(sign, stated):
+    """Whatever noise is stated: what is left over is rounding."""
     plain = pulled(count=8, noise=0.0)
     F = sign * plain.wrench[:, :3]
     made = left_by_joints(plain.theta, F, sign * plain.displacement[:, :3])[1]
-    assert np.isnan(rm.identify(ROBOT, rm.LoadTests(F, made, theta=plain.theta)).inquest.growth)
+    tests = rm.LoadTests(F, made, theta=plain.theta, noise=stated)
+    inquest = rm.identify(ROBOT, tests).inquest
+    assert np.isnan(inquest.growth)
+    assert np.isnan(inquest.lack)
+    assert not inquest.suspects
 
 
 @pytest.mark.parametrize(("part", "noise"), [(1.0, 2e-5), (0.01, 2e-11)])

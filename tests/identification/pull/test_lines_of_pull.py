@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.identification.pull.lines_of_pull import _Lines, lines_of_pull
+from robomill.identification.pull.lines_of_pull import _loose, _Lines, lines_of_pull
 from robomill.identification.pull.pull_words import load_point, pull_findings
 from robomill.identification.record import identification_record, lines_of_pull_record
 from robomill.io.samples import samples_dir
@@ -306,3 +306,17 @@ def test_a_tool_that_turns_from_pulley_to_pulley_alone_cannot_tell_its_load_poin
     moved = 0.0 if turns else T[[0, 20], :3, :3] @ point
     order = [0, 1] if found.which[0] == 0 else [1, 0]
     np.testing.assert_allclose(found.pulley[order], pulleys - moved, atol=1e-5)
+
+
+@pytest.mark.parametrize(("std", "loose"), [(0.99, False), (1.01, True), (np.inf, True)])
+@pytest.mark.parametrize("at", [0, 1])
+def test_a_pulley_is_held_loosely_where_two_standard_errors_are_half_the_way_to_it(std, loose, at):
+    """Four metres away, along whatever direction it is known least; the other pulley is 40 m away and known as well."""
+    turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
+    covariance = np.diag(np.repeat([1e-6, 1.0, 1.0], 3))
+    own = slice(3 + 3 * at, 6 + 3 * at)
+    covariance[own, own] = turn @ np.diag([1e-4, std**2, 1e-2]) @ turn.T if np.isfinite(std) else np.inf
+    which = np.repeat([at, 1 - at], 8)
+    way = np.where(which == at, -4.0, 40.0) * np.linspace(0.9, 1.1, 16)
+    way[:8] = [-3.0, -3.5, -4.0, -4.0, -4.0, -4.0, -4.5, -9.0]
+    assert _loose(np.zeros((2, 3)), covariance, way, which) == loose
