@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.identification.pull.lines_of_pull import _loose, _Lines, lines_of_pull
+from robomill.identification.pull.lines_of_pull import _Lines, _loose, lines_of_pull
 from robomill.identification.pull.pull_words import load_point, pull_findings
 from robomill.identification.record import identification_record, lines_of_pull_record
 from robomill.io.samples import samples_dir
