@@ -321,3 +321,12 @@ def test_forces_that_are_aimed_at_no_pulley_stay_as_they_are_where_the_point_mov
     np.testing.assert_array_equal(np.isclose(moved.wrench[:, :3], F).all(axis=1), np.isin(range(6), [1, 4]))
     np.testing.assert_allclose(moved.force_point, np.tile([0.05, -0.1, 0.02], (6, 1)))
     assert not moved.wrench[:, 3:].any()
+
+
+def test_rotations_beside_gauges_have_columns_of_their_own():
+    """Three gauges and three rotations of the flange, in mm and mrad."""
+    read = np.column_stack([MOVED, 1e-4 * np.arange(18.0).reshape(6, 3)])
+    columns = LoadTests(F, read, theta=THETA, gauges=np.tile(np.eye(3)[[2, 0, 1]], (6, 1, 1))).columns()
+    assert [name for name in columns if "reading" in name] == [f"reading{k}_mm" for k in (1, 2, 3)]
+    np.testing.assert_allclose(np.transpose([columns[f"reading{k}_mm"] for k in (1, 2, 3)]), MOVED * 1e3)
+    np.testing.assert_allclose(np.transpose([columns[f"r{axis}_mrad"] for axis in "xyz"]), read[:, 3:] * 1e3)

@@ -283,3 +283,18 @@ def test_a_drift_of_the_gauges_leaves_what_was_read_as_rotation():
     first = result.inquest.likeliest[0]
     assert first.cause.kind == "drift"
     assert first.error < 0.05 * result.inquest.before
+
+
+@pytest.mark.parametrize(("fit", "asked"), [("force", {"gauge"}), ("gauge", {"force"})])
+def test_a_point_that_is_fitted_is_asked_no_more(fit, asked):
+    """Both points are off: of those that the fit takes as stated each is a cause, alone and with what else is."""
+    tests = pulled(load_point=TIP + np.array([0.09, 0.096, -0.072]), stated=TIP, count=10, noise=1e-6)
+    aside = np.array(
+        [
+            ARM.yields(q, TIP, TIP + np.array([0.1, 0.0, 0.05]), F, {}) - ARM.yields(q, TIP, TIP, F, {})
+            for q, F in zip(tests.theta, tests.wrench[:, :3], strict=True)
+        ]
+    )
+    odd = replace(tests, displacement=tests.displacement + np.pad(aside, ((0, 0), (0, 3))))
+    found = rm.identify(ROBOT, odd, fit_points=fit).inquest.suspects
+    assert {each.cause.points for each in found if each.cause.kind == "points"} == asked
