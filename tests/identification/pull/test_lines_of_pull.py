@@ -165,6 +165,9 @@ def test_dead_weights_say_nothing_and_say_so(noise):
     tests = read(make(ARM, rig, 43, seed=6), rig)
     found = lines_of_pull(ROBOT, tests)
     assert found.says in ("parallel", "held-loosely")
+    assert (found.which == -1).all(), "no pulley"
+    assert found.pulley.shape == (0, 3)
+    assert np.isnan([found.gap, found.gap_stated]).all()
     assert found.shift is None
     record = lines_of_pull_record(found, ROBOT, tests)
     assert record["pulley_mm"] is record["load_point_mm"] is None
