@@ -55,6 +55,9 @@ def test_it_is_widened_by_what_is_not_known_of_force_and_lengths(force, length):
     assert (known.F is None, known.lengths is None) == (force == 0, length == 0)
     assert force == 0 or np.array_equal(known.F, 9.0 * np.eye(3))
     assert length == 0 or np.array_equal(known.lengths, np.full(10, 1e-3))
+    given = {name: value for name, value in (("force", force), ("length", length)) if value}
+    alone = Knowledge.of(FIT, ROBOT).widened(ROBOT, **given)  # what is not stated is certain
+    assert (alone.F is None, alone.lengths is None) == (known.F is None, known.lengths is None)
 
 
 def test_its_arrays_are_read_only():

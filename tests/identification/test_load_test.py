@@ -298,3 +298,35 @@ def test_columns_of_single_joints_are_torque_and_angle():
         "noise_mrad": [0.002, 0.002],
     }
     assert "noise_mrad" not in JointTests([1], [300.0], [2.1e-4]).columns()
+
+
+@pytest.mark.parametrize(("length", "taken"), [(1.015, True), (0.985, True), (1.025, False), (0.975, False)])
+def test_a_written_direction_may_be_as_long_as_its_rounding_leaves_it(length, taken):
+    """Two digits behind the point, of three components: within some 0.01 of a unit vector."""
+    along = np.tile(np.eye(3), (6, 1, 1))
+    along[3, 1] *= length
+    if taken:
+        assert LoadTests(F, MOVED, theta=THETA, gauges=along).gauges is not None
+        return
+    with pytest.raises(LoadTestError, match=f"Row 4, gauge 2: found a direction of length {length:.3g}"):
+        LoadTests(F, MOVED, theta=THETA, gauges=along)
+
+
+def test_forces_that_are_aimed_at_no_pulley_stay_as_they_are_where_the_point_moves():
+    """Of six rows two have no pulley, and one of them only half of one."""
+    pulley = np.tile([2.0, -2.0, 1.0], (6, 1))
+    pulley[1], pulley[4, 2] = np.nan, np.nan
+    tests = LoadTests(F, MOVED, theta=THETA, pulley=pulley)
+    moved = tests.moved(ROBOT, np.array([0.05, -0.1, 0.02]))
+    np.testing.assert_array_equal(np.isclose(moved.wrench[:, :3], F).all(axis=1), np.isin(range(6), [1, 4]))
+    np.testing.assert_allclose(moved.force_point, np.tile([0.05, -0.1, 0.02], (6, 1)))
+    assert not moved.wrench[:, 3:].any()
+
+
+def test_rotations_beside_gauges_have_columns_of_their_own():
+    """Three gauges and three rotations of the flange, in mm and mrad."""
+    read = np.column_stack([MOVED, 1e-4 * np.arange(18.0).reshape(6, 3)])
+    columns = LoadTests(F, read, theta=THETA, gauges=np.tile(np.eye(3)[[2, 0, 1]], (6, 1, 1))).columns()
+    assert [name for name in columns if "reading" in name] == [f"reading{k}_mm" for k in (1, 2, 3)]
+    np.testing.assert_allclose(np.transpose([columns[f"reading{k}_mm"] for k in (1, 2, 3)]), MOVED * 1e3)
+    np.testing.assert_allclose(np.transpose([columns[f"r{axis}_mrad"] for axis in "xyz"]), read[:, 3:] * 1e3)

@@ -64,3 +64,11 @@ def test_joints_that_were_solved_from_poses_are_not_asked():
     assert sense_suspicions(WIDE, tests)
     solved = rm.LoadTests(made.F, made.moved, x_M=rm.world_from_pose(rm.tool_pose(ROBOT, made.q)))
     assert sense_suspicions(ROBOT, solved.with_joints(ROBOT)) == ()
+
+
+@pytest.mark.parametrize(("count", "suspected"), [(3, False), (4, True), (70, True)])
+def test_so_few_tests_say_nothing_of_senses(count, suspected):
+    """As with other axes: six compliances take up most of what three tests read."""
+    made = make(ARM, RIG, count, 2)
+    tests = rm.LoadTests(made.F, made.moved, theta=made.q * [1, -1, 1, 1, 1, 1])
+    assert ["theta2" in each.message for each in sense_suspicions(WIDE, tests)] == [True] * suspected

@@ -90,6 +90,7 @@ def test_sources_add_in_squares_and_batch_is_loop():
     total = sum(found.by(source) ** 2 for source in ("compliances", "force", "lengths"))
     np.testing.assert_allclose(found.std**2, total, rtol=1e-12)
     assert (found.by("model") == 0.0).all()
+    assert found.parts.shape == (5, 4, 3, 3), "compliances, model, force and lengths"
     u = F / np.linalg.norm(F, axis=-1, keepdims=True)
     along = sum(found.by_along(source, u) ** 2 for source in ("compliances", "force", "lengths"))
     np.testing.assert_allclose(found.half_along(u), 1.959964 * np.sqrt(along), rtol=1e-6)
@@ -168,6 +169,7 @@ def test_a_map_carries_the_forces_spread_through_its_own_matrices():
     A = np.array([[5.0, 0.0, 0.0], [3.0, 8.0, 0.0], [-2.0, 1.0, 4.0]])
     p = PATH[:, :3]
     alone, both = uncertain_by_map(field, p, F), uncertain_by_map(field, p, F, A @ A.T)
+    assert both.parts.shape == (*np.shape(both.delta)[:-1], 4, 3, 3)
     drawn = np.random.default_rng(8).normal(size=(40_000, 3)) @ A.T
     for k in range(5):
         expected = np.cov(C[k] @ drawn.T)

@@ -186,3 +186,48 @@ def test_a_joint_against_the_robots_own(factor, told):
     joint, torque = np.array([1, 2, 3]), np.array([100.0, -50, 20])
     tests = JointTests(joint, torque, factor * ROBOT.C_theta[:3] * torque)
     assert codes(tests) == (["unit"] if told else [])
+
+
+@pytest.mark.parametrize("times", [4.4482, 1 / 4.4482, 9.80665])
+@pytest.mark.parametrize(("off", "told"), [(0.91, True), (1.09, True), (0.88, False), (1.12, False)])
+def test_a_slip_below_the_factor_is_told_within_a_tenth_where_one_number_explains_all(times, off, told):
+    """A pound-force is no factor of eight; ten kilograms of it are, and a tenth more is another arm."""
+    odd = moved(SOUND, times * off * SOUND.displacement)
+    found = [each.message for each in suspicions(odd, ROBOT)]
+    if times > 8.0:
+        assert len(found) == (times * off > 8.0)
+        return
+    assert len(found) == told
+    assert all(("larger" if times > 1 else "smaller") in each and "pound-force as N?" in each for each in found)
+
+
+@pytest.mark.parametrize("noise", [0.15, 0.25])
+def test_one_number_explains_all_where_a_fifth_is_left_over(noise):
+    """A component across the readings themselves, so that their own size stays: what is left over is its share."""
+    read = SOUND.displacement[:, :3] * 4.4482
+    across = np.random.default_rng(3).normal(size=read.shape)
+    clean = simulated_tests(ROBOT, *three_directions(THETA, 250.0)).displacement[:, :3]
+    across -= clean * (across * clean).sum() / (clean**2).sum()
+    share = noise / np.sqrt(1.0 - noise**2)  # of the whole, then
+    odd = read + across * share * np.linalg.norm(read) / np.linalg.norm(across)
+    found = suspicions(LoadTests(SOUND.wrench, odd, theta=SOUND.theta), ROBOT)
+    assert ("unit" in [each.code for each in found]) == (noise < 0.2)
+
+
+@pytest.mark.parametrize(("count", "told"), [(3, False), (4, True), (24, True)])
+def test_a_component_that_is_zero_in_every_one_of_four_tests_was_not_read(count, told):
+    read = SOUND.displacement[:count, :3] * [1, 0, 1]
+    tests = LoadTests(SOUND.wrench[:count], read, theta=SOUND.theta[:count])
+    assert ("unread" in codes(tests)) == told
+
+
+def test_a_component_that_no_joint_moves_may_be_zero():
+    """An arm in the plane: nothing of it moves along Z."""
+    n = np.zeros(3)
+    flat = rm.Robot.from_dh(alpha=n, a=np.array([0.6, 0.5, 0.3]), d=n, C_theta=np.full(3, 1e-6))
+    theta = np.random.default_rng(1).uniform(-1.0, 1.0, (8, 3))
+    F = np.random.default_rng(2).normal(size=(8, 3)) * [100, 100, 0]
+    read = np.einsum("mij,mj->mi", rm.cartesian_compliance(flat, theta), F)
+    assert not read[:, 2].any()
+    assert "unread" not in codes(LoadTests(F, read, theta=theta), flat)
+    assert "unread" in codes(LoadTests(F, read * [0, 1, 1], theta=theta), flat)

@@ -102,3 +102,13 @@ def test_depth_clearance_and_feed_stand_before_their_unit_in_catia(
     assert z[kept][1:].tolist() == pytest.approx(heights)
     assert path.v_f[path.p[:, 2] < -7e-3] * 60e3 == pytest.approx([rate])
     assert any("depth, clearance and feed" in each.message for each in path.findings) == ("STEP1" not in words)
+
+
+@pytest.mark.parametrize("top", [20.0, -20.0])
+def test_a_hole_is_gone_to_at_the_height_where_the_tool_was(top: float) -> None:
+    """Along the tool, whatever the height of the hole; from less than the clearance straight to it."""
+    cycle = f"UNITS/MM\nFROM/0,0,50\nCYCLE/DRILL,DEPTH,4,MMPM,120,CLEAR,2\nGOTO/10,0,{top:g}\nGOTO/30,0,{top + 1:g}\n"
+    path = read_apt(f"{cycle}CYCLE/OFF\nFINI\n")
+    heights = [50, 50, top + 2, top - 4, top + 2, top + 3, top - 3, top + 3]
+    np.testing.assert_allclose(path.p[:, 2] * 1e3, heights)
+    np.testing.assert_allclose(path.p[:, 0] * 1e3, [0, 10, 10, 10, 10, 30, 30, 30])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -23,6 +25,15 @@ def test_the_summary_is_what_plain_counting_says() -> None:
     )
     assert summary.feeds == pytest.approx((0.01, 0.01))
     assert summary.spindles == pytest.approx((1000 / 60, 1000 / 60))
+
+
+def test_spindle_speeds_are_those_of_cuts_where_they_are_known() -> None:
+    """The first rapid turns slower than any cut, the last one faster, and of one cut the speed is not known."""
+    path = GCodeSource("G21 G90\nS100 M3\nG0 X1 Z5\nS1000\nG1 X3 F600\nX9\nS2000\nY4\nS9000\nG0 Z5.5\nM2\n").read()
+    assert summary_of(path).spindles == pytest.approx((1000 / 60, 2000 / 60))
+    n_s = np.where(path.p[:, 1] > 3e-3, np.nan, path.n_s)
+    assert summary_of(replace(path, n_s=n_s)).spindles == pytest.approx((1000 / 60, 1000 / 60))
+    assert summary_of(replace(path, n_s=0.0 * path.n_s)).spindles is None
 
 
 def test_distinct_values_by_counting_are_those_by_sorting() -> None:

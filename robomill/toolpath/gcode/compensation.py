@@ -113,7 +113,7 @@ class Compensation:
 
     def _lathe_shift(self) -> tuple[float, float]:
         """(z, x) from the centre of a lathe tool's nose to the point that is programmed; 0 for mills."""
-        if self.plane != 18 or self.orientation in (0, 9):
+        if self.plane != 18:
             return 0.0, 0.0
         z = {1: 1, 4: 1, 5: 1, 2: -1, 3: -1, 7: -1}.get(self.orientation, 0)
         x = {1: -1, 2: -1, 6: -1, 3: 1, 4: 1, 8: 1}.get(self.orientation, 0)

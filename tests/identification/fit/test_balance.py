@@ -54,6 +54,32 @@ def test_weights_are_the_scatters_and_the_typical_reading_keeps_its_own():
     assert np.mean(np.square([x, y, z])) == pytest.approx(1.0, rel=0.1)
 
 
+@pytest.mark.parametrize("times", [-1.0, 1e-6, -1e4])
+def test_weights_are_the_same_under_other_loads_and_in_other_units(times):
+    """Forces and displacements so many times as large, or turned round."""
+    read = CLEAN + np.array([5e-6, 5e-6, 50e-6]) * np.random.default_rng(0).standard_normal(CLEAN.shape)
+    plain, other = (
+        balanced(build_system(ROBOT, LoadTests(k * F, k * read, theta=THETA), Model())).noise for k in (1.0, times)
+    )
+    assert np.ptp(plain) > 0.0
+    np.testing.assert_allclose(other, plain, rtol=1e-6)
+
+
+@pytest.mark.parametrize("times", [2, 5])
+def test_copies_of_rows_make_no_scatter_surer(times):
+    """The weights of the rows alone; what differs by chance once differs by chance in copies too."""
+    rng = np.random.default_rng(0)
+    for noise, weighed in (([5e-6, 5e-6, 50e-6], True), ([8e-6, 8e-6, 10e-6], False)):
+        read = CLEAN + np.array(noise) * rng.standard_normal(CLEAN.shape)
+        index = rng.permutation(np.tile(np.arange(len(F)), times))
+        one, many = (
+            balanced(build_system(ROBOT, LoadTests(F[k], read[k], theta=THETA[k]), Model()))
+            for k in (np.arange(len(F)), index)
+        )
+        assert (np.ptp(one.noise) > 0.0) == weighed
+        np.testing.assert_allclose(many.noise.reshape(-1, 3), one.noise.reshape(-1, 3)[index])
+
+
 def test_scatters_that_differ_by_chance_alone_weigh_nothing():
     rng = np.random.default_rng(1)
     assert sum(balanced(system) is not system for system in (_system(np.full(3, 8e-6), rng) for _ in range(100))) <= 2

@@ -148,12 +148,18 @@ def left_by_joints(q, F, moved):
     return (moved.ravel() - A / size @ z).reshape(-1, 3), (A / size @ z).reshape(-1, 3)
 
 
+@pytest.mark.parametrize("stated", [None, 4e-6, 1e3])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_readings_that_springs_make_exactly_show_no_growth(sign):
+def test_readings_that_springs_make_exactly_show_no_growth(sign, stated):
+    """Whatever noise is stated: what is left over is rounding."""
     plain = pulled(count=8, noise=0.0)
     F = sign * plain.wrench[:, :3]
     made = left_by_joints(plain.theta, F, sign * plain.displacement[:, :3])[1]
-    assert np.isnan(rm.identify(ROBOT, rm.LoadTests(F, made, theta=plain.theta)).inquest.growth)
+    tests = rm.LoadTests(F, made, theta=plain.theta, noise=stated)
+    inquest = rm.identify(ROBOT, tests).inquest
+    assert np.isnan(inquest.growth)
+    assert np.isnan(inquest.lack)
+    assert not inquest.suspects
 
 
 @pytest.mark.parametrize(("part", "noise"), [(1.0, 2e-5), (0.01, 2e-11)])
@@ -240,3 +246,55 @@ def test_rows_that_count_from_below_zero_are_asked_too():
     found = [rm.identify(ROBOT, replace(tests, row=np.arange(20) + first)).inquest for first in (1, 0, -19)]
     assert np.ptp([each.before for each in found]) == 0.0
     assert [len(each.suspects) for each in found] == [0, 0, 0]
+
+
+@pytest.mark.parametrize("kind", ["zero", "points"])
+def test_cables_are_aimed_anew_where_a_zero_or_a_point_is_sought(kind):
+    """Forces are calculated from the pulley and the stated posture; the cable pulled from where the arm really was."""
+    off, aside = np.radians(3.0) * (np.arange(6) == 1), np.array([0.09, 0.096, -0.072])
+    pulley = np.array([3.4, -2.2, 1.6])
+    q = postures(ARM, 16, np.random.default_rng(8))
+    said, point = (q - off, TIP) if kind == "zero" else (q, TIP + aside)
+    rig = Rig(load_point=point, gauge_point=TIP, pulleys=(tuple(pulley),), noise=2e-6)
+    made = make(ARM, rig, q=q, seed=8)
+    tip = np.array([flange[:3, :3] @ TIP + flange[:3, 3] for *_, flange in map(ARM.frames, said)])
+    way = (pulley - tip) / np.linalg.norm(pulley - tip, axis=1)[:, None]
+    F = way * np.linalg.norm(made.F, axis=1)[:, None]
+    result = rm.identify(ROBOT, rm.LoadTests(F, made.moved, theta=said, pulley=np.tile(pulley, (16, 1))))
+    first = result.inquest.likeliest[0]
+    assert first.cause.kind == kind
+    if kind == "zero":
+        assert (first.cause.at, np.degrees(first.off)) == (2, pytest.approx(3.0, abs=0.05))
+    assert first.error < 0.1 * result.inquest.before
+
+
+def test_a_drift_of_the_gauges_leaves_what_was_read_as_rotation():
+    """A drift along z beside an offset along x, and rotations that are right: those are no reading of the gauges."""
+    plain = pulled(count=16, noise=0.0)
+    turned = np.zeros((16, 3))
+    for k, (q, F) in enumerate(zip(plain.theta, plain.wrench[:, :3], strict=True)):
+        *joints, flange = ARM.frames(q)
+        for c, frame in zip(ARM.C_theta, joints, strict=True):
+            arm = flange[:3, :3] @ TIP + flange[:3, 3] - frame[:3, 3]
+            turned[k] += c * float(frame[:3, 2] @ np.cross(arm, F)) * frame[:3, 2]
+    read = plain.displacement[:, :3] + np.linspace(0.0, 2e-4, 16)[:, None] * [0, 0, 1] + 1e-4 * np.array([1.0, 0, 0])
+    noise = 1e-6 * np.random.default_rng(3).standard_normal((16, 6))
+    result = rm.identify(ROBOT, rm.LoadTests(plain.wrench, np.hstack([read, turned]) + noise, theta=plain.theta))
+    first = result.inquest.likeliest[0]
+    assert first.cause.kind == "drift"
+    assert first.error < 0.05 * result.inquest.before
+
+
+@pytest.mark.parametrize(("fit", "asked"), [("force", {"gauge"}), ("gauge", {"force"})])
+def test_a_point_that_is_fitted_is_asked_no_more(fit, asked):
+    """Both points are off: of those that the fit takes as stated each is a cause, alone and with what else is."""
+    tests = pulled(load_point=TIP + np.array([0.09, 0.096, -0.072]), stated=TIP, count=10, noise=1e-6)
+    aside = np.array(
+        [
+            ARM.yields(q, TIP, TIP + np.array([0.1, 0.0, 0.05]), F, {}) - ARM.yields(q, TIP, TIP, F, {})
+            for q, F in zip(tests.theta, tests.wrench[:, :3], strict=True)
+        ]
+    )
+    odd = replace(tests, displacement=tests.displacement + np.pad(aside, ((0, 0), (0, 3))))
+    found = rm.identify(ROBOT, odd, fit_points=fit).inquest.suspects
+    assert {each.cause.points for each in found if each.cause.kind == "points"} == asked

@@ -219,6 +219,16 @@ def test_those_and_only_those_on_the_bound_are_told(turned):
     np.testing.assert_array_equal(np.flatnonzero(~(result.C_theta > 0)), turned)
 
 
+@pytest.mark.parametrize("times", [1e-4, 1.0, 1e4])
+def test_what_is_held_at_zero_is_the_same_under_any_load(times):
+    """An arm that yields in proportion: loads and displacements so many times as large have the same compliances."""
+    tests = simulated_tests(ROBOT, *three_directions(poses(ROBOT, 10), 250.0))
+    C_theta = ROBOT.C_theta * np.where(np.arange(5) == 2, -0.1, 1.0)
+    b = (build_system(ROBOT, tests, Model()).A @ C_theta).reshape(len(tests), 3)
+    result = identify(ROBOT, LoadTests(times * tests.wrench, times * b, theta=tests.theta))
+    assert result.active_bounds == ("joint 3",)
+
+
 def test_column_scaling_shows_in_the_condition_number_only():
     theta, F = three_directions(nine_points(), 250.0)
     result = identify(ROBOT, simulated_tests(ROBOT, theta, F, noise=1e-6))

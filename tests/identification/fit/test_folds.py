@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from robomill.identification.fit.folds import fold_of_neighbours
+from robomill.errors import LoadTestError
+from robomill.identification.fit.folds import fold_of_neighbours, folds_of
 
 
 @pytest.mark.parametrize("poses", [1, 3, 7, 40, 101])
@@ -30,3 +31,19 @@ def test_poses_along_one_joint_are_cut_in_their_order():
     in_order = found[np.argsort(theta[:, 0])]
     assert (np.diff(in_order) != 0).sum() == 4
     assert np.bincount(found).tolist() == [6] * 5
+
+
+def test_what_is_left_out_together_is_as_it_is_asked():
+    """Forty poses along one joint, three tests each: anywhere, or blocks that no other one comes between."""
+    pose = np.tile(np.arange(40), 3)
+    theta = np.outer(0.1 * pose, [1.0, 0.0])
+    anywhere, near = folds_of("pose", pose, theta), folds_of("neighbours", pose, theta)
+    for fold in (anywhere, near):
+        assert np.bincount(fold).tolist() == [12] * 10
+        np.testing.assert_array_equal(fold.reshape(3, 40), [fold[:40]] * 3)
+    assert (np.diff(near[:40]) != 0).sum() == 9
+    assert (np.diff(anywhere[:40]) != 0).sum() > 25
+    np.testing.assert_array_equal(folds_of("pose", pose, np.sin(9.0 * theta)), anywhere)
+    np.testing.assert_array_equal(folds_of("neighbours", pose, None), anywhere)
+    with pytest.raises(LoadTestError, match="expected one of pose, neighbours"):
+        folds_of("row", pose, theta)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.identification.pull.lines_of_pull import _Lines, lines_of_pull
+from robomill.identification.pull.lines_of_pull import _Lines, _loose, lines_of_pull
 from robomill.identification.pull.pull_words import load_point, pull_findings
 from robomill.identification.record import identification_record, lines_of_pull_record
 from robomill.io.samples import samples_dir
@@ -165,6 +165,9 @@ def test_dead_weights_say_nothing_and_say_so(noise):
     tests = read(make(ARM, rig, 43, seed=6), rig)
     found = lines_of_pull(ROBOT, tests)
     assert found.says in ("parallel", "held-loosely")
+    assert (found.which == -1).all(), "no pulley"
+    assert found.pulley.shape == (0, 3)
+    assert np.isnan([found.gap, found.gap_stated]).all()
     assert found.shift is None
     record = lines_of_pull_record(found, ROBOT, tests)
     assert record["pulley_mm"] is record["load_point_mm"] is None
@@ -276,3 +279,47 @@ def test_a_fit_that_makes_up_for_what_its_model_lacks_is_told_by_the_lines_of_pu
     whole = rm.identify(ROBOT, tests, "joints+bending", bending="auto", fit_points="both")
     assert whole.choice.bending_joints == (2,)
     assert "points-disagree" not in {f.code for f in identification_record(ROBOT, tests, whole)[1]}
+
+
+@pytest.mark.parametrize("first", [12, 28])
+def test_the_pulley_that_is_recorded_is_that_of_most_rows(first):
+    rig = Rig(pulleys=PULLEYS[:2])
+    tests = read(make(ARM, rig, 60, seed=1), rig)
+    tests = tests.select(np.sort(np.concatenate([2 * np.arange(first), 2 * np.arange(40 - first) + 1])))
+    record = lines_of_pull_record(lines_of_pull(ROBOT, tests), ROBOT, tests)
+    np.testing.assert_allclose(record["pulley_mm"], 1e3 * np.array(PULLEYS[first < 20]), atol=1e-2)
+
+
+@pytest.mark.parametrize("turns", [False, True])
+def test_a_tool_that_turns_from_pulley_to_pulley_alone_cannot_tell_its_load_point(turns):
+    """Each pulley moves with the load point then, as turned as the tool is; taken for one pulley they would hold it."""
+    robot, rng = rm.load_robot("slavkovic_5r"), np.random.default_rng(8)
+    place = rng.uniform([-0.5, -1.6, -0.3], [0.5, -1.1, 0.1], (40, 3))
+    second = np.arange(40) >= 20
+    lean = np.where(second[:, None], [0.2, -0.15], [-0.1, 0.1]) + turns * rng.uniform(-0.2, 0.2, (40, 2))
+    tests = rm.LoadTests(np.ones((40, 3)), np.full((40, 3), 1e-4), x_M=np.concatenate([place, lean], axis=1))
+    T = tests.with_joints(robot).tool_poses(robot)  # five joints turn it about its own axis as they must
+    point, pulleys = np.array([0.0, 0.0, 0.1]), np.array([[1.5, -3.0, 0.5], [-1.8, -2.5, 1.2]])
+    F = pulleys[second.astype(int)] - T[:, :3, 3] - T[:, :3, :3] @ point
+    found = lines_of_pull(robot, replace(tests, wrench=np.pad(F, ((0, 0), (0, 3)))).with_joints(robot))
+    assert found.says == "met"
+    assert (found.shift is None) == (not turns)
+    if turns:
+        np.testing.assert_allclose(found.shift, point, atol=1e-5)
+    moved = 0.0 if turns else T[[0, 20], :3, :3] @ point
+    order = [0, 1] if found.which[0] == 0 else [1, 0]
+    np.testing.assert_allclose(found.pulley[order], pulleys - moved, atol=1e-5)
+
+
+@pytest.mark.parametrize(("std", "loose"), [(0.99, False), (1.01, True), (np.inf, True)])
+@pytest.mark.parametrize("at", [0, 1])
+def test_a_pulley_is_held_loosely_where_two_standard_errors_are_half_the_way_to_it(std, loose, at):
+    """Four metres away, along whatever direction it is known least; the other pulley is 40 m away and known as well."""
+    turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
+    covariance = np.diag(np.repeat([1e-6, 1.0, 1.0], 3))
+    own = slice(3 + 3 * at, 6 + 3 * at)
+    covariance[own, own] = turn @ np.diag([1e-4, std**2, 1e-2]) @ turn.T if np.isfinite(std) else np.inf
+    which = np.repeat([at, 1 - at], 8)
+    way = np.where(which == at, -4.0, 40.0) * np.linspace(0.9, 1.1, 16)
+    way[:8] = [-3.0, -3.5, -4.0, -4.0, -4.0, -4.0, -4.5, -9.0]
+    assert _loose(np.zeros((2, 3)), covariance, way, which) == loose

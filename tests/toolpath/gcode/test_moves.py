@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 
+from robomill.errors import GCodeError
 from robomill.toolpath.gcode import interpret, read_gcode
 
 
@@ -122,3 +123,22 @@ def test_cuts_from_where_only_the_machine_knows_are_no_cuts_and_that_is_said() -
 def test_sideways_from_a_home_in_x_and_y_nothing_is_cut() -> None:
     path = read_gcode("G21 G90 G0 X1 Y1 Z-1\nG28 X5 Y5\nG1 X9 Y9 F100\nX12\nM30\n")
     assert [int(b) for b in path.block[path.cutting]] == [4]
+
+
+@pytest.mark.parametrize("dwell", ["", " P100"])
+@pytest.mark.parametrize("dialect", ["auto", "fanuc"])
+def test_a_retract_by_hand_is_said_whether_or_not_the_line_waits(dwell: str, dialect: str) -> None:
+    program = interpret(f"G21 G90 S100 M3\nG0 X0. Y0. Z9.\nG88 X1. Z-1. R1. F9.{dwell}\nG80\nM30\n", dialect=dialect)
+    assert [each.line for each in program.findings if each.code == "manual-retract"] == [3]
+    np.testing.assert_allclose(program.end[-1] * 1e3, [1, 0, -1])
+
+
+@pytest.mark.parametrize("code", [82, 86, 88, 89])
+@pytest.mark.parametrize("dialect", ["auto", "linuxcnc"])
+def test_a_cycle_that_waits_at_the_bottom_waits_for_p_and_needs_it_on_linuxcnc(code: int, dialect: str) -> None:
+    """Every hole, the second with what the first one said."""
+    text = f"G21 G90 S100 M3\nG0 X0 Y0 Z9\nG{code} X1 Z-1 R1 F9{{}}\nX5\nG80\nM2\n"
+    assert interpret(text.format(" P2.5"), dialect=dialect).dwell_time == pytest.approx(5.0)
+    if dialect == "linuxcnc":
+        with pytest.raises(GCodeError, match=f"Line 3: G{code} needs P, its dwell in seconds"):
+            interpret(text.format(""), dialect=dialect)

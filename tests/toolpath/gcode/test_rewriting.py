@@ -360,3 +360,15 @@ def test_a_line_that_goes_home_is_kept_where_nothing_is_corrected_that_it_moves(
     else:
         with pytest.raises(GCodeError, match="cannot be led elsewhere"):
             Rewriter(program, name, {}, ends).write(lines, executed)
+
+
+@pytest.mark.parametrize(("plane", "words"), [("G17", "XYIJ"), ("G18", "XZIK"), ("G19", "YZJK")])
+def test_a_further_piece_of_an_arc_says_the_places_of_its_plane_and_the_height_where_it_climbs(plane, words) -> None:
+    """Half circles in four pieces; every second piece ends where one of its two places stays."""
+    first, second, i, _ = words
+    third = next(letter for letter in "XYZ" if letter not in words)
+    text = f"G21 G90 {plane} F500\nG0 X0 Y0 Z0\nG1 X1 Y1 Z1\nG2 {first}21 {second}1 {i}10{{}}\nM2\n"
+    for climb, said in (("", words), (f" {third}9", "".join(sorted(f"{words[:2]}{third}")) + words[2:])):
+        found, _ = rewritten(text.format(climb), "auto", SHIFT, 4)
+        lines = found.text.splitlines()[-4:-1]
+        assert [re.sub(r"[^A-Z]", "", line) for line in lines] == [said] * 3

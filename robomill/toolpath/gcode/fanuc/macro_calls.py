@@ -24,7 +24,8 @@ _ARGUMENTS = dict(
 )
 _SETS = 10
 """I, J and K can be given so many times."""
-_CALL = re.compile(r"g(65|66|67)(?![\d.])")
+_CALL = re.compile(r"g(65|66)(?![\d.])")
+_ENDS_MODAL = 670
 _WORD = re.compile(r"([A-FH-MP-Z])\s*[-+]?\s*#\s*(\d+)(?![\d\s]*[-+*/])", re.IGNORECASE)
 _ASKS = re.compile(r"#(\d+)\s*(EQ|NE)\s*(#0(?!\d)|[-+]?[\d.]+)|#0\s*(EQ|NE)\s*#(\d+)", re.IGNORECASE)
 _COPIES = re.compile(r"\s*(?:/\s*)?(?:N\d+\s*)?#\s*(\d+)\s*=\s*#\s*(\d+)\s*")
@@ -44,7 +45,7 @@ def is_empty(machine: Machine, number: int) -> bool:
 
 
 class MacroCalls(MacroB):
-    """Follows G65 and G66."""
+    """Follows G65, G66 and G67."""
 
     modal_macro: tuple[int, int, int, dict[int, float]] | None = None
 
@@ -78,9 +79,6 @@ class MacroCalls(MacroB):
         if found is None or not self.machine.is_fanuc:
             return False
         reader.at = found.end()
-        if found[1] == "67":
-            self.modal_macro = self.machine.modal = None
-            return True
         given, number, repeats = self._arguments(reader)
         start = self.o_words(self.main).bare.get(str(number))
         if start is None:
@@ -119,6 +117,13 @@ class MacroCalls(MacroB):
         if number != round(number) or number < 0 or repeats != round(repeats) or not 0 <= repeats <= 9999:
             raise reader.refuse("a macro is called by P, the number of a program, and L, up to 9999 repeats.")
         return given, round(number), round(repeats)
+
+    def fanuc_call(self, block: Block) -> bool:
+        """G67 ends what G66 began, wherever it stands on its line; the other words of the line are executed."""
+        if self.machine.is_fanuc and _ENDS_MODAL in block.unknown_g:
+            block.unknown_g.remove(_ENDS_MODAL)
+            self.modal_macro = self.machine.modal = None
+        return super().fanuc_call(block)
 
     def call_modal(self, block: Block) -> None:
         """G66 calls its macro behind every line that moves, and not from within it."""

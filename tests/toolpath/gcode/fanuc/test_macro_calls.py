@@ -173,3 +173,12 @@ def test_what_the_control_says_of_itself() -> None:
 def test_g67_ends_a_modal_macro_that_is_not_called_from_within_itself() -> None:
     body = "G66 P9 X3. L2\nG0 Y1\nM8\nG67\nY5\nM30\nO9\nG91 X#24\nG90\nM99\n"
     assert places(body) == [(0, 1, 5), (3, 1, 5), (6, 1, 5), (6, 5, 5)]
+
+
+@pytest.mark.parametrize(
+    "line", ["G67 X30", "G90 G67 X30", "G0 X30 G67", "N5 G80 G67 G0 X30 (end)", "G67\nX30", "G67 M9\nX30"]
+)
+def test_g67_ends_a_modal_macro_wherever_it_stands_and_its_line_is_executed(line: str) -> None:
+    body = f"G66 P9 Z-2 F100\nX10\n{line}\nY4\nM30\nO9\nG1 Z#26 F#9\nG0 Z5\nM99\n"
+    assert places(body) == [(10, 0, 5), (10, 0, -2), (10, 0, 5), (30, 0, 5), (30, 4, 5)]
+    assert not [each for each in read(body).findings if "G67" in each.message]

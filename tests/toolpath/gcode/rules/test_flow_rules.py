@@ -130,3 +130,25 @@ def test_the_first_word_at_or_behind_a_line(count: int) -> None:
     words = np.array([(line,) for line in lines], [("line", "i8")]).view(np.recarray)
     for line in range(22):
         assert first_word(words, line) == sum(known < line for known in lines)
+
+
+TAKES = {  # values behind an O word that LinuxCNC reads there, and a program around it
+    "if": (1, "o1 if{}\nG0 X1\no1 endif"),
+    "elseif": (1, "o1 if [0]\no1 elseif{}\nG0 X1\no1 endif"),
+    "while": (1, "G0 X1\no1 while{}\no1 break\no1 endwhile"),
+    "repeat": (1, "o1 repeat{}\nG0 X1\no1 endrepeat"),
+    "return": (1, "o1 sub\nG0 X1\no1 return{}\no1 endsub\no1 call"),
+    "endsub": (1, "o1 sub\nG0 X1\no1 endsub{}\no1 call"),
+    "sub": (0, "o1 sub{}\nG0 X1\no1 endsub\no1 call"),
+    "do": (0, "o1 do{}\nG0 X1\no1 while [0]"),
+    "endif": (0, "o1 if [1]\nG0 X1\no1 endif{}"),
+}
+
+
+@pytest.mark.parametrize("word", TAKES)
+def test_a_value_more_than_a_word_takes_is_refused(word: str) -> None:
+    most, body = TAKES[word]
+    head = "G21 G90\n"
+    assert interpret(f"{head}{body.format(' [1]' * most)}\nM2\n").end[-1, 0] == pytest.approx(1e-3)
+    with pytest.raises(GCodeError, match=rf"found '\[7\]' after O1 {word}; remove it"):
+        interpret(f"{head}{body.format(' [1]' * most + ' [7]')}\nM2\n")

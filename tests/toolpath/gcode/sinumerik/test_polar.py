@@ -118,3 +118,11 @@ def test_a_radius_of_nothing_leads_to_the_pole_and_none_leads_further() -> None:
     assert ends("G1 AP=90 RP=5\n") == [[0, 5]]  # without a pole about the zero of the part
     with pytest.raises(GCodeError, match="a radius of 0 or more"):
         read("G111 X10 Y20\nG1 AP=0 RP=-1\n")
+
+
+def test_a_pole_is_read_from_a_known_place_in_the_plane_whatever_the_height() -> None:
+    """G75 leads an axis to the machine's fixed point, and only the machine knows where that is."""
+    assert ends("G0 X3 Y4\nG75 Z1=0\nG110 X1 Y1\nG0 AP=0 RP=2\n")[-1] == [6, 5]
+    for axis in "XY":
+        with pytest.raises(GCodeError, match="Line 5: G110 is read in G17, from a known place"):
+            read(f"G0 X3 Y4\nG75 {axis}1=0\nG110 X1 Y1\nG0 AP=0 RP=2\n")
