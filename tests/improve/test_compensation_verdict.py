@@ -23,7 +23,7 @@ def test_every_sample_whose_force_is_coupled_is_corrected_and_judged_throughout(
     assert not run.not_judged.any()
     assert run.reached.all()
     assert run.verdict.level in ("ok", "tight")
-    assert found.after.max < found.before.max
+    assert found.after.max < 0.35 * found.before.max
     assert "not-known" not in {each.code for each in found.findings}
 
 
