@@ -208,18 +208,18 @@ def _halved(g: Push, start: FloatArray, way: FloatArray) -> tuple[Settled, Float
     over_low, over_high = float((at_low - start) @ along), float((at_high - start) @ along) - length
     room = NARROW * 2.0 ** np.ceil(np.log2(max(length / NARROW, 1.0)))  # twice the way, at most: a look to spare
     while high - low > NARROW and count < MOST:
-        x = _between((low, over_low), (high, over_high), room, length)
-        there = g(start + x * along)
-        over = float((there - start) @ along) - x
+        at = _between((low, over_low), (high, over_high), room, length)
+        place = start + at * along
+        there = g(place)
+        over = float((there - place) @ along)
         count, room = count + 1, 0.5 * room
         if abs(over) <= SURE:
-            place = start + x * along
             rest = float(np.abs(there - place).max())
             return Settled(place, rest, count, float("nan"), ((place, 1.0),)), there, there
         if over > 0.0:
-            low, at_low, over_low = x, there, over
+            low, at_low, over_low = at, there, over
         else:
-            high, at_high, over_high = x, there, over
+            high, at_high, over_high = at, there, over
     x = start + 0.5 * (low + high) * along
     apart = float((at_low - at_high) @ along)
     weight = float(np.clip((x - at_high) @ along / apart, 0.0, 1.0)) if apart > 0.0 else 1.0

@@ -118,7 +118,8 @@ class _Walk:
         def meets(delta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
             if (key := delta.tobytes()) not in seen:
                 shift = to_part(np.nan_to_num(delta))
-                row, sectors = self.march.meet(i, p[i - 1] + shift, p[i] + shift, goes and goes.to(p[i] + shift))
+                fed = None if goes is None else goes.to(p[i] + shift)
+                row, sectors = self.march.meet(i, p[i - 1] + shift, p[i] + shift, fed)
                 seen[key] = row, sectors, pushed(row, sectors)
             return seen[key]
 
