@@ -8,7 +8,6 @@ import pty
 import re
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -17,25 +16,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robomill.cli import main, serve
+from robomill.cli import main
 from robomill.io.robot.robots import load_robot
 from robomill.io.robot.writer import robot_to_toml
 from robomill.io.samples import samples_dir
-from robomill.ui.keeping.settings import Settings
+from tests.cli.asked import record, run
 
 FLUTE = samples_dir() / "paper_flute"
-
-
-def run(capsys, *words: object) -> tuple[int, str, str]:
-    code = main([str(w) for w in words])
-    out, err = capsys.readouterr()
-    return code, out, err
-
-
-def record(capsys, *words: object) -> dict:
-    code, out, err = run(capsys, *words, "--json")
-    assert code == 0, err
-    return json.loads(out)
 
 
 def test_robots(capsys) -> None:
@@ -273,46 +260,6 @@ def test_text_output_reads_like_a_report(capsys) -> None:
     assert "joint 5" in out
 
 
-def test_map_marks_what_is_not_reached(capsys, tmp_path: Path) -> None:
-    words = ("--quantity", "C_yy,det_J", "--z", "0", "--x", "-600:600:300", "--y", "-3000:-1000:500")
-    r = record(capsys, "map", "slavkovic_5r", *words, "--out", tmp_path / "map.csv")
-    values = np.array(r["quantities"][0]["values"], dtype=float)
-    assert values.shape == (5, 5, 1)
-    assert np.isnan(values[:, 0]).all()
-    assert np.isfinite(values[:, -1]).all()
-    assert r["reached"]["of"] == 25
-    assert (tmp_path / "map.csv").read_text().count("\n") == 26
-
-
-def test_a_map_of_which_nothing_is_reached_is_not_green(capsys) -> None:
-    code, out, _ = run(capsys, "map", "slavkovic_5r", "--quantity", "C_yy,C_yy", "--z", "9000", "--x", "0", "--y", "0")
-    assert code == 1
-    assert "The arm reaches none of these points" in out
-
-
-@pytest.mark.parametrize("quantity", ["C_yy,det_J", " C_yy , det_J ", "C_yy,det_J,", ",C_yy,,det_J"])
-def test_blanks_and_spare_commas_in_a_list_of_quantities_mean_nothing(capsys, quantity: str) -> None:
-    r = record(capsys, "map", "slavkovic_5r", "--quantity", quantity, "--z", "0", "--x", "0", "--y", "-1300")
-    assert [each["name"] for each in r["quantities"]] == ["C_yy", "det_J"]
-
-
-@pytest.mark.parametrize("quantity", ["", " ", ","])
-def test_a_map_of_nothing_is_refused(capsys, quantity: str) -> None:
-    words = ("map", "slavkovic_5r", "--quantity", quantity, "--z", "0", "--x", "0", "--y", "-1300")
-    code, _, err = run(capsys, *words)
-    assert code == 2
-    assert "--quantity: no quantity is named; give C_yy, det_J or another" in err
-
-
-def test_a_map_says_where_its_last_point_is_and_each_quantity_once(capsys) -> None:
-    """With steps of 50 mm from 0 no point falls on 120."""
-    words = ("--quantity", "C_yy,C_yy", "--z", "0", "--x", "0:120:50", "--y", "-1300")
-    code, out, _ = run(capsys, "map", "slavkovic_5r", *words)
-    assert code == 0
-    assert "0.0 mm to 100.0 mm" in out
-    assert out.count("\nC_yy ") == 1
-
-
 def test_a_joint_beyond_its_limits_is_not_reached(capsys) -> None:
     words = ("pose", "slavkovic_5r", "--theta-deg", "500,0,0,0,0")
     code, out, _ = run(capsys, *words)
@@ -323,54 +270,6 @@ def test_a_joint_beyond_its_limits_is_not_reached(capsys) -> None:
     assert (code, found["reached"]) == (1, False)
     assert found["C_um_per_N"][1][1] > 0.0  # what a person asked for is there all the same
     assert record(capsys, "pose", "slavkovic_5r", "--theta-deg", "119,0,0,0,0")["reached"] is True
-
-
-def test_what_made_up_load_tests_gave_stays_marked_so(capsys, tmp_path: Path) -> None:
-    file = tmp_path / "ident.toml"
-    assert run(capsys, "identify", "slavkovic_5r", "nine_points", "--out", file)[0] == 0
-    found = record(capsys, "simulate", FLUTE, "--robot", file)
-    assert "joint compliances (synthetic)" in [each["what"] for each in found["assumed"]]
-
-
-def test_map_at_the_papers_point(capsys) -> None:
-    r = record(capsys, "map", "slavkovic_5r", "--quantity", "C_yy", "--z", "0", "--x", "0", "--y", "-1300")
-    assert r["quantities"][0]["values"][0][0][0] == pytest.approx(2.295, abs=5e-4)
-
-
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (("--quantity", "C_qq", "--z", "0", "--x", "0", "--y", "-1300"), "C_qq"),
-        (
-            ("--quantity", "C_yy", "--z", "0", "--x", "0:1", "--y", "-1300"),
-            "--x: expected low:high:step or one number, in mm",
-        ),
-        (("--quantity", "C_yy", "--z", "0", "--x", "0:100:0", "--y", "-1300"), "step above zero"),
-    ],
-)
-def test_bad_maps_are_refused(capsys, words, sentence: str) -> None:
-    code, _, err = run(capsys, "map", "slavkovic_5r", *words)
-    assert code == 2
-    assert sentence in err
-
-
-def test_identify_the_papers_sample(capsys) -> None:
-    tests = samples_dir() / "load_tests" / "grid_45x6.csv"
-    r = record(capsys, "identify", "slavkovic_5r", tests, "--model", "joints")
-    keys = {
-        "C_theta",
-        "stderr",
-        "ci95",
-        "correlation",
-        "condition",
-        "residual_rms_mm",
-        "cv_relative_error",
-        "outliers",
-        "unseen_joints",
-        "model",
-    }
-    assert keys <= set(r)
-    assert len(r["C_theta"]) == 5
 
 
 def test_an_apt_file_is_read_too(capsys, tmp_path: Path) -> None:
@@ -396,28 +295,6 @@ def test_a_letter_o_for_a_zero_is_guessed(capsys, tmp_path: Path) -> None:
     assert "ine 2" in err
 
 
-@pytest.mark.parametrize(
-    ("words", "expected"),
-    [
-        ((), ["--server.address=127.0.0.1", "--browser.gatherUsageStats=false"]),
-        (
-            ("--server.port", "9"),
-            ["--server.address=127.0.0.1", "--browser.gatherUsageStats=false", "--server.port", "9"],
-        ),
-        (("--server.address=0.0.0.0",), ["--browser.gatherUsageStats=false", "--server.address=0.0.0.0"]),
-    ],
-)
-def test_without_a_verb_the_app_is_served_on_this_machine_only(monkeypatch, words, expected) -> None:
-    called = []
-    monkeypatch.setattr(subprocess, "call", lambda command: called.append(command) or 7)
-    assert main(list(words)) == 7
-    (command,) = called
-    assert command[:4] == [sys.executable, "-m", "streamlit", "run"]
-    assert Path(command[4]).name == "app.py"
-    assert Path(command[4]).is_file()
-    assert command[5:] == expected
-
-
 def test_ctrl_c_in_the_midst_of_a_run_ends_it_with_130_and_one_line(tmp_path) -> None:
     """A run of far longer than the terminal takes to be read: 50 000 coupled steps."""
     folder = Path(shutil.copytree(FLUTE, tmp_path / "flute"))
@@ -440,102 +317,9 @@ def test_ctrl_c_in_the_midst_of_a_run_ends_it_with_130_and_one_line(tmp_path) ->
     os.close(leader)
 
 
-def test_an_interrupted_app_exits_with_130(monkeypatch) -> None:
-    def interrupted(command: list[str]) -> int:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(subprocess, "call", interrupted)
-    assert main([]) == 130
-
-
-@pytest.fixture
-def served(monkeypatch) -> list[tuple[list[str], dict[str, str]]]:
-    """What ``robomill serve`` would have become."""
-    became: list[tuple[list[str], dict[str, str]]] = []
-    monkeypatch.setattr(serve, "_become", lambda command, environment: became.append((command, environment)) or 0)
-    monkeypatch.setattr(serve, "_can_listen", lambda address, port: None)
-    return became
-
-
-def test_a_server_that_cannot_listen_says_so_in_a_sentence(capsys) -> None:
-    """An address that is none, one of another machine (for documentation, by RFC 5737), and a port that is taken."""
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
-        for words in ("--address nohost.invalid", "--address 192.0.2.1", f"--port {port}"):
-            assert main(["serve", *words.split()]) == 2
-            said = capsys.readouterr().err
-            assert said.startswith("robomill: --address ")
-            assert said.count("\n") == 1
-
-
 def test_a_pose_farther_than_any_machine_is_refused(capsys) -> None:
     assert main(["ik", "slavkovic_5r", "--pose", "1e308,0,0,0,0"]) == 2
     assert "--pose: it lies" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("count", ["0", "-1", "100000", "two"])
-def test_as_many_tests_as_nobody_does_are_not_planned(capsys, count) -> None:
-    with pytest.raises(SystemExit) as left:
-        main(["identify", "slavkovic_5r", "tests.csv", "--next", count])
-    assert left.value.code == 2
-    assert "--next: expected a whole number from 1 to 100" in capsys.readouterr().err
-
-
-def test_a_server_for_others_shows_no_code_and_listens_on_this_machine_unless_told(served) -> None:
-    assert main(["serve"]) == 0
-    ((command, environment),) = served
-    options = dict(word.split("=", 1) for word in command[5:])
-    assert options["--server.address"] == "127.0.0.1"
-    assert options["--client.showErrorDetails"] == "none"
-    assert options["--server.enableXsrfProtection"] == options["--server.enableCORS"] == "true"
-    assert options["--browser.gatherUsageStats"] == "false"
-    assert Settings.of(environment) == Settings.of(dict(os.environ))
-
-
-def test_a_folder_that_cannot_be_written_is_said_before_anything_is_served(served, capsys) -> None:
-    assert main(["serve", "--autosave-folder", "/proc/robomill"]) == 0
-    assert "nothing can be kept in /proc/robomill; every page says so" in capsys.readouterr().err
-    assert main(["serve", "--autosave", "off", "--autosave-folder", "/proc/robomill"]) == 0
-    assert capsys.readouterr().err == ""
-    assert len(served) == 2
-
-
-def test_a_server_keeps_few_heaps_unless_its_owner_says_otherwise(served, monkeypatch) -> None:
-    monkeypatch.setenv("MALLOC_ARENA_MAX", "7")
-    assert main(["serve"]) == 0
-    ((_, environment),) = served
-    assert environment["MALLOC_ARENA_MAX"] == "7"
-    assert environment["MALLOC_MMAP_THRESHOLD_"] == "1048576"
-
-
-def test_every_setting_of_a_server_reaches_it(served) -> None:
-    said = "--address 0.0.0.0 --port 80 --host-name robomill.example.org --base-path /robomill/ --max-upload-mb 5"
-    kept = "--autosave off --autosave-folder /srv/work --autosave-mb 50 --autosave-days 7"
-    assert main(["serve", *said.split(), *kept.split()]) == 0
-    ((command, environment),) = served
-    for word in (
-        "--server.address=0.0.0.0",
-        "--server.port=80",
-        "--browser.serverAddress=robomill.example.org",
-        "--server.baseUrlPath=robomill",
-        "--server.maxUploadSize=5",
-    ):
-        assert word in command
-    settings = Settings.of(environment)
-    assert (settings.on, settings.folder, settings.all_MB, settings.days) == (False, Path("/srv/work"), 50.0, 7.0)
-
-
-@pytest.mark.parametrize(
-    "words", ["--port 0", "--port 1e3", "--max-upload-mb -1", "--autosave-days never", "--autosave-mb 0"]
-)
-def test_a_setting_that_cannot_be_is_refused_before_anything_is_served(served, capsys, words) -> None:
-    try:
-        code = main(["serve", *words.split()])
-    except SystemExit as left:  # argparse's own refusal
-        code = left.code
-    assert code == 2
-    assert "expected" in capsys.readouterr().err
-    assert served == []
 
 
 def test_version_and_help_are_no_apps(capsys) -> None:
@@ -593,32 +377,3 @@ def test_moves_of_apt_are_written_too(capsys, tmp_path: Path) -> None:
     assert rapid == {"line": 4, "kind": "traverse", "start": [0, 0, 5], "end": [1, 0, 5], "axis": [0, 0, 1]}
     assert (cut["kind"], cut["line"], cut["feed_mm_min"], cut["end"]) == ("feed", 6, pytest.approx(60), [1, 0, 0])
     assert cut["axis"] == pytest.approx([0, 0.6, 0.8])
-
-
-def test_a_tilted_map(capsys) -> None:
-    words = ("map", "slavkovic_5r", "--quantity", "C_yy", "--z", "0", "--x", "0", "--y", "-1300")
-    tilted = record(capsys, *words, "--a-deg", "-10", "--b-deg", "5")
-    assert (tilted["a_deg"], tilted["b_deg"]) == (pytest.approx(-10), pytest.approx(5))
-    answer = record(capsys, "ik", "slavkovic_5r", "--pose", "0,-1300,0,-10,5")
-    pose = record(capsys, "pose", "slavkovic_5r", "--theta-deg", ",".join(map(repr, answer["theta_deg"])))
-    assert tilted["quantities"][0]["values"][0][0][0] == pytest.approx(pose["C_um_per_N"][1][1], rel=1e-9)
-
-
-def test_bending_joints_have_to_be_numbers(capsys) -> None:
-    tests = samples_dir() / "load_tests" / "nine_points.csv"
-    code, _, err = run(capsys, "identify", "slavkovic_5r", tests, "--bending-joints", "")
-    assert code == 2
-    assert "--bending: expected one or more numbers" in err
-
-
-def test_named_bending_joints_bend_without_a_word_of_the_model(capsys) -> None:
-    """They were left out in silence where --model was not given too."""
-    tests = str(samples_dir() / "load_tests" / "tilted_bending_tool.csv")
-    found = [
-        record(capsys, "identify", "slavkovic_5r", tests, *words)
-        for words in ((), ("--bending", "2"), ("--bending", "2", "--model", "joints+bending"), ("--bending", "auto"))
-    ]
-    assert [each["model"] for each in found][:3] == ["joints", "joints+bending", "joints+bending"]
-    assert found[1]["C_theta"] == found[2]["C_theta"]
-    assert found[1]["bending_joints"] == [2]
-    assert found[1]["C_theta"] != found[0]["C_theta"]
