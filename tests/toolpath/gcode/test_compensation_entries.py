@@ -1,0 +1,180 @@
+"""Where compensation of the cutter begins and ends: entries by lines and arcs, what they need, and their images."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from robomill.errors import GCodeError
+from robomill.toolpath.gcode import Tool, interpret
+from tests.toolpath.gcode.outlines import R, xy
+
+ENTRIES = {  # where the cutter of 10 mm stands as the cut of the wall x = 0 begins, and where it meets the next wall
+    "fanuc": "G21 G90 G17 T1 M6 F100\nG0 X{x} Y{y} Z0\nG41 D1 G1 X0 Y0\n{down}Y50\nX50\nG40 X80\nM30\n",
+    "sinumerik": "G71 G90 G17 T1 D1 F100\nM6\nG0 X{x} Y{y} Z0\nG41 G1 X0 Y0\n{down}Y50\nX50\nG40 X80\nM30\n",
+    "heidenhain": "BEGIN PGM A MM\nTOOL CALL 1 Z\nF9\nL X{x} Y{y} Z0 FMAX\nL X0 Y0 RL\n{down}L Y50\nL X50\nL X80 R0\n",
+}
+
+
+@pytest.mark.parametrize("dialect", ENTRIES)
+@pytest.mark.parametrize("start", [(-20, 0), (-20, -20), (0, -20), (20, -20), (20, 0), (-2, -1)])
+@pytest.mark.parametrize("down", ["", "{L}Z-3\n"])
+def test_the_entry_ends_square_beside_the_start_of_the_contour(dialect: str, start, down: str) -> None:
+    """Fanuc type A, Sinumerik NORM and Heidenhain RL: wherever it comes from, and with a plunge in between."""
+    text = ENTRIES[dialect].format(x=start[0], y=start[1], down=down.format(L="L " if dialect == "heidenhain" else ""))
+    program = interpret(text, dialect=dialect, tools={1: Tool(1, 10e-3)})
+    places = [tuple(row) for row in (np.round(program.end[:, :2] * 1e3, 9) + 0.0).tolist()]
+    cuts = places[[tuple(p) for p in places].index((-5.0, 0.0)) :]
+    assert cuts[-4:] == [(-5, 50), (0, 55), (50, 55), (80, 50)]
+    assert cuts[:-4] == [(-5, 0)] * (2 if down else 1)
+
+
+def test_the_entry_before_an_arc_ends_square_to_its_start() -> None:
+    text = "G21 G90 G17 T1 M6 F100\nG0 X-20 Y-20 Z0\nG42 D1 G1 X0 Y0\nG3 X20 Y20 I0 J20\nG40 G1 X40\nM30\n"
+    program = interpret(text, dialect="fanuc", tools={1: Tool(1, 10e-3)})
+    np.testing.assert_allclose(program.end[1:3, :2] * 1e3, [[0, -5], [25, 20]], atol=1e-9)
+
+
+def test_compensation_said_once_more_changes_nothing() -> None:
+    text = "G21 G90 G17 T1 M6 F100\nG0 X0 Y-20 Z0\nG41 D1 G1 X0 Y0\nG41 Y50\n{}G40 X-30\nM30\n"
+    tools = {1: Tool(1, 10e-3), 2: Tool(2, 8e-3)}
+    program = interpret(text.format(""), dialect="fanuc", tools=tools)
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, [[-5, 0], [-5, 50], [-30, 50]], atol=1e-9)
+    for other in ("G42 Y60\n", "G41 D2 Y60\n"):
+        with pytest.raises(GCodeError, match="Line 5: G4[12] changes the side or the cutter without G40"):
+            interpret(text.format(other), dialect="fanuc", tools=tools)
+
+
+TURNED = "T1 D1 M6\n{0}\nG0 X0 Y-20\nG41 G1 X0 Y0\nY50\nX50\nG40 Y-20\nM30\n"
+
+
+def test_g451_goes_on_to_where_the_offset_cuts_meet() -> None:
+    """Sinumerik: a cutter of 10 mm beside the corner (0, 50), 90 degrees outside: (-5, 55), and no arc."""
+    tools = {1: Tool(1, 10e-3)}
+    head = "G71 G90 G17 F100\n"
+    sharp = interpret(head + TURNED.format("G451"), dialect="sinumerik", tools=tools)
+    np.testing.assert_allclose(sharp.end[1:, :2] * 1e3, [[-5, 0], [-5, 55], [50, 55], [50, -20]], atol=1e-9)
+    assert not (sharp.kind == 2).any()
+    for words in ("G450", "G451\nG450", ""):
+        around = interpret(head + TURNED.format(words), dialect="sinumerik", tools=tools)
+        assert (around.kind == 2).sum() == 1
+    slant = "T1 D1 M6\nG451\nG0 X-20\nG42 G1 X0\nX50\nX100 Y50\nG40 Y80\nM30\n"
+    corner = interpret(head + slant, dialect="sinumerik", tools=tools).end[2, :2] * 1e3
+    np.testing.assert_allclose(corner, [50 + 5 * np.tan(np.radians(22.5)), -5], atol=1e-9)
+    arc = "T1 D1 M6\nG451\nG0 X-20\nG42 G1 X0\nX50\nG3 X60 Y30 CR=30\nG40 G1 Y80\nM30\n"
+    with pytest.raises(GCodeError, match="Line 7: an outside corner beside an arc under G451"):
+        interpret(head + arc, dialect="sinumerik", tools=tools)
+
+
+@pytest.mark.parametrize("dialect", ["fanuc", "sinumerik"])
+def test_compensation_begins_on_a_straight_move_but_for_linuxcnc(dialect: str) -> None:
+    text = "G21 G90 F100\nT1 M6\nG0 X-20. Y0\nG41 D1 G2 X0 Y20. I20. J0\nG40 G1 Y80.\nM30\n"
+    with pytest.raises(GCodeError, match="Line 4: cutter compensation begins on a straight move"):
+        interpret(text, dialect=dialect, tools={1: Tool(1, 10e-3)})
+    assert len(interpret(text, dialect="linuxcnc", tools={1: Tool(1, 10e-3)}))
+
+
+@pytest.mark.parametrize("code", ["G41.1", "G42.1"])
+@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize("by_radius", [False, True])
+@pytest.mark.parametrize("seed", range(4))
+def test_an_entry_by_an_arc_ends_tangentially_beside_the_end_of_the_programmed_one(code, turn, by_radius, seed):
+    """LinuxCNC: from where the tool is, about a centre on the spoke of the programmed end, one radius beside that."""
+    rng = np.random.default_rng(seed)
+    centre = complex(*rng.uniform(-30, 30, 2))
+    start = centre + 9.0 * np.exp(1j * rng.uniform(-math.pi, math.pi))
+    end = centre + (start - centre) * np.exp(1j * turn * rng.uniform(0.5, 2.8))
+    how = "R9" if by_radius else f"I{(centre - start).real:.12f} J{(centre - start).imag:.12f}"
+    spoke = (end - centre) / abs(end - centre)
+    beyond = end + 8.0 * turn * 1j * spoke
+    text = (
+        f"G21 G90 G17 F600\nG0 {xy(start)}\n{code} D{2 * R}\nG{3 if turn > 0 else 2} {xy(end)} {how}\nG1 {xy(beyond)}\n"
+    )
+    program = interpret(f"{text}G40\nG1 X90 Y90\nM2\n")
+    inside = (turn > 0) == (code == "G41.1")
+    beside = end + (-R if inside else R) * spoke
+    found, about = (places[1, :2] @ [1e3, 1e3j] for places in (program.end, program.centre))
+    assert found == pytest.approx(beside, abs=1e-8)
+    assert program.start[1, :2] @ [1e3, 1e3j] == pytest.approx(start, abs=1e-9)
+    assert abs(about - start) == pytest.approx(abs(about - beside), abs=1e-8)
+    assert ((about - beside) / spoke).imag == pytest.approx(0.0, abs=1e-8)
+    assert ((about - beside) / spoke).real < 0.0
+    assert about + (start - about) * np.exp(1j * program.sweep[1]) == pytest.approx(beside, abs=1e-8)
+    assert program.sweep[1] * turn > 0.0
+    assert program.end[2, :2] @ [1e3, 1e3j] == pytest.approx(beside + (beyond - end), abs=1e-8)
+
+
+@pytest.mark.parametrize("code", ["G41.1", "G42.1"])
+@pytest.mark.parametrize("course", [0.3, 2.0, -2.5])
+@pytest.mark.parametrize("first", ["G1", "G2"])
+def test_an_entry_leads_farther_than_the_cutters_radius(code, course, first):
+    """From a place far from the origin; a straight one ends square beside its own end."""
+    side = 1j if code == "G41.1" else -1j
+    for length in (0.99 * R, 1.01 * R, 7.0):
+        end = 30 + 40j + length * np.exp(1j * course)
+        how = "" if first == "G1" else " R50"
+        text = f"G21 G90 G17 F600\nG0 X30 Y40\n{code} D{2 * R}\n{first} {xy(end)}{how}\nG40\nG1 X99\nM2\n"
+        if length < R:
+            with pytest.raises(GCodeError, match="^Line 4: the first (move|arc) with cutter compensation"):
+                interpret(text)
+        elif first == "G1":
+            beside = end + R * side * np.exp(1j * course)
+            assert interpret(text).end[1, :2] @ [1e3, 1e3j] == pytest.approx(beside, abs=1e-9)
+        else:
+            interpret(text)
+
+
+def test_an_arc_right_behind_g40_is_refused() -> None:
+    text = "G21 G90 G17 F600\nG0 X-8 Y0\nG41.1 D2\nG1 X0 Y0\nX20\nG40\n{}\nM2\n"
+    with pytest.raises(GCodeError, match="^Line 7: "):
+        interpret(text.format("G2 X30 Y-10 J-10"))
+    assert len(interpret(text.format("G1 X20 Y0\nG2 X30 Y-10 J-10")))
+
+
+CONTOUR = "G1 X0 Y-10\nY40\nG3 X-10 Y50 {}\nG1 X-30\nG2 X-50 Y70 {}\nG1 Y90\n"
+
+
+IMAGES = {
+    "fanuc": ("G21 G90 F100\nT1 M6\nG0 X-30 Y-30 Z0\n{}G0 X-30 Y-30\n{} D1 {}G40 G1 X-90 Y99\nM30\n", "R10.", "R20."),
+    "sinumerik": (
+        "G71 G90 F100\nT1 D1\nM6\nG0 X-30 Y-30 Z0\n{}G0 X-30 Y-30\n{} {}G40 G1 X-90 Y99\nM30\n",
+        "CR=10",
+        "CR=20",
+    ),
+}
+
+
+@pytest.mark.parametrize("side", ["G41", "G42"])
+@pytest.mark.parametrize("axes", ["X", "Y", "XY"])
+@pytest.mark.parametrize("dialect", IMAGES)
+def test_beside_the_image_of_a_contour_is_the_image_of_what_is_beside_it(dialect: str, axes: str, side: str) -> None:
+    """Mirrored along one axis the cutter goes on the other side and arcs turn the other way; along both they do not."""
+    program, inner, outer = IMAGES[dialect]
+    contour = CONTOUR.format(inner, outer)
+    word = {"fanuc": "G51.1", "sinumerik": "MIRROR"}[dialect]
+    image = f"{word} {' '.join(f'{axis}0' for axis in axes)}\n"
+    tools = {1: Tool(1, 8e-3)}
+    plain, mirrored = (
+        interpret(program.format(said, side, contour), dialect=dialect, tools=tools) for said in ("", image)
+    )
+    flip = np.array([-1.0 if axis in axes else 1.0 for axis in "XYZ"])
+    cuts = slice(-6, None)
+    np.testing.assert_allclose(mirrored.end[cuts], plain.end[cuts] * flip, atol=1e-12)
+    np.testing.assert_allclose(mirrored.centre[cuts], plain.centre[cuts] * flip, atol=1e-12)
+    np.testing.assert_allclose(mirrored.sweep[cuts], plain.sweep[cuts] * (1.0 if len(axes) > 1 else -1.0), atol=1e-12)
+    start = plain.end[-7, :2] * 1e3
+    assert start[0] == pytest.approx(-4.0 if side == "G41" else 4.0)
+
+
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_beside_the_image_of_a_heidenhain_contour(side: str) -> None:
+    head, body = (
+        "BEGIN PGM A MM\nTOOL CALL 1 Z F100\nL X-30 Y-30 Z0 FMAX\n",
+        f"L X0 Y-10 R{side}\nL Y40\nCR X-10 Y50 R10 DR+\nL X-30\n",
+    )
+    texts = (f"{head}{said}L X-30 Y-30 FMAX\n{body}L X-60 Y99 R0\nEND PGM A MM\n" for said in ("", "CYCL DEF 8.1 X\n"))
+    plain, mirrored = (interpret(text, tools={1: Tool(1, 8e-3)}) for text in texts)
+    np.testing.assert_allclose(mirrored.end[-4:] * [-1, 1, 1], plain.end[-4:], atol=1e-12)
+    assert plain.end[-5, 0] * 1e3 == pytest.approx(-4.0 if side == "L" else 4.0)
