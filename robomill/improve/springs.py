@@ -10,13 +10,17 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.provenance import Finding, named
 from robomill.simulation.corners import SAME
+from robomill.simulation.cut import steps_in_stock
 from robomill.simulation.meant import LINK, linked
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, spin_of, stepped
+from robomill.simulation.samples import sampled
+from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.units import format_count, format_si
 from robomill.vectors import nearest_on
 
+LOOKS = 8  # at a link
 WORDS = {
     "link": ("corner", "goes from one correction to the next by a short link, on which the tip is off by up to"),
     "touch": ("plunge", "touches first, and the tip springs sideways onto its path, by up to"),
@@ -51,9 +55,11 @@ def springs(led: SimulationResult) -> tuple[Springs, ...]:
     path = stepped(led.setup, led.setup.toolpath)
     links = linked(path, led.path)
     if links.any():
-        plain = along(led.setup, path, spin=spin_of(led.ik))
-        tips = path.p + led.setup.to_part(np.nan_to_num(plain.delta))
-        off = _beside(tips, led.path, np.flatnonzero(links))
+        finely, at = _finely(led.setup, path, np.flatnonzero(links))
+        plain = along(led.setup, finely, spin=spin_of(led.ik))
+        on = at >= 0
+        tips = finely.p[on] + led.setup.to_part(np.nan_to_num(plain.delta[on]))
+        off = _beside(tips, led.path, at[on])
         begins = links & ~np.append(False, links[:-1])
         lines = tuple(sorted(set(led.path.block[links].tolist())))
         found.append(Springs("link", int(begins.sum()), lines, float(off.max())))
@@ -67,6 +73,23 @@ def springs(led: SimulationResult) -> tuple[Springs, ...]:
     return tuple(found)
 
 
+def _finely(setup: SimulationSetup, path: Toolpath, links: IntArray) -> tuple[Toolpath, IntArray]:
+    """The program of ``setup`` with the lines of ``links`` (k,), samples of its ``path``, in ``LOOKS`` steps each: the
+    tip is furthest off anywhere on them. And (m,) at which sample of ``path`` each is that is on a link, else -1."""
+    lines = path.block[links]
+    longest = {line: float(path.step_length[path.block == line].sum()) for line in set(lines.tolist())}
+
+    def seen(moves: Toolpath) -> FloatArray:
+        near = steps_in_stock(setup, moves) if setup.engagement else np.full(len(moves), np.inf)
+        return np.minimum(near, [longest.get(line, np.inf) / LOOKS for line in moves.block.tolist()])
+
+    finely = sampled(setup.toolpath, setup.step, seen)
+    of = {line: int(at) for line, at in zip(lines.tolist(), links.tolist(), strict=True)}
+    at = np.array([of.get(line, -1) for line in finely.block.tolist()])
+    at[np.flatnonzero((at >= 0) & (np.append(finely.block[1:], -1) != finely.block))] = -1  # where the next cut begins
+    return finely, np.where(finely.cutting, at, -1)
+
+
 def _touches(led: SimulationResult) -> BoolArray:
     """(m,) the first samples of plunges that cut."""
     cuts = led.conditions.engaged & led.conditions.mostly_axial
@@ -75,8 +98,9 @@ def _touches(led: SimulationResult) -> BoolArray:
 
 
 def _beside(tips: FloatArray, path: Toolpath, at: IntArray) -> FloatArray:
-    """(k,) m: how far tips (m, 3) m at samples ``at`` (k,) are off the two lines of a path that meet there."""
+    """(k,) m: how far tips (k, 3) m, meant to be at samples ``at`` (k,), are off the two lines of a path that meet
+    there."""
     place = np.cumsum(path.step_length >= SAME)
     first, last = np.searchsorted(place, place[at], "left"), np.searchsorted(place, place[at], "right") - 1
     ends = path.p[np.maximum(first - 1, 0)], path.p[np.minimum(last + 1, len(path) - 1)]
-    return np.minimum(*(nearest_on(tips[at], path.p[at], end)[1] for end in ends))
+    return np.minimum(*(nearest_on(tips, path.p[at], end)[1] for end in ends))

@@ -46,21 +46,20 @@ def test_how_far_a_tip_is_beside_two_lines_that_meet() -> None:
         ((10, 13, 4), 5),
         ((10, 0, 0), 0),
     ):
-        tips = path.p.copy()
-        tips[at] = np.array(tip) * 1e-3
-        assert _beside(tips, path, np.array([at]))[0] == pytest.approx(off * 1e-3, abs=1e-12)
+        assert _beside(np.array([tip]) * 1e-3, path, np.array([at]))[0] == pytest.approx(off * 1e-3, abs=1e-12)
 
 
 def test_a_corner_springs_on_its_link_as_far_as_a_plain_run_of_the_same_text_is_off_the_lines() -> None:
-    """A force that follows the path jumps in a corner; the text run as any other, and measured to what was meant."""
+    """A force that follows the path jumps in a corner; the text run as any other, in steps of 0.02 mm, and measured to
+    what was meant. (At the ends of steps of 1 mm alone the tip is 0.19 mm off, in truth 0.25.)"""
     corners = [(-60, 0), (-20, 0), (-20, -12)]
     text = "G21 G90 S12000 M3\nG0 X-60 Y0 Z5\nG0 Z-2\nG1 X-20 F300\nG1 Y-12\nG0 Z5\nM2\n"
     corrected = rm.compensate(SLOT.replace(source=rm.GCodeSource(text, "x.nc")))
     (found,) = springs(corrected.led)
-    plain = rm.simulate(SLOT.replace(source=rm.GCodeSource(corrected.text, "y.nc")))
+    plain = rm.simulate(SLOT.replace(source=rm.GCodeSource(corrected.text, "y.nc"), step=2e-5))
     tips = 1e3 * (plain.path.p + plain.delta @ SLOT.T_MW[:3, :3])
     line = shapely.LineString(corners)
     beside = np.array([line.distance(shapely.Point(*tip[:2])) for tip in tips])
     off = np.hypot(beside, tips[:, 2] + 2.0) * plain.path.cutting
     assert (found.kind, found.count, found.lines) == ("link", 1, (int(plain.path.block[off.argmax()]),))
-    assert found.size == pytest.approx(off.max() * 1e-3, rel=1e-6)
+    assert found.size == pytest.approx(off.max() * 1e-3, rel=0.02)
