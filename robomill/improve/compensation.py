@@ -170,6 +170,7 @@ def compensation(
     check_improvable(setup)
     with step(0, 4, "The program as it is"):
         back = writing(setup, write_gcode)
+        back.components = chosen
         wanted = along(setup, back.moves.wanted)
         before = measured(wanted)
         check_trusted(wanted, before)
