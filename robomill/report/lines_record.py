@@ -29,7 +29,7 @@ def lines_record(result: SimulationResult, most: int = MOST) -> dict[str, Any]:
     def counted(which: Any) -> IntArray:
         return np.bincount(of[np.asarray(which)], minlength=len(blocks))
 
-    gauge, judged, along = result.gauge, *(np.flatnonzero(each) for each in (result.judged, result.judged_along))
+    gauge, judged, along = result.gauge, np.flatnonzero(result.judged), np.flatnonzero(result.judged_along)
     errors = {
         "wall": (largest(gauge.walls.sample, gauge.walls.error), verdict.wall),
         "floor": (largest(gauge.floors.sample, gauge.floors.error), verdict.floor),

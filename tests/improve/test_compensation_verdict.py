@@ -70,6 +70,7 @@ def test_a_slot_corrected_along_its_feed_is_not_read_as_off_along_it(pull: float
     assert abs(found.led.verdict.feed.value) < 1e-6
     assert found.led.max_deviation < 2e-6
     assert "untold-feed" in told(found.led)
+    assert "untold-feed" in {each.code for each in found.findings}
     for text in (found.text, found.text.replace(" in normal axial feed", "")):
         assert rm.simulate(setup.replace(source=replace(found.source, text=text))).verdict.level == "ok"
     ends = [line for line in found.text.splitlines() if line.startswith("G1 X12")]
@@ -88,4 +89,5 @@ def test_a_slot_corrected_across_its_feed_alone_is_read_along_it_at_every_sample
     assert found.led.verdict.feed.value == pytest.approx(before.verdict.feed.value, abs=1e-6)
     np.testing.assert_array_equal(found.led.judged_along, found.led.judged)
     assert "untold-feed" not in told(found.led)
+    assert "untold-feed" not in {each.code for each in found.findings}
     assert found.level == "out"
