@@ -27,6 +27,7 @@ from robomill.simulation.band import deviation_band
 from robomill.simulation.judging.gauge import Gauge
 from robomill.simulation.judging.verdict import judge
 from robomill.simulation.judging.verdict_words import LEVELS, NO_NUMBER, Level, Verdict, level_of_share
+from robomill.simulation.meant import untold_notes
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, ran, spin_of
 from robomill.simulation.setup import SimulationSetup
@@ -170,6 +171,7 @@ def compensation(
     check_improvable(setup)
     with step(0, 4, "The program as it is"):
         back = writing(setup, write_gcode)
+        back.components = chosen
         wanted = along(setup, back.moves.wanted)
         before = measured(wanted)
         check_trusted(wanted, before)
@@ -235,6 +237,7 @@ def _measured(
     sprung = springs(led)
     findings = (
         *_met(after, graver(softer, stronger, led.setup), led.setup, verdict),
+        *(each for each in untold_notes(led.setup, led.judged, led.judged_along) if each.level == "warning"),
         *closer(led, after),
         *_findings(found, led, written, sprung),
     )

@@ -89,7 +89,7 @@ def correct(setup: SimulationSetup, first: SimulationResult, components: tuple[s
     wanted, places = first.path, Places.along(first)
     P, seeking = directions(first, components), _Seeking.begin(len(wanted))
     if {"normal", "axial"} <= set(components):  # where a plunge ends no step may be left, whichever way the cut goes on
-        P[places.ends(first.delta)] = np.eye(3)
+        P[places.ends()] = np.eye(3)
     result = first if not setup.coupling else along(setup.replace(coupling=False), wanted, spin=spin_of(first.ik))
     change: list[float] = []
     while True:
@@ -173,27 +173,31 @@ def corrected_run(wanted: SimulationResult, p: FloatArray, **wrong: float) -> Si
 class Places:
     """Where samples of a ``path`` stand: ``place`` (m,) counts the points on it; ``then`` (m,) is, for samples on the
     way down, the first one of the level cut that goes on from there, else -1; ``steep`` (m,) bool are plunges, and ways
-    ``out``, along the tool."""
+    ``out``, along the tool. ``short`` (m,) bool are those where a ramp ends and it is not as far to the next one as the
+    tool is pushed: sent on along the feed there, it would have to go back."""
 
     path: Toolpath
     place: IntArray
     then: IntArray
     steep: BoolArray
     out: BoolArray
+    short: BoolArray
 
     @classmethod
     def along(cls, run: SimulationResult) -> "Places":
         path = run.path
         place = np.cumsum(np.append(False, (np.diff(path.p, axis=0) != 0.0).any(axis=1)))
         then, steep = plunges(path, run.conditions)
-        return cls(path, place, then, steep, path.cutting & steep & (run.conditions.along > 0.0))
+        room = np.append(path.step_length[1:], 0.0) > np.linalg.norm(run.delta, axis=1)
+        ramps = then[(then >= 0) & ~steep]
+        short = np.isin(place, place[ramps[~room[ramps]]])
+        return cls(path, place, then, steep, path.cutting & steep & (run.conditions.along > 0.0), short)
 
-    def ends(self, delta: FloatArray) -> IntArray:
-        """Samples at which a level cut goes on from a way down; not from a ramp where it is not as far to the next one
-        as the tool is pushed, delta (m, 3) m, which then would have to go back."""
-        room = np.append(self.path.step_length[1:], 0.0) > np.linalg.norm(delta, axis=1)
-        then = self.then[self.then >= 0]
-        return np.unique(then[self.steep[self.then >= 0] | room[then]])
+    def ends(self) -> IntArray:
+        """Samples at which a level cut goes on from a way down, and has room for that."""
+        down = self.then >= 0
+        then = self.then[down]
+        return np.unique(then[self.steep[down] | ~self.short[then]])
 
     def one_each(self, P: FloatArray, d: FloatArray, known: BoolArray) -> FloatArray:
         """c (m, 3): what undoes deflections d (m, 3) m in directions P; at one place one for all that are ``known``
@@ -252,7 +256,8 @@ class Places:
 
     def _shared(self, P: FloatArray, d: FloatArray, known: BoolArray) -> FloatArray:
         """c (m, 3) m, the same for all samples at a place where that does for them; else each undoes its own deflection
-        in the directions of all of them, for where one cut ends another has its wall."""
+        in the directions of all of them, for where one cut ends another has its wall; where that is too ``short``, in
+        its own."""
         own = -np.einsum("mij,mj->mi", P, d)
         count = np.bincount(self.place, known)
         found = np.zeros((len(count), 3))
@@ -273,7 +278,9 @@ class Places:
         np.maximum.at(most, number, beside)
         linked = most[number] > LINK
         U = np.einsum("qij,qjk->qik", inverse, every)
-        c[some[linked]] = -np.einsum("mij,mj->mi", U[number[linked]], d[some[linked]])
+        at = some[linked]
+        together = -np.einsum("mij,mj->mi", U[number[linked]], d[at])
+        c[at] = np.where(self.short[at, None], own[at], together)
         return np.asarray(c)
 
 

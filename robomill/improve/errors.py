@@ -99,7 +99,7 @@ def errors_of(run: SimulationResult, gauge: Gauge | None = None) -> Errors:
     """What a run leaves, against the path that it is of; ``gauge`` is what was ``measured`` on it, if it was."""
     gauge = measured(run) if gauge is None else gauge
     vector = np.array([run.max_deviation, run.rms_deviation])
-    along = np.concatenate([run.delta_in_cut[run.judged, 0], gauge.ends.error])
+    along = np.concatenate([run.delta_in_cut[run.judged_along, 0], gauge.ends.error])
     feed = float(np.abs(along).max()) if len(along) else float("nan")
     return Errors(_size(gauge.walls), _size(gauge.floors), vector, feed)
 

@@ -96,7 +96,7 @@ def _of(found: Readings, tolerance: float, result: SimulationResult) -> Judged:
 
 
 def _along(result: SimulationResult, tolerance: float) -> Judged:
-    i = np.flatnonzero(result.judged)
+    i = np.flatnonzero(result.judged_along)
     return _at(i, result.delta_in_cut[i, :1], np.array([[1.0, 0.0, 0.0]]), tolerance)
 
 

@@ -13,7 +13,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import CompensationError, GCodeError
 from robomill.improve.program import Moves
 from robomill.simulation.setup import SimulationSetup
-from robomill.toolpath.corrected import key_of, marked
+from robomill.toolpath.corrected import Mark, key_of, marked
 from robomill.toolpath.fitting import Piece
 from robomill.toolpath.gcode.program import TAP, Program
 from robomill.toolpath.gcode.reading import interpret
@@ -43,6 +43,7 @@ class Writing:
     """How a set-up's path is written back: ``moves`` first, then ``write`` as often as wanted."""
 
     moves: Moves
+    components: tuple[str, ...] = ()  # in which it is corrected, as it says of itself
 
     def write(self, c: FloatArray, bound: float) -> Written:
         """The program with corrections c (n, 3) m of the samples, within ``bound`` (m)."""
@@ -88,7 +89,7 @@ class _OfProgram(Writing):
         pieces, ends = self.moves.corrected(c, bound)
         text_lines = self.source.block_texts()
         found = Rewriter(program, self.dialect, pieces, ends).write(text_lines, self.executed)
-        text = _marked(found.text, self.source, self.dialect)
+        text = _marked(found.text, self.source, self.components, self.dialect)
         self._check(text, found.made)
         text = text.replace("\n", "\r\n") if "\r\n" in self.source.text else text
         return Written(text, self.moves.places(found.made), found.unrolled, len(text_lines))
@@ -114,9 +115,9 @@ class _OfProgram(Writing):
             )
 
 
-def _marked(text: str, source: PathSource, dialect: str) -> str:
+def _marked(text: str, source: PathSource, components: tuple[str, ...], dialect: str) -> str:
     """A corrected program's text with what it says of itself at its head."""
-    return "\n".join(marked(text.split("\n"), source.name, key_of(source.block_texts()), dialect))
+    return "\n".join(marked(text.split("\n"), Mark(source.name, key_of(source.block_texts()), components), dialect))
 
 
 def _ends(program: Program, made: dict[int, Any], j: int) -> list[FloatArray]:
@@ -172,7 +173,7 @@ class _OfPath(Writing):
         every = [piece for some in made.values() for piece in some]
         for n, j in enumerate(owner.tolist()):
             written.setdefault(j, []).append((starts[n], replace(every[n], end=p[n])))
-        text = _marked(text, self.setup.source, "linuxcnc")
+        text = _marked(text, self.setup.source, self.components, "linuxcnc")
         return Written(text, moves.places(written), (), len(self.setup.source.block_texts()))
 
 

@@ -29,12 +29,12 @@ def lines_record(result: SimulationResult, most: int = MOST) -> dict[str, Any]:
     def counted(which: Any) -> IntArray:
         return np.bincount(of[np.asarray(which)], minlength=len(blocks))
 
-    gauge, judged = result.gauge, np.flatnonzero(result.judged)
+    gauge, judged, along = result.gauge, np.flatnonzero(result.judged), np.flatnonzero(result.judged_along)
     errors = {
         "wall": (largest(gauge.walls.sample, gauge.walls.error), verdict.wall),
         "floor": (largest(gauge.floors.sample, gauge.floors.error), verdict.floor),
         "end": (largest(gauge.ends.sample, gauge.ends.error), verdict.end),
-        "feed": (largest(judged, result.delta_in_cut[judged, 0]), verdict.feed),
+        "feed": (largest(along, result.delta_in_cut[along, 0]), verdict.feed),
     }
     shares = np.array([np.abs(value) / each.tolerance for value, each in errors.values() if each.stated])
     share = np.fmax.reduce(shares, axis=0)

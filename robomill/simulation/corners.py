@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robomill.arrays import FloatArray, IntArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.toolpath.sampling import CORNER
 from robomill.vectors import angle_between
 
@@ -50,11 +50,11 @@ class Ways:
         return cls(s, p[moving + 1], way, np.flatnonzero(sharp))
 
 
-def at_corners(q: FloatArray, k: FloatArray, line: IntArray, s: FloatArray, cut: Ways) -> FloatArray:
+def at_corners(q: FloatArray, k: FloatArray, line: IntArray, s: FloatArray, cut: Ways) -> tuple[FloatArray, BoolArray]:
     """(n,) m along a ``cut``: s (n,), where samples q (n, 3) m with tool axes k (n, 3), of a ``line`` (n,) each, are
     nearest to it, with those that belong to its corners there, what comes before them no later, and what follows no
-    earlier."""
-    s = s.copy()
+    earlier; and (n,) those at which one cut ends and the next begins."""
+    s, meets = s.copy(), np.zeros(len(s), dtype=bool)
     ends = np.append(line[1:] != line[:-1], True)
     places = np.concatenate([[0.0], cut.s[cut.corners], cut.s[-1:]])
     for n, corner in enumerate(cut.corners.tolist()):
@@ -73,8 +73,9 @@ def at_corners(q: FloatArray, k: FloatArray, line: IntArray, s: FloatArray, cut:
         first, last = _link(q[some], k[some], np.flatnonzero(near & ends[some]), s[some], (cut, corner))
         s[some[:first]] = np.minimum(s[some[:first]], at)
         s[some[first : last + 1]] = at
+        meets[some[[first, last]]] = True
         s[some[last + 1 :]] = np.maximum(s[some[last + 1 :]], at)
-    return s
+    return s, meets
 
 
 def _link(q: FloatArray, k: FloatArray, ends: IntArray, s: FloatArray, where: tuple[Ways, int]) -> tuple[int, int]:

@@ -73,19 +73,28 @@ def tip_error(run: SimulationResult, wanted: Toolpath) -> FloatArray:
 
 
 def against(
-    run: SimulationResult, wanted: Toolpath, R_MF: FloatArray, links: BoolArray | None = None
+    run: SimulationResult,
+    wanted: Toolpath,
+    R_MF: FloatArray,
+    links: BoolArray | None = None,
+    untold: BoolArray | None = None,
 ) -> SimulationResult:
     """The run along a corrected path as one that was told to go along the ``wanted`` one, whose axes of the cut are
-    R_MF (m, 3, 3): what a gauge reads on it is the error of the part. On ``links`` (m,) from one cut to the next it is
-    taken to be where the next begins: how far the tip springs there is told apart."""
+    R_MF (m, 3, 3); where nobody knows how far along it that is, ``untold`` (m,), the tip is told from the place that it
+    comes by. What a gauge reads on it is the error of the part. On ``links`` (m,) from one cut to the next it is taken
+    to be where the next begins: how far the tip springs there is told apart."""
     off, ahead = (
-        run.setup.to_base(np.where(wanted.cutting[:, None], each, 0.0))
-        for each in (tip_error(run, wanted), run.path.p - wanted.p)
+        np.where(wanted.cutting[:, None], each, 0.0) for each in (tip_error(run, wanted), run.path.p - wanted.p)
     )
-    told = replace(run, path=wanted, delta=off, R_MF=R_MF, ahead=ahead)
+    if untold is not None:
+        way = ways(wanted)
+        lag = np.where(untold, np.einsum("mi,mi->m", off, way), 0.0)[:, None] * way
+        off, ahead = off - lag, ahead - lag
+    off, ahead = run.setup.to_base(off), run.setup.to_base(ahead)
+    told = replace(run, path=wanted, delta=off, R_MF=R_MF, ahead=ahead, untold=untold)
     if links is None or not links.any():
         return told
     of = _behind(links)
     rows = {name: getattr(told, name)[of] for name in ("F", "delta_joint", "delta_spring", "delta", "ahead")}
     unjudged = tuple(replace(each, where=each.where[of]) for each in told.unjudged)
-    return replace(told, **rows, unjudged=unjudged)
+    return replace(told, **rows, unjudged=unjudged, untold=None if untold is None else untold[of])

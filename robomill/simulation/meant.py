@@ -2,7 +2,9 @@
 
 A corrected program goes beside that path, cut by cut and in its order, with short links at sharp corners. Each of its
 samples belongs to the place that is nearest among those with its own direction, and no sample belongs before the one
-ahead of it (dynamic time warping in a window that goes along).
+ahead of it (dynamic time warping in a window that goes along). Where the program was corrected along its feed, too,
+that is not enough: on its way from one corner to the next no text says how far along it a sample was meant to be, since
+the same line is written whatever the correction does between its ends. There only what leads across the path is told.
 """
 
 from __future__ import annotations
@@ -72,10 +74,26 @@ def jump_notes(path: Toolpath, ahead: FloatArray | None) -> tuple[Finding, ...]:
     return (Finding("info", text, code="jumps"),)
 
 
-def meant(path: Toolpath, wanted: Toolpath, step: float) -> Toolpath:
+def untold_notes(setup: SimulationSetup, judged: BoolArray, along: BoolArray) -> tuple[Finding, ...]:
+    """How many of the ``judged`` (m,) samples of a program that was corrected along its feed are not judged ``along``
+    it (m,), too."""
+    lost, every = int((judged & ~along).sum()), int(judged.sum())
+    if not lost:
+        return ()
+    text = (
+        f"the program was corrected along its feed, too: how far along it the tip should be is known where cuts begin, "
+        f"end and turn, not on the way between; at {lost} of {format_count(every, 'sample')} the deviation along the "
+        "feed is not judged."
+    )
+    return (Finding("info" if setup.feed_tolerance is None else "warning", text, code="untold-feed"),)
+
+
+def meant(path: Toolpath, wanted: Toolpath, step: float, corrected: tuple[str, ...] = ()) -> tuple[Toolpath, BoolArray]:
     """``path``, the samples of a corrected program, where they were meant to be on the samples of the ``wanted`` path,
-    which are no further apart than ``step`` (m). Raises ToolpathError where they belong to two paths."""
-    p = np.array(path.p)
+    which are no further apart than ``step`` (m); and (m,) those of which nobody knows how far along it that is.
+    ``corrected`` are the components in which it says that it was; () where it does not say. Raises ToolpathError where
+    they belong to two paths."""
+    p, untold = np.array(path.p), np.zeros(len(path), dtype=bool)
     cuts, told = _cuts(path), _cuts(wanted)
     if len(cuts) != len(told):
         raise ToolpathError(
@@ -91,8 +109,11 @@ def meant(path: Toolpath, wanted: Toolpath, step: float) -> Toolpath:
         near = _aligned(path.p[some], here[some] * directed[some, None], wanted.p[all_], there[all_])
         q, k = path.p[some], path.k[some]
         s = _nearest(q, here[some], wanted.p[all_], near)
-        s = at_corners(q, k, path.block[some], s, Ways.of(wanted.p[all_], wanted.k[all_]))
+        s, meets = at_corners(q, k, path.block[some], s, Ways.of(wanted.p[all_], wanted.k[all_]))
+        s[0], s[-1] = 0.0, np.linalg.norm(np.diff(wanted.p[all_], axis=0), axis=1).sum()  # a cut is meant whole
         p[some], worst, at = _places(q, wanted.p[all_], s)
+        if not corrected or "feed" in corrected:
+            untold[some] = _untold(q - p[some], here[some], k, meets, bool(corrected))
         _bottoms(p, path, wanted, some, all_)
         for i in every[~moves].tolist():  # what turns on the spot stays at its place
             p[i] = p[i - 1]
@@ -102,7 +123,21 @@ def meant(path: Toolpath, wanted: Toolpath, step: float) -> Toolpath:
                 f"it, and a corrected one at most {format_si(FARTHEST, 'mm', 0)}: give the path that it was corrected "
                 "for."
             )
-    return replace(path, p=p)
+    return replace(path, p=p), untold
+
+
+def _untold(off: FloatArray, way: FloatArray, k: FloatArray, meets: BoolArray, said: bool) -> BoolArray:
+    """(n,) samples of a cut, ``off`` (n, 3) m their places, of which nobody knows how far along the path these are: all
+    on the ``way`` (n, 3) from one place that ``meets`` (n,) the next cut to another where it is ``said`` that the feed
+    was corrected; where nobody has said anything, if both ends are sent the same way along it. In a plunge all are
+    known: its bottom is told."""
+    at = np.flatnonzero(meets | np.isin(np.arange(len(off)), (0, len(off) - 1)))
+    begin, end = at[:-1], at[1:]
+    sent = np.einsum("eqi,eqi->eq", off[[begin, end]], way[[begin + 1, end]])
+    moved = np.full(len(begin), said) | (np.abs(sent) > LINK).all(axis=0) & (sent[0] * sent[1] > 0.0)
+    found = np.repeat(np.append(moved, False), np.diff(np.append(at, len(off))))
+    found[at] = False
+    return np.asarray(found & (np.abs(np.einsum("ni,ni->n", way, k)) < PLUNGING))
 
 
 def _cuts(path: Toolpath) -> list[IntArray]:

@@ -24,7 +24,7 @@ from robomill.simulation.judging.strays import Stray, stray
 from robomill.simulation.judging.verdict import decided, judge, resting_on, thin_wall_notes
 from robomill.simulation.judging.verdict_words import Deciding, Verdict
 from robomill.simulation.mapped import map_notes
-from robomill.simulation.meant import corrected_notes, jump_notes
+from robomill.simulation.meant import corrected_notes, jump_notes, untold_notes
 from robomill.simulation.origin.assumptions import Assumed, assumed_of_setup
 from robomill.simulation.origin.doubts import frame_notes, known_notes, rigid_tool_notes, unit_doubts
 from robomill.simulation.posture import posture_notes
@@ -55,6 +55,8 @@ class SimulationResult(Run):
     unjudged       steps that have no number, each group with its reason: their delta is NaN
     ahead          (m, 3) m, of a corrected program: how far it sends the tool beside the path that was meant, which is
                    ``path`` then; delta is this and what the tool is pushed. None of any other
+    untold         (m,) samples of a program that was corrected along its feed, of which nobody knows how far along the
+                   path they were meant to be: there delta is what leads across it. None of any other
 
     Examples
     --------
@@ -89,6 +91,7 @@ class SimulationResult(Run):
         found = [
             *corrected_notes(self.setup),
             *jump_notes(self.path, self.ahead),
+            *untold_notes(self.setup, self.judged, self.judged_along),
             *cut_notes(self.setup, self.conditions, ~self.not_judged),
             *tool_notes(self.setup, self.path),
             *edge_notes(self.setup, self.path),

@@ -49,6 +49,7 @@ from robomill.simulation.turning import turns_in_cut
 from robomill.surface.contact.engagement import engage
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sampling import check_samples
+from robomill.toolpath.source import GCodeSource
 
 Simulate = Callable[[SimulationSetup], SimulationResult]
 """What runs a set-up: ``simulate``, or something that keeps its results."""
@@ -107,12 +108,13 @@ def ran(setup: SimulationSetup, *, softer: float = 1.0, stronger: float = 1.0) -
         return along(setup, path, softer=softer, stronger=stronger)
     checkpoint(0.0, "Where the program was meant to go")
     asked_for = stepped(setup, setup.wanted_path)
-    wanted = meant(path, asked_for, setup.step)
+    mark = setup.source.mark if isinstance(setup.source, GCodeSource) else None
+    wanted, untold = meant(path, asked_for, setup.step, mark.components if mark else ())
     told = told_conditions(setup, wanted, np.ones(len(wanted), dtype=bool))
     links = linked(path, wanted)
     led = led_beside(wanted, path.p, plunges(wanted, told), links)
     run = along(setup, path, led=led, spin=spin_along(setup, asked_for), softer=softer, stronger=stronger)
-    return against(run, wanted, feed_directions(setup, wanted), links | straight_on(path, wanted))
+    return against(run, wanted, feed_directions(setup, wanted), links | straight_on(path, wanted), untold)
 
 
 def stepped(setup: SimulationSetup, whole: Toolpath) -> Toolpath:

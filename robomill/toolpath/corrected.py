@@ -13,16 +13,20 @@ SAID = "corrected by robomill for"
 HEAD = 40  # lines in which a program says what it is
 LONGEST = 40  # characters of a name
 KEY = 12  # characters of a path's key
-_SAID = re.compile(rf"[(;]\s*{SAID} (?P<name>.*), (?P<key>[0-9a-f]{{{KEY}}})\s*\)?\s*$", re.IGNORECASE)
+_SAID = re.compile(
+    rf"[(;]\s*{SAID} (?P<name>.*), (?P<key>[0-9a-f]{{{KEY}}})( in (?P<in>[a-z ]+))?\s*\)?\s*$", re.IGNORECASE
+)
 _BEFORE = re.compile(r"\s*(%|[O:]\d+|;\s*\$PATH|$)", re.IGNORECASE)  # what a control expects ahead of all else
 
 
 @dataclass(frozen=True)
 class Mark:
-    """The path that a program was corrected for: its ``name`` and its ``key``."""
+    """The path that a program was corrected for: its ``name`` and its ``key``; and in which ``components`` it was
+    corrected, () where it does not say."""
 
     name: str
     key: str
+    components: tuple[str, ...] = ()
 
 
 def key_of(lines: Sequence[str]) -> str:
@@ -35,15 +39,16 @@ def mark_of(text: str) -> Mark | None:
     for line in text.split("\n", HEAD)[:HEAD]:
         found = _SAID.search(line.rstrip())
         if found is not None:
-            return Mark(found["name"], found["key"].lower())
+            return Mark(found["name"], found["key"].lower(), tuple((found["in"] or "").lower().split()))
     return None
 
 
-def marked(lines: Sequence[str], name: str, key: str, dialect: str) -> list[str]:
+def marked(lines: Sequence[str], of: Mark, dialect: str) -> list[str]:
     """A program's ``lines`` with what it is corrected for, and how that is checked, beneath what has to come first."""
+    name, within = of.name, f" in {' '.join(of.components)}" if of.components else ""
     plain = "".join(c if c.isascii() and c.isprintable() and c not in "();" else "_" for c in name)[-LONGEST:]
     begin, end = ("; ", "") if dialect == "sinumerik" else ("(", ")")
-    told = [f"{begin}{SAID} {plain}, {key}{end}"]
+    told = [f"{begin}{SAID} {plain}, {of.key}{within}{end}"]
     told.append(f"{begin}to check: robomill simulate SETUP --program THIS --wanted {plain}{end}")
     first = 0
     while first < len(lines) and _BEFORE.match(lines[first]):

@@ -177,10 +177,12 @@ def test_a_ramp_into_a_level_cut_is_cut_to_its_depth_up_to_its_end() -> None:
     assert np.abs(y[on_ramp | on_level]).max() < 0.02 * found.before.max
 
 
-def test_a_ramp_is_corrected_where_the_level_cut_begins_with_a_short_step() -> None:
+@pytest.mark.parametrize(("begin", "short"), [(-20.0, 0.1), (-20.0, 0.02), (-12.0, 0.02), (-5.0, 0.05)])
+def test_a_ramp_is_corrected_where_the_level_cut_begins_with_a_short_step(begin: float, short: float) -> None:
     """Shorter than the tool is pushed along it, as on a circle at the end of a helix: correcting that there, too, sent
-    the tool back, and on its next step down by as much as the ramp pushes it up: 1.06 mm too deep, and refused."""
-    text = "G21 G90\nS12000 M3\nG0 X-20 Y0 Z1\nG1 X0 Z-3 F600\nX0.1\nX20\nG0 Z20\nM2\n"
+    the tool back, and on its next step down by as much as the ramp pushes it up: 1.06 mm too deep, and refused.
+    Steep ramps ask for it by what is across them alone, which leads along the cut that goes on."""
+    text = f"G21 G90\nS12000 M3\nG0 X{begin} Y0 Z1\nG1 X0 Z-3 F600\nX{short}\nX20\nG0 Z20\nM2\n"
     found = rm.compensate(rm.load_setup(SLOT / "setup_process.toml").replace(source=rm.GCodeSource(text)))
     assert found.after.max < 0.012 * found.before.max
     level = found.led.path.cutting & (found.led.path.p[:, 0] > 0.0)

@@ -24,8 +24,10 @@ def test_where_a_leg_ends_it_belongs_to_the_corner(step: float, off: tuple[float
     k = np.tile([0.0, 0.0, 1.0], (len(p), 1))
     q, s = p + np.array(off), np.arange(len(p)) * step
     near = s + off[0] * (leg != 1) + off[1] * (leg == 1)
-    found = at_corners(q, k, leg, np.clip(near, 0.0, s[-1]), Ways.of(p, k))
-    for corner in (20e-3, 40e-3):
+    found, meets = at_corners(q, k, leg, np.clip(near, 0.0, s[-1]), Ways.of(p, k))
+    corners = (20e-3, 40e-3)
+    assert np.flatnonzero(meets).tolist() == [int(np.argmin(np.abs(s - corner))) for corner in corners]
+    for corner in corners:
         at = int(np.argmin(np.abs(s - corner)))
         assert found[at] == pytest.approx(corner, abs=1e-12)
         assert (found[:at] <= corner + 1e-12).all()

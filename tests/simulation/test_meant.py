@@ -27,7 +27,7 @@ def cut(*points_mm: tuple[float, float]) -> rm.Toolpath:
 def places(corrected: rm.Toolpath, wanted: rm.Toolpath) -> np.ndarray:
     """(m, 2) mm: where the samples at feed were meant to be."""
     path = resample(corrected, STEP)
-    found = meant(path, resample(wanted, STEP), STEP)
+    found = meant(path, resample(wanted, STEP), STEP)[0]
     return np.column_stack([path.p, found.p])[path.cutting][:, [0, 1, 3, 4]] * 1e3
 
 
@@ -40,7 +40,7 @@ def test_beside_a_line_every_sample_belongs_to_its_foot() -> None:
 @pytest.mark.parametrize("step", [0.3e-3, 0.35e-3, 0.8e-3])
 def test_between_two_samples_of_the_path_there_are_places_up_to_its_very_end(step: float) -> None:
     path = resample(cut((0, 0.2), (20, 0.2)), step)
-    found = meant(path, resample(cut((0, 0), (20, 0)), STEP), STEP)
+    found = meant(path, resample(cut((0, 0), (20, 0)), STEP), STEP)[0]
     np.testing.assert_allclose(
         found.p[path.cutting] - path.p[path.cutting], [[0.0, -0.2e-3, 0.0]] * path.cutting.sum(), atol=1e-9
     )
@@ -86,7 +86,7 @@ def test_the_ends_of_legs_belong_to_their_corners_however_far_they_fall_short(no
     corners = [(0.0, 0.0), *rectangle, *larger]
     points, meant_for = legs_moved(corners, normal, feed)
     path = resample(cut(*points), STEP)
-    found = meant(path, resample(cut(*corners), STEP), STEP)
+    found = meant(path, resample(cut(*corners), STEP), STEP)[0]
     places = np.column_stack([path.p, found.p])[path.cutting][:, [0, 1, 3, 4]] * 1e3
     after = 0
     for point, corner in zip(points[1:-1], meant_for[1:-1], strict=True):
@@ -197,7 +197,7 @@ def test_a_ring_cut_twice_belongs_turn_by_turn() -> None:
     ring = [(20.0 * np.cos(a), 20.0 * np.sin(a)) for a in angle]
     wide = [(1.01 * x, 1.01 * y) for x, y in ring]
     path = resample(cut(*wide), STEP)
-    found = meant(path, resample(cut(*ring), STEP), STEP)
+    found = meant(path, resample(cut(*ring), STEP), STEP)[0]
     turned = np.unwrap(np.arctan2(found.p[path.cutting][:, 1], found.p[path.cutting][:, 0]))
     assert (np.diff(turned) > -1e-9).all()
     assert turned[-1] - turned[0] == pytest.approx(4.0 * np.pi, rel=0.01)
@@ -250,9 +250,9 @@ def test_a_rapid_that_goes_nowhere_parts_no_cut() -> None:
     path = resample(rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0, 0, 600, 0, 600]), STEP)
     assert (~path.cutting).sum() == 3
     aside = replace(path, p=path.p + np.array([0.0, 0.2e-3, 0.0]))
-    found = meant(aside, resample(cut((0, 0), (60, 0)), STEP), STEP)
+    found = meant(aside, resample(cut((0, 0), (60, 0)), STEP), STEP)[0]
     np.testing.assert_allclose(found.p[found.cutting], path.p[path.cutting], atol=1e-9)
-    back = meant(resample(cut((0, 0.2), (60, 0.2)), STEP), path, STEP)
+    back = meant(resample(cut((0, 0.2), (60, 0.2)), STEP), path, STEP)[0]
     np.testing.assert_allclose(back.p[back.cutting][:, 1], 0.0, atol=1e-12)
 
 
@@ -265,7 +265,7 @@ def test_a_plunge_at_feed_belongs_to_the_one_that_was_meant_at_the_same_height_a
         return rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0.0, 0.0, *[300.0] * (len(p) - 3), 600.0])
 
     path = resample(plunged(0.02, 2.05, 0 in stops), STEP)
-    found = meant(path, resample(plunged(0.0, 2.0, 1 in stops), STEP), STEP)
+    found = meant(path, resample(plunged(0.0, 2.0, 1 in stops), STEP), STEP)[0]
     plunge = path.cutting & (np.abs(path.p[:, 0] - 0.02e-3) < 1e-9)
     assert plunge.sum() > 2
     np.testing.assert_allclose(found.p[plunge, :2], 0.0, atol=1e-9)
@@ -287,7 +287,7 @@ def test_of_two_plunges_in_one_cut_each_belongs_to_its_own() -> None:
         return rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0, 0, 300, 600, 300, 600])
 
     path = resample(stairs(0.02, 0.05), STEP)
-    found = meant(path, resample(stairs(0.0, 0.0), STEP), STEP)
+    found = meant(path, resample(stairs(0.0, 0.0), STEP), STEP)[0]
     for x, top in ((0.0, 1e-3), (40e-3, -2e-3)):
         down = path.cutting & (np.abs(path.p[:, 0] - x - 0.02e-3) < 1e-9)
         assert down.sum() > 3
@@ -350,3 +350,25 @@ def test_links_are_what_stands_between_two_cuts_at_one_place(
 ) -> None:
     found = linked(steps(told, cutting), steps(WANTED, cutting))
     assert np.flatnonzero(found).tolist() == inside
+
+
+def test_on_its_way_nobody_knows_how_far_along_a_program_was_meant_to_be_that_is_corrected_along_its_feed() -> None:
+    """Around a corner, moved along each leg: known are the ends of the legs. By what it says, or by both ends of a leg
+    sent the same way; a program that says that its feed was not corrected is known all along."""
+    corners = [(0.0, 0.0), (40.0, 0.0), (40.0, 30.0)]
+    for feed, said, legs in (
+        (0.1, ("normal", "feed"), 2),
+        (0.0, ("feed",), 2),
+        (0.1, (), 2),
+        (0.015, (), 0),
+        (0.1, ("normal", "axial"), 0),
+    ):
+        path = resample(cut(*legs_moved(corners, 0.2, feed)[0]), STEP)
+        found, untold = meant(path, resample(cut(*corners), STEP), STEP, said)
+        ends = {tuple(corner) for corner in corners}
+        known = np.array([tuple(np.round(p[:2] * 1e3, 6)) in ends for p in found.p])
+        assert not untold[~path.cutting].any()
+        assert (untold | known)[path.cutting].all() == (legs == 2)
+        assert untold.any() == (legs == 2)
+        for corner in corners:  # at each end a sample is known
+            assert (~untold & (np.abs(found.p[:, :2] * 1e3 - corner).max(axis=1) < 1e-6)).any()

@@ -11,8 +11,8 @@ GIVEN = rm.GCodeSource("%\nO100\nG21 G90\nG1 X10 F600\nM2\n", "part (A).nc")
 KEY = key_of(GIVEN.block_texts())
 
 
-def of(dialect: str) -> str:
-    return "\n".join(marked(GIVEN.text.split("\n"), GIVEN.name, KEY, dialect))
+def of(dialect: str, *within: str) -> str:
+    return "\n".join(marked(GIVEN.text.split("\n"), Mark(GIVEN.name, KEY, within), dialect))
 
 
 @pytest.mark.parametrize("dialect", ["fanuc", "sinumerik", "linuxcnc", "grbl"])
@@ -20,6 +20,9 @@ def test_what_is_written_reads_back_and_stands_beneath_what_a_control_expects_fi
     text = of(dialect)
     assert mark_of(text) == Mark("part _A_.nc", KEY)
     assert mark_of(text.replace("\n", "\r\n").upper()) == Mark("PART _A_.NC", KEY)
+    some = of(dialect, "normal", "feed")
+    assert mark_of(some) == Mark("part _A_.nc", KEY, ("normal", "feed"))
+    assert mark_of(some.upper()) == Mark("PART _A_.NC", KEY, ("normal", "feed"))
     assert text.split("\n")[:2] == ["%", "O100"]
     assert [line for line in text.split("\n") if "robomill" not in line] == GIVEN.text.split("\n")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import ToolpathError
-from robomill.toolpath.corrected import key_of, marked
+from robomill.toolpath.corrected import Mark, key_of, marked
 from robomill.toolpath.gcode import Tool
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Sketch
@@ -139,7 +139,7 @@ def test_what_was_meant_is_a_path_or_its_source() -> None:
 def test_a_corrected_program_finds_what_it_was_corrected_for(dialect: str) -> None:
     """By the lines of that, or of what that was corrected for in its turn; anything else stays as it is."""
     meant, other = GCodeSource(TEXT, "meant.nc"), GCodeSource(TEXT.replace("X10", "X11"), "meant.nc")
-    head = marked(TEXT.replace("X10", "X10.1").splitlines(), "meant.nc", key_of(meant.block_texts()), dialect)
+    head = marked(TEXT.replace("X10", "X10.1").splitlines(), Mark("meant.nc", key_of(meant.block_texts())), dialect)
     corrected = GCodeSource("\n".join(head), "new.nc", dialect)
     again = GCodeSource("\n".join(head).replace("X10.1", "X10.2"), "newer.nc", dialect)
     assert corrected.mark is not None

@@ -57,6 +57,7 @@ class Run(Tabled):
     coupling: Coupling | None = None
     unjudged: tuple[Unjudged, ...] = ()
     ahead: FloatArray | None = None
+    untold: BoolArray | None = None
 
     @cached_property
     def force_components(self) -> FloatArray:
@@ -118,6 +119,12 @@ class Run(Tabled):
         cuts &= self.conditions.engaged
         few = self.not_judged.any() and self._of_the_cut(cuts) < FEW
         return np.zeros_like(cuts) if few else np.asarray(cuts)
+
+    @cached_property
+    def judged_along(self) -> BoolArray:
+        """(m,) samples that count along the feed, too: where it is known how far along the path they were meant to
+        be."""
+        return self.judged if self.untold is None else np.asarray(self.judged & ~self.untold)
 
     @property
     def mostly_judged(self) -> bool:

@@ -65,7 +65,7 @@ def _level(result: Run, verdict: Verdict) -> Level:
 
 
 def _readings(result: Run, gauge: Gauge) -> tuple[Reading, Reading, Reading, Reading]:
-    setup, i = result.setup, result.judged
+    setup, i = result.setup, result.judged_along
     limits, stated = setup.limits, setup.feed_tolerance is not None
     along = np.where(i, np.abs(result.delta_in_cut[:, 0]), -np.inf)
     feed = int(np.argmax(along)) if i.any() else -1
