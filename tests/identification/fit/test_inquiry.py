@@ -273,34 +273,46 @@ def test_a_zero_further_off_than_a_fifth_of_a_radian_is_none(zero, named):
         assert found.error < 0.01
 
 
-def several_loads(unlike, seed=2, poses_=3, loads=5, moment=0.0):
+def several_loads(unlike, poses_=3, loads=5, moment=0.0, scatter=1e-5, stated=None):
     """Three poses under five loads each, load and gauge point the same or unlike."""
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(2)
     theta = np.repeat(poses(ROBOT, poses_), loads, axis=0)
     wrench = np.concatenate([rng.normal(size=(len(theta), 3)) * 150, np.full((len(theta), 3), moment)], axis=1)
     gauge = np.array([0.05, -0.02, 0.1]) * unlike
     given = {"theta": theta, "measuring_point": gauge}
     exact = JOINTS.terms(ROBOT, LoadTests(wrench, np.ones((len(theta), 3)), **given))[:, :3, 0] @ ROBOT.C_theta
-    return LoadTests(wrench, exact + 1e-5 * rng.standard_normal(exact.shape), **given)
+    return LoadTests(wrench, exact + scatter * rng.standard_normal(exact.shape), noise=stated, **given)
 
 
 @pytest.mark.parametrize(("unlike", "entries"), [(False, 6), (True, 9)])
 def test_a_pose_has_a_symmetric_matrix_where_load_and_gauge_point_are_one(unlike, entries):
-    tests = several_loads(unlike)
+    tests = several_loads(unlike, stated=np.tile([1e-5, 2e-5, 3e-5], 5))
     about = inquiry(tests)
     pure = 0.0
     for k in range(3):
-        F, d = tests.wrench[5 * k : 5 * k + 5, :3], tests.displacement[5 * k : 5 * k + 5, :3]
+        F, d = tests.wrench[5 * k : 5 * k + 5, :3], tests.displacement[5 * k : 5 * k + 5, :3].ravel()
         basis = [np.outer(a, c) for a in np.eye(3) for c in np.eye(3)]
         if not unlike:
             basis = [B + B.T for B in basis]
-        A = np.array([(F @ B.T).ravel() for B in basis]).T
-        pure += float(((A @ np.linalg.lstsq(A, d.ravel(), rcond=None)[0] - d.ravel()) ** 2).sum())
-    A, b = weighted(about)
+        w = 1.0 / np.repeat(tests.noise[5 * k : 5 * k + 5], 3)
+        A = np.array([w * (F @ B.T).ravel() for B in basis]).T
+        pure += float(((A @ np.linalg.lstsq(A, w * d, rcond=None)[0] - w * d) ** 2).sum())
     free = 45 - 3 * entries
-    left = left_over(A, b) * about.system.noise[0] ** 2
-    chance = stats.f.sf((left - pure) / (40 - free) / (pure / free), 40 - free, free)
+    chance = stats.f.sf((left_over(*weighted(about)) - pure) / (40 - free) / (pure / free), 40 - free, free)
     assert about._lack(about._about(tests)) == pytest.approx(chance, rel=1e-6)
+
+
+@pytest.mark.parametrize("stated", [None, 1e-6, 1e3])
+def test_what_is_left_of_exact_readings_is_rounding_whatever_noise_is_stated(stated):
+    exact = several_loads(False, scatter=0.0, stated=stated)
+    about = inquiry(exact)
+    columns = about._about(exact)
+    assert np.isnan([about._lack(columns), about._growth(columns)]).all()
+    assert about._chance(about._about(exact, Cause("offset"))) == 1.0
+    hardly = several_loads(False, scatter=1e-11, stated=stated)
+    about = inquiry(hardly)
+    columns = about._about(hardly)
+    assert np.isfinite([about._lack(columns), about._growth(columns)]).all()
 
 
 def test_a_lack_is_asked_of_forces_alone_and_of_ten_readings_to_spare():
