@@ -174,6 +174,13 @@ def test_a_robust_fit_solves_tukeys_equations(seed):
     assert found.sigma == pytest.approx(sigma, rel=1e-6)
 
 
+def test_readings_that_are_all_needed_have_no_robust_scatter():
+    """Three equations of three unknowns are met whatever they say."""
+    found = robust_fit(*problem(e=3, p=3, seed=1))
+    assert found.sigma == 0.0
+    np.testing.assert_allclose(found.residual, 0.0, atol=1e-9)
+
+
 def test_the_robust_scale_is_the_scatter_of_repeated_fits():
     A = np.random.default_rng(5).normal(size=(60, 3))
     rng = np.random.default_rng(6)

@@ -7,7 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import robomill as rm
 from robomill.identification.fit.confidence import bisquare
+from robomill.identification.load_test import LoadTests
 from robomill.identification.pull.lines_of_pull import (
     LinesOfPull,
     _good,
@@ -16,6 +18,7 @@ from robomill.identification.pull.lines_of_pull import (
     _judged,
     _Lines,
     _parallel,
+    lines_of_pull,
 )
 
 MEDIAN = np.sqrt(2.0 * np.log(2.0))  # of the length of two standard normals
@@ -235,3 +238,25 @@ def test_lines_are_apart_by_a_twentieth_of_their_way_or_where_a_third_misses(gap
     assert (found.shift is None) == (says == "apart")
     assert len(found.suspects) == (bad if says == "met" else 0)
     assert bool(found.pushes) == (says == "met")
+
+
+@pytest.mark.parametrize("away", [2.0, 10.0])
+def test_pulleys_are_guessed_by_gaps_over_the_way_to_them(away):
+    """Lines that miss by a hundredth of their way, however far their pulleys are."""
+    rng, which = np.random.default_rng(4), np.arange(20) % 2
+    made = towards([[0, 0, away], [away, 0, 0]], which, 0.005 * away, rng)
+    found = made.guess(False)
+    np.testing.assert_array_equal(found[:, None] == found, which[:, None] == which)
+
+
+def test_cables_that_are_aimed_by_calculation_say_nothing_and_others_beside_them_do():
+    """Five of twenty-four rows are aimed at a pulley that is stated, somewhere else."""
+    robot, rng = rm.load_robot("slavkovic_5r"), np.random.default_rng(6)
+    theta = rng.uniform(robot.limits[:, 0], robot.limits[:, 1], (24, 5))
+    F = np.array([1.5, -3.0, 0.5]) - rm.tool_pose(robot, theta)[:, :3, 3]
+    stated = np.where((np.arange(24) % 5 == 2)[:, None], [5.0, 5.0, 5.0], np.nan)
+    found = lines_of_pull(robot, LoadTests(F, F, theta=theta, pulley=stated))
+    assert found.says == "met"
+    np.testing.assert_array_equal(found.row, np.flatnonzero(np.arange(24) % 5 != 2) + 1)
+    np.testing.assert_allclose(found.pulley, [[1.5, -3.0, 0.5]], atol=1e-6)
+    assert lines_of_pull(robot, LoadTests(F, F, theta=theta, pulley=np.full((24, 3), 5.0))).says == "aimed"
