@@ -24,6 +24,7 @@ PARTS = [
     "kinematics/test_jacobian.py",
     "compliance",
     "identification/fit/test_estimate.py",
+    "identification/fit/test_estimate_intervals.py",
     "cli/test_core_install.py",
     "docs/test_notebooks.py",
     "learn/test_marking.py",

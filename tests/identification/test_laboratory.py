@@ -9,7 +9,7 @@ import pytest
 
 import robomill as rm
 from robomill.errors import LoadTestError
-from robomill.identification.laboratory import Laboratory
+from robomill.identification.laboratory import MAX_LOAD, Laboratory
 from robomill.identification.plan import box_candidates, next_best
 
 ROBOT = rm.load_robot("slavkovic_5r")
@@ -154,3 +154,10 @@ def test_the_edges_of_what_is_allowed():
     both = Laboratory(ROBOT, seed=7).measure_at([[0, -1.3, 0, 0, 0], [0.1, -1.2, 0, 0, 0]], [0, 250.0, 0])
     p = rm.tool_pose(ROBOT, both.tests.theta)[:, :3, 3]
     np.testing.assert_allclose(p, [[0, -1.3, 0], [0.1, -1.2, 0]], atol=1e-9)
+
+
+def test_the_greatest_load_may_be_hung_on():
+    theta, F = some(1)
+    assert Laboratory(ROBOT).measure(theta, F * MAX_LOAD / 250.0).budget == 11
+    with pytest.raises(LoadTestError, match="more than"):
+        Laboratory(ROBOT).measure(theta, F * (MAX_LOAD + 1.0) / 250.0)

@@ -10,7 +10,7 @@ import pytest
 import robomill as rm
 from robomill.identification.fit.models import Model
 from robomill.identification.fit.system import build_system
-from robomill.identification.length_units import BETTER, WELL, length_suspicions
+from robomill.identification.length_units import BETTER, WELL, _left_over, _lengths_of, length_suspicions
 from tests.identification.cables import Arm, Rig, as_csv, make
 
 ARM, ROBOT = Arm.of("kuka_kr500"), rm.load_robot("kuka_kr500")
@@ -53,3 +53,26 @@ def test_points_meant_in_another_unit_are_named_with_it(origin, times, slip, fie
     assert found.code == "length-unit"
     assert slip in found.message
     assert what in found.message
+
+
+def test_lengths_that_a_robot_does_not_have_are_not_asked():
+    """An arm in the plane without a tool has its lengths a alone; each is scaled by itself."""
+    n = np.zeros(3)
+    flat = rm.Robot.from_dh(alpha=n, a=np.array([0.6, 0.5, 0.3]), d=n, C_theta=np.full(3, 1e-6))
+    assert list(_lengths_of(flat)) == ["the robot's lengths a"]
+    whole = _lengths_of(ROBOT)
+    assert list(whole) == ["the robot's lengths a", "the robot's lengths d", "the tool's place on the flange"]
+    for scale, (a, d, tool) in zip(whole.values(), np.eye(3) + 1.0, strict=True):
+        scaled = scale(2.0)
+        np.testing.assert_allclose(scaled.a, a * ROBOT.a)
+        np.testing.assert_allclose(scaled.d, d * ROBOT.d)
+        np.testing.assert_allclose(scaled.T_tool[:3, 3], tool * ROBOT.T_tool[:3, 3])
+        np.testing.assert_allclose(scaled.T_tool[:3, :3], ROBOT.T_tool[:3, :3])
+
+
+def test_nothing_is_left_over_where_nothing_moved_and_everything_where_nothing_can_be_fitted():
+    tests = read().with_joints(ROBOT)
+    assert _left_over(ROBOT, replace(tests, displacement=np.zeros((30, 3)))) == 0.0
+    assert _left_over(ROBOT, tests.select([0])) == np.inf
+    aside = replace(tests, displacement=tests.displacement[:, :3] + [1e-3, 0.0, 0.0])
+    assert _left_over(ROBOT, aside) == pytest.approx(left_over(aside), rel=0.02)

@@ -69,3 +69,11 @@ def test_noise_is_not_taken_for_a_bend():
 def test_points_that_nothing_surrounds_say_nothing(p):
     C = np.random.default_rng(0).normal(size=(len(p), 3, 3))
     np.testing.assert_array_equal(between_points(p, C, np.zeros_like(C)), 0.0)
+
+
+def test_what_the_noise_of_each_point_makes_of_a_gap_is_taken_off_it():
+    """That of the middle point, and a quarter of the squares of its two neighbours', who count half each."""
+    x, own = np.array([[-1.0], [0.0], [1.0]]), np.array([0.3, 0.2, 0.5])
+    C = np.abs(x)[:, :, None] * np.ones((3, 3))
+    gap = PART_BETWEEN * np.sqrt(1.0 - 0.2**2 - (0.3**2 + 0.5**2) / 4.0)
+    assert between_points(x, C, own[:, None, None] * np.ones((3, 3, 3))) == pytest.approx(gap)

@@ -6,12 +6,16 @@ The readings are those of ``cables.py``: springs turned one by one by rotation m
 from __future__ import annotations
 
 from dataclasses import replace
+from math import comb
 
 import numpy as np
 import pytest
+from scipy.optimize import nnls
 
 import robomill as rm
-from robomill.identification.other_senses import sense_suspicions
+from robomill.identification.fit.models import Model
+from robomill.identification.fit.system import build_system
+from robomill.identification.other_senses import EVERY, _left_over, _turned, sense_suspicions
 from tests.identification.cables import Arm, Rig, make
 
 ARM = Arm.of("kuka_kr270")
@@ -72,3 +76,22 @@ def test_so_few_tests_say_nothing_of_senses(count, suspected):
     made = make(ARM, RIG, count, 2)
     tests = rm.LoadTests(made.F, made.moved, theta=made.q * [1, -1, 1, 1, 1, 1])
     assert ["theta2" in each.message for each in sense_suspicions(WIDE, tests)] == [True] * suspected
+
+
+def test_every_set_of_joints_is_asked_or_every_pair_where_they_are_many():
+    for n, sizes in ((3, (1, 2, 3)), (EVERY, range(1, EVERY + 1)), (EVERY + 1, (1, 2))):
+        asked = list(_turned(n))
+        assert [len(each) for each in asked] == sorted(len(each) for each in asked), "the fewest first"
+        assert len(set(asked)) == len(asked) == sum(comb(n, size) for size in sizes)
+        assert {j for each in asked for j in each} == set(range(n))
+
+
+def test_what_the_joints_do_not_explain_is_a_share_of_the_displacements_alone():
+    """By scipy's fit above zero; rotations that are read too are not asked."""
+    made = make(ARM, replace(RIG, noise=3e-4), 8, 2)
+    tests = rm.LoadTests(made.F, np.hstack([made.moved, np.ones((8, 3))]), theta=made.q)
+    A = build_system(ROBOT, rm.LoadTests(made.F, made.moved, theta=made.q), Model("joints")).A[:, :5]
+    b, size = made.moved.ravel(), np.linalg.norm(A, axis=0)  # joint 6 turns the tip about itself
+    assert _left_over(ROBOT, tests) == pytest.approx(nnls(A / size, b)[1] / np.linalg.norm(b), rel=1e-6)
+    still = rm.LoadTests(made.F, np.hstack([np.zeros((8, 3)), np.ones((8, 3))]), theta=made.q)
+    assert _left_over(ROBOT, still) == 0.0

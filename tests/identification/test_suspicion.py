@@ -231,3 +231,11 @@ def test_a_component_that_no_joint_moves_may_be_zero():
     assert not read[:, 2].any()
     assert "unread" not in codes(LoadTests(F, read, theta=theta), flat)
     assert "unread" in codes(LoadTests(F, read * [0, 1, 1], theta=theta), flat)
+
+
+def test_components_that_were_not_read_are_named():
+    for axes in ([2], [0, 1], [1]):
+        read = SOUND.displacement[:, :3].copy()
+        read[:, axes] = 0.0
+        (text,) = (each.message for each in suspicions(moved(SOUND, read), ROBOT) if each.code == "unread")
+        assert text.split(" is zero")[0] == " and ".join(f"d{'xyz'[axis]}" for axis in axes)

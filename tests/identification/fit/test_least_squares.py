@@ -174,6 +174,23 @@ def test_a_robust_fit_solves_tukeys_equations(seed):
     assert found.sigma == pytest.approx(sigma, rel=1e-6)
 
 
+@pytest.mark.parametrize(("given", "sigma"), [(None, 0.0), (2.0, 2.0)])
+def test_readings_that_are_all_needed_scatter_as_it_is_stated_or_not_at_all(given, sigma):
+    A, b = problem(e=3, p=3, seed=1)
+    fit = solve_triangle(triangle(A, b), 3, np.ones(3, dtype=bool), given)
+    assert (fit.dof, fit.sigma) == (0, sigma)
+    S = A / np.linalg.norm(A, axis=0)
+    scaled = fit.covariance * np.outer(*[np.linalg.norm(A, axis=0)] * 2)
+    np.testing.assert_allclose(scaled, sigma**2 * np.linalg.inv(S.T @ S), rtol=1e-6)
+
+
+def test_readings_that_are_all_needed_have_no_robust_scatter():
+    """Three equations of three unknowns are met whatever they say."""
+    found = robust_fit(*problem(e=3, p=3, seed=1))
+    assert found.sigma == 0.0
+    np.testing.assert_allclose(found.residual, 0.0, atol=1e-9)
+
+
 def test_the_robust_scale_is_the_scatter_of_repeated_fits():
     A = np.random.default_rng(5).normal(size=(60, 3))
     rng = np.random.default_rng(6)

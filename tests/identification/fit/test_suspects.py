@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 import robomill as rm
-from robomill.identification.fit.doubts import model_findings
+from robomill.identification.fit.doubts import bending_offer, model_findings
 from robomill.identification.fit.suspects import Cause, Inquest, Suspect
+from robomill.identification.fit.treatment import Treatment
 
 ROBOT = rm.load_robot("kuka_kr270")
 LINK, ZERO, TOOL = Cause("bending", 2), Cause("zero", 3), Cause("tool")
@@ -65,3 +68,18 @@ def test_a_zero_that_explains_best_is_said_first_and_points_that_explain_less_we
     assert beside[0].message.endswith("; another load point explains the readings less well.")
     alike = model_findings(ROBOT, asked((ZERO, 1, 0.1), (LINK, 2, 0.101)))
     assert "Joint 3 may stand" in alike[0].message
+
+
+@pytest.mark.parametrize(
+    ("bending", "found"),
+    [
+        ("auto", [(LINK, 2, 0.1)]),  # the tests have been asked
+        ((2,), [(ZERO, 1, 0.1)]),  # nothing bends
+        ((2,), [(TOOL, 1, 0.1), (LINK, 2, 0.101)]),  # the tool explains as well, by less
+        ((2,), []),
+    ],
+)
+def test_bending_is_offered_where_it_may_be_what_is_missing_and_was_not_asked(bending, found):
+    """Where it is not, nothing is even fitted: candidates that hold no tests would say so."""
+    candidates = SimpleNamespace(treatment=Treatment(bending=bending))
+    assert bending_offer(candidates, "joints", asked(*found), 0.4) is None

@@ -154,3 +154,9 @@ def test_by_size_a_test_counts_by_what_it_moved_but_what_hardly_moved_by_a_tenth
     np.testing.assert_allclose(found.noise / plain.noise, np.array(counts)[found.test], rtol=1e-12)
     still = build_system(ROBOT, LoadTests(F, 0.0 * moved, theta=theta), Model(), by_size=True)
     np.testing.assert_array_equal(still.noise, plain.noise)
+
+
+def test_where_nothing_moved_every_test_counts_alike_by_its_size():
+    theta, F = three_directions(THETA, 200.0)
+    still = build_system(ROBOT, LoadTests(F, np.zeros((18, 3)), theta=theta), Model(), by_size=True)
+    np.testing.assert_array_equal(still.noise, 1.0)

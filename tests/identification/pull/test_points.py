@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, nnls
 
 import robomill as rm
 from robomill.errors import LoadTestError
@@ -304,3 +304,14 @@ def test_the_way_to_a_point_is_the_same_in_any_unit_of_the_readings(freed):
         found.append(np.concatenate([at, gives]))
     np.testing.assert_allclose(found[1:], found[:1] * np.ones((2, 1)), atol=1e-9)
     np.testing.assert_allclose(found[0], [*shift, *x], atol=0.05)
+
+
+def test_the_cost_of_a_shift_is_the_squared_residual_there():
+    """Of equations that change with the shift, by scipy's fit above zero; one of the compliances is held there."""
+    rng = np.random.default_rng(2)
+    T, b, shift = rng.normal(size=(40, 4, 3)), rng.normal(size=40), np.array([0.3, -0.2, 0.1])
+    whole = np.column_stack([T.reshape(40, -1), b])
+    cost, x = Normal(whole.T @ whole, np.zeros(3, dtype=bool), ("force",)).cost(shift)
+    right, norm = nnls(T[:, 0] + np.einsum("ekp,k->ep", T[:, 1:], shift), b)
+    np.testing.assert_allclose(x, right, atol=1e-9)
+    assert cost == pytest.approx(norm**2, rel=1e-9)
