@@ -124,6 +124,19 @@ def test_where_a_ramp_is_does_not_depend_on_the_step() -> None:
     np.testing.assert_allclose(at[1], at[2], atol=10e-6)
 
 
+def test_an_end_that_sinks_by_nanometres_a_step_meets_its_floor() -> None:
+    """Steps of 0.02 mm, on which the tip sinks by some 20 nm. (Looked at a micrometre back along the way that was told,
+    it met its floor from 87 nm on: held between nothing and too much, it stood 8 to 20 um aside.)"""
+    run = ramp(0.0875, 0.02e-3, 0.6e-3)
+    on = np.flatnonzero(run.path.cutting)[2:]
+    axes = run.R_MF[on[0]]
+    x, delta = sunk(axes.T @ run.C[on[0]] @ axes, 0.0875, 0.6e-3)
+    truth = np.stack([np.interp(run.path.p[on, 0] - BEGINS, x, delta[:, n]) for n in range(3)], axis=1)
+    np.testing.assert_allclose(run.delta_in_cut[on], truth, atol=1e-6)
+    assert run.coupling.converged
+    assert run.coupling.mean_iterations < 120
+
+
 @pytest.mark.parametrize("step", [1e-3, 0.25e-3])
 @pytest.mark.parametrize("drills", [False, True], ids=["mill", "drill"])
 def test_a_plunge_sinks_as_its_thrust_grows(drills: bool, step: float) -> None:

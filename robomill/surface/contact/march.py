@@ -132,12 +132,17 @@ class March:
         return np.divide(turn, length, out=np.zeros_like(turn), where=length > 0.0)
 
     @cached_property
-    def _ahead(self) -> FloatArray:
-        """(n, 3) m from where a step ends to where the tool is when it is looked at."""
+    def _just(self) -> FloatArray:
+        """(n,) m from where a step ends, along its feed, to where the tool is when it is looked at."""
         move = self._move[self.steps]
         length = np.linalg.norm(self.points[move] - self.points[move - 1], axis=1)
         just = np.minimum(JUST, 0.5 * length)
-        ahead = np.asarray(np.where(self._at_start, just, -just)[:, None] * self._feed)
+        return np.asarray(np.where(self._at_start, just, -just))
+
+    @cached_property
+    def _ahead(self) -> FloatArray:
+        """(n, 3) m the same as a way of the tool that goes as it is told."""
+        ahead = np.asarray(self._just[:, None] * self._feed)
         return ahead if self.looked is None else ahead + np.asarray(self.looked)[self.steps]
 
     @cached_property
@@ -315,7 +320,8 @@ class March:
         world, room = state
         found = np.zeros((len(n), MOMENTS * len(self.exponents) + REST))
         sectors = np.zeros((len(n), 4 * len(room.sectors)), dtype=np.float32)
-        tips = ends[:, 3:] + self._ahead[n]
+        # as it really goes: back along a steeper way, an end that sinks by little would not have met its floor
+        tips = ends[:, 3:] + (self._ahead[n] if fed is None else self._just[n][:, None] * fed[0])
         steps = Steps(
             np.ascontiguousarray(ends),
             tips,
