@@ -17,7 +17,7 @@ from robomill.simulation.judging.places import cut_axes
 from robomill.simulation.led import led_beside, plunges, tip_error
 from robomill.simulation.meant import LINK
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.run import along, spin_of
+from robomill.simulation.run import along, kept_to_path, spin_of
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 
@@ -90,7 +90,9 @@ def correct(setup: SimulationSetup, first: SimulationResult, components: tuple[s
     P, seeking = directions(first, components), _Seeking.begin(len(wanted))
     if {"normal", "axial"} <= set(components):  # where a plunge ends no step may be left, whichever way the cut goes on
         P[places.ends()] = np.eye(3)
-    result = first if not setup.coupling else along(setup.replace(coupling=False), wanted, spin=spin_of(first.ik))
+    result = first
+    if setup.coupling:  # a tip that goes as it was meant to meets what it was meant to
+        result = kept_to_path(along(setup.replace(coupling=False), wanted, spin=spin_of(first.ik)))
     change: list[float] = []
     while True:
         checkpoint(min(len(change) / 6.0, 0.95), "Correcting the path")

@@ -135,7 +135,9 @@ class _Walk:
         self.moved[i] = np.nan_to_num(displacement(bent.C[i], F) + bent.offset[i])
         if goes is not None:
             self.steep[i] = goes.to(p[i] + to_part(found.x))[1]
-        elif not bent.path.cutting[i - 1]:  # a rapid arrives where the cut begins
+        if not bent.path.cutting[i - 1] and (
+            goes is None or goes.length == 0.0
+        ):  # a rapid arrives where the cut begins
             self.moved[i - 1] = self.moved[i]
         self.march.cut(i, p[i - 1] + to_part(self.moved[i - 1]), p[i] + to_part(self.moved[i]))
         return found, row, sectors
@@ -147,11 +149,12 @@ class _Walk:
         goes = bent.path.p if bent.led is None else bent.led.meant
         length = float(np.linalg.norm(goes[i] - goes[i - 1]))
         ends = told.tooling.each("flat_radius")[i] > 0.0 or told.tooling.drills[i]
-        if not (bent.setup.force.follows_cut and ends and sinks(told.along[i]) > 0.0 and length > 0.0):
+        if not (bent.setup.force.follows_cut and ends and sinks(told.along[i]) > 0.0 and (length > 0.0 or bent.led)):
             return None
         way = (goes[i] - goes[i - 1]) / length if bent.led is None else bent.led.way[i]
         before = self.moved[i - 1] if bent.path.cutting[i - 1] else bent.offset[i - 1]  # after a rapid nothing pushes
-        return WayDown(bent.path.p[i - 1] + bent.setup.to_part(np.nan_to_num(before)), bent.path.k[i], way, length)
+        start = bent.path.p[i - 1] + bent.setup.to_part(np.nan_to_num(before))
+        return WayDown(start, bent.path.k[i], way, length)
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,6 +175,8 @@ class WayDown:
     def to(self, tip: FloatArray) -> tuple[FloatArray, float]:
         """To a ``tip`` (3,) m: how far it goes (3,) for each length that it is told to, and how steeply its end
         ``sinks``. Beside the axis it goes as it is told."""
+        if self.length == 0.0:  # where a corrected cut begins, sent so deep that it stands on the part
+            return self.way, float(sinks(self.way @ self.k))
         fall = float((self.start - tip) @ self.k) / self.length
         across = self.way - (self.way @ self.k) * self.k
         slope = np.hypot(fall, np.linalg.norm(across))

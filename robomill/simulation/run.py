@@ -274,6 +274,15 @@ def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...],
     return coupled.conditions, coupled.F, reasons, replace(coupled.coupling, judged=judged)
 
 
+def kept_to_path(run: SimulationResult) -> SimulationResult:
+    """An uncoupled ``run`` as if every tip went where it is told to, and the end of its tool sank as steeply."""
+    setup, path = run.setup, run.path
+    offset = run.sag.sum(axis=-2) if run.sag is not None and setup.add_sag else np.zeros((len(path), 3))
+    bent = Bent(setup, path, told_conditions(setup, path, run.ik.reached), run.C, run.R_MF, offset)
+    conditions, F = _once(bent)
+    return replace(run, conditions=conditions, F=F, delta=known(bent.delta(F), run.unjudged))
+
+
 def _once(bent: Bent) -> tuple[CutConditions, FloatArray]:
     """Conditions and force along the path as it is told, or led."""
     setup, path, told, led = bent.setup, bent.path, bent.told, bent.led

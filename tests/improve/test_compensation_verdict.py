@@ -29,6 +29,16 @@ def test_every_sample_whose_force_is_coupled_is_corrected_and_judged_throughout(
     assert "not-known" not in {each.code for each in found.findings}
 
 
+def test_a_coupled_ramp_is_corrected_from_its_first_step_on() -> None:
+    """A rapid sends the tool so deep that it stands on the part with all of its thrust, as the ramp's end needs it."""
+    body = "G0 X-12 Y0 Z5\nG0 Z0\nG1 X4 Z-1.4 F1800\nG1 X10\n"
+    source = rm.GCodeSource(f"G21 G90\nS12000 M3\n{body}G0 Z20\nM2\n", "ramp.nc")
+    setup = rm.load_setup("paper_flute/setup_process").replace(source=source, coupling=True)
+    found = rm.compensate(setup)
+    assert found.before.max > 0.7e-3
+    assert found.after.max < 0.02 * found.before.max
+
+
 def test_why_a_corrected_program_has_no_verdict_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     setup = rm.load_setup("paper_flute/setup_process").replace(source=rm.GCodeSource(BACK, "back.nc"))
     found = rm.compensate(setup)
