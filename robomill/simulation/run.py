@@ -151,7 +151,7 @@ def along(
     C_joint, C_spring = (each if softer == 1.0 else softer * each for each in (C_joint, C_spring))
     checkpoint(stage="Force and deflection")
     sag = None if setup.links is None else softer * sags(setup, path, ik.theta, setup.links)
-    offset = sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros((len(path), 3))
+    offset = _offset(setup, path, sag)
     told, frames = told_conditions(setup, path, ik.reached, led), feed_directions(setup, path, led)
     bent = Bent(setup, path, told, C, frames, offset, stronger, led)
     conditions, F, unjudged, coupling = forces(bent)
@@ -274,11 +274,16 @@ def forces(bent: Bent) -> tuple[CutConditions, FloatArray, tuple[Unjudged, ...],
     return coupled.conditions, coupled.F, reasons, replace(coupled.coupling, judged=judged)
 
 
+def _offset(setup: SimulationSetup, path: Toolpath, sag: FloatArray | None) -> FloatArray:
+    """(m, 3) m in {M}: what the tip is off without a force, the ``sag`` (m, n, 3) m of the joints where it is added."""
+    return sag.sum(axis=-2) if sag is not None and setup.add_sag else np.zeros((len(path), 3))
+
+
 def kept_to_path(run: SimulationResult) -> SimulationResult:
     """An uncoupled ``run`` as if every tip went where it is told to, and the end of its tool sank as steeply."""
     setup, path = run.setup, run.path
-    offset = run.sag.sum(axis=-2) if run.sag is not None and setup.add_sag else np.zeros((len(path), 3))
-    bent = Bent(setup, path, told_conditions(setup, path, run.ik.reached), run.C, run.R_MF, offset)
+    told = told_conditions(setup, path, run.ik.reached)
+    bent = Bent(setup, path, told, run.C, run.R_MF, _offset(setup, path, run.sag))
     conditions, F = _once(bent)
     return replace(run, conditions=conditions, F=F, delta=known(bent.delta(F), run.unjudged))
 
