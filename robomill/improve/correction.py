@@ -92,7 +92,7 @@ def correct(setup: SimulationSetup, first: SimulationResult, components: tuple[s
         P[places.ends()] = np.eye(3)
     result = first
     if setup.coupling:  # a tip that goes as it was meant to meets what it was meant to
-        result = kept_to_path(along(setup.replace(coupling=False), wanted, spin=spin_of(first.ik)))
+        result = kept_to_path(first)
     change: list[float] = []
     while True:
         checkpoint(min(len(change) / 6.0, 0.95), "Correcting the path")

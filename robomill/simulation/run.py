@@ -23,7 +23,7 @@ from robomill.kinematics.jacobian import geometric_jacobian
 from robomill.kinematics.spin import LEAST_DEVIATION, OverSpin, over_spins, spin_matters
 from robomill.kinematics.transforms import pose_from_world, rotation_z, tilt_from_axis, transform
 from robomill.progress import checkpoint, gathered, slices
-from robomill.simulation.coupling import Coupling
+from robomill.simulation.coupling import COUPLING, Coupling
 from robomill.simulation.cut import (
     Led,
     cut_conditions,
@@ -280,12 +280,14 @@ def _offset(setup: SimulationSetup, path: Toolpath, sag: FloatArray | None) -> F
 
 
 def kept_to_path(run: SimulationResult) -> SimulationResult:
-    """An uncoupled ``run`` as if every tip went where it is told to, and the end of its tool sank as steeply."""
+    """A ``run`` as if every tip went where it is told to, and the end of its tool sank as steeply: what force and
+    place could not agree on is known there."""
     setup, path = run.setup, run.path
     told = told_conditions(setup, path, run.ik.reached)
     bent = Bent(setup, path, told, run.C, run.R_MF, _offset(setup, path, run.sag))
     conditions, F = _once(bent)
-    return replace(run, conditions=conditions, F=F, delta=known(bent.delta(F), run.unjudged))
+    unjudged = tuple(each for each in run.unjudged if each.code != COUPLING)
+    return replace(run, conditions=conditions, F=F, delta=known(bent.delta(F), unjudged), unjudged=unjudged)
 
 
 def _once(bent: Bent) -> tuple[CutConditions, FloatArray]:
