@@ -27,6 +27,8 @@ from robomill.improve.placed import (
     findings,
     place_of,
 )
+from robomill.provenance import Finding
+from robomill.simulation.mapped import MAP_SPIN
 
 SETUP = rm.load_setup("paper_flute").replace(step_mm=20)
 AXES = (np.array([-0.1, 0.2]), np.array([-1.4, -1.3, -1.2]), np.array([0.01, 0.02]), np.radians([0.0, 90.0]))
@@ -103,7 +105,8 @@ def codes(at: tuple[float, ...], box: dict[str, tuple[float, float]], **given: o
         measure=given.get("measure", "verdict"),
         screened=given.get("screened", (5, 5)),
     )
-    run = SimpleNamespace(not_judged=np.array([False, bool(given.get("partly"))]))
+    notes = (Finding("warning", "The map was measured at one spin.", code=given.get("noted", "")),)
+    run = SimpleNamespace(not_judged=np.array([False, bool(given.get("partly"))]), notes=notes)
     said = findings(found, area(setup, box), run)  # type: ignore[arg-type]
     return {each.code for each in said}, " ".join(each.message for each in said)
 
@@ -143,12 +146,13 @@ def test_all_around_there_is_no_edge() -> None:
         ({"setup": rm.load_setup("paper_flute/setup_process").replace(coupling=True)}, COUPLED),
         ({"screened": (4, 5)}, SCREENED),
         ({"partly": True}, PARTLY),
+        ({"noted": MAP_SPIN}, MAP_SPIN),
         ({}, None),
     ],
 )
 def test_what_a_reader_must_know_of_a_best_place(given: dict, code: str | None) -> None:
     found, _ = codes((0.0, -1300.0, 2.0, 0.0), BOX, **given)
-    assert found & {EDGE, TIP, IN_ROBOT, COUPLED, SCREENED, PARTLY} == ({code} if code else set())
+    assert found & {EDGE, TIP, IN_ROBOT, COUPLED, SCREENED, PARTLY, MAP_SPIN} == ({code} if code else set())
 
 
 def test_a_force_fixed_in_the_robot_matters_only_where_the_part_may_turn() -> None:
