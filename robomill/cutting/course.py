@@ -116,10 +116,10 @@ def about_ends(cutter: Cutter, course: Course) -> FloatArray:
     """(k, 8) rad: the angle of a tooth just before and after its edge, at its lower and at its upper end, comes into
     the material or leaves it. There the force changes by a jump (straight edges) or most quickly, and has extremes that
     instants spread ``evenly`` pass by."""
-    heights = [each for low, high, *_ in course.slices(cutter) for each in (low, high)] or [0.0 * course.c[:, None]]
+    top = course.sectors[..., 2].max(axis=1)[:, None]
     ends = (course.arc[:, :, None] + np.array([-BESIDE, BESIDE])).reshape(len(course.c), 4)
     sense, base, lag = _turning(cutter)
-    return np.hstack([sense * (ends - base) + lag * height for height in (heights[0], heights[-1])])
+    return np.hstack([sense * (ends - base) + lag * height for height in (0.0 * top, top)])
 
 
 def _turning(cutter: Cutter) -> tuple[float, float, float]:
@@ -145,13 +145,11 @@ def force_at(terms: tuple[EdgeTerm, ...], cutter: Cutter, course: Course, angle:
     share = np.divide(sectors[..., 0], thick, out=np.zeros(thick.shape), where=thick > 0.0)
     edges = sector_edges(sectors.shape[1])
 
-    def add(phi: FloatArray, sector: IntArray, kappa: FloatArray, engaged: FloatArray) -> None:
+    def add(phi: FloatArray, kappa: FloatArray, engaged: FloatArray) -> None:
         """A slice whose normal leans kappa (k, 1), so much of which (k, teeth t) m is engaged as teeth stand at phi."""
-        inside = (sector < sectors.shape[1]) & (phi > np.pi)
-        inside |= (phi >= course.arc[:, :1]) & (phi <= course.arc[:, 1:])
         sine, cosine, s, t = np.sin(phi), np.cos(phi), np.sin(kappa), np.cos(kappa)
         facing = course.feed[:, :1] * sine * s - course.feed[:, 1:] * t
-        engaged = np.where(inside & (facing > FACING), engaged, 0.0)
+        engaged = np.where(facing > FACING, engaged, 0.0)
         h = course.c[:, None] * np.maximum(facing, FACING)
         unit = moments(1.0, s, t, sine, cosine)
         for term in terms:
@@ -159,20 +157,34 @@ def force_at(terms: tuple[EdgeTerm, ...], cutter: Cutter, course: Course, angle:
             for n, share in enumerate(push(term, cutter, unit)):
                 force[..., n] += (load * share).reshape(len(phi), cutter.flutes, -1).sum(axis=1)
 
-    def seen(height: FloatArray) -> tuple[FloatArray, IntArray]:
-        """Angles of the teeth at a height (k, 1) m, and the sectors they are in."""
-        phi = (base + sense * (turn - height * lag)) % (2.0 * np.pi)
-        return phi, np.searchsorted(edges, phi, side="right") - 1
+    def seen(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+        """Of the edges between two heights (k, 1) m: the angles that they are at, the share of them in the material
+        there, and the sectors they are in. An edge that is partly in the arc is where the middle of that part is."""
+        phi = (base + sense * (turn - 0.5 * (low + high) * lag)) % (2.0 * np.pi)
+        phi, inside = _in_arc(phi, np.abs(lag) * (high - low), course.arc)
+        sector = np.searchsorted(edges, phi, side="right") - 1
+        inside[(sector < sectors.shape[1]) & (phi > np.pi)] = 1.0
+        return phi, inside, np.minimum(sector, sectors.shape[1] - 1)
 
     for low, high, kappa, ds in course.slices(cutter):
-        phi, sector = seen(0.5 * (low + high))
-        here = np.minimum(sector, sectors.shape[1] - 1)
+        phi, inside, here = seen(low, high)
         start, stop, dense = (np.take_along_axis(q, here, axis=1) for q in (sectors[..., 1], sectors[..., 2], share))
         met = np.clip(np.minimum(stop, high) - np.maximum(start, low), 0.0, None)
         covered = np.divide(met, high - low, out=np.zeros(met.shape), where=high > low)
-        add(phi, sector, kappa, dense * covered * ds)
+        add(phi, kappa, inside * dense * covered * ds)
     if sectors[..., 3].any():
-        phi, sector = seen(np.zeros((len(course.c), 1)))
-        here = np.minimum(sector, sectors.shape[1] - 1)
-        add(phi, sector, np.zeros((len(course.c), 1)), np.take_along_axis(sectors[..., 3], here, axis=1))
+        none = np.zeros((len(course.c), 1))
+        phi, inside, here = seen(none, none)
+        add(phi, none, inside * np.take_along_axis(sectors[..., 3], here, axis=1))
     return force
+
+
+def _in_arc(phi: FloatArray, wide: FloatArray, arc: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Edges about the angles ``phi`` (k, t) rad that reach over ``wide`` (k, 1) rad: the middle of their part in the
+    ``arc`` (k, 2) rad, or of all of them where they have none, and the share that it is."""
+    centre, half = arc.mean(axis=1, keepdims=True), 0.5 * np.diff(arc, axis=1)
+    off = (phi - centre + np.pi) % (2.0 * np.pi) - np.pi
+    first, last = np.maximum(off - 0.5 * wide, -half), np.minimum(off + 0.5 * wide, half)
+    met, point = last - first, wide <= 0.0
+    share = np.divide(np.maximum(met, 0.0), wide, out=(met >= 0.0).astype(float), where=~point & (met >= 0.0))
+    return np.where(share > 0.0, centre + 0.5 * (first + last), phi), share

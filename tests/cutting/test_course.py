@@ -82,6 +82,37 @@ def test_peak_of_a_finishing_pass_is_where_a_tooth_comes_or_goes(a_e, climb, han
     np.testing.assert_allclose(peak.low[0], course.min(axis=0), atol=0.02 * size)
 
 
+@pytest.mark.parametrize("helix", [15.0, 45.0, 60.0])
+@pytest.mark.parametrize(("first", "last"), [(1.0, 1.05), (0.0, 0.1), (3.0, np.pi), (0.3, 1.7)])
+@pytest.mark.parametrize(("flutes", "a_p"), [(1, 5e-3), (3, 3e-3)])
+def test_peak_of_a_steep_helix_in_a_narrow_arc(flutes, a_p, first, last, helix):
+    """An edge over L of the turn carries a_p / L times the integral of its load over its part in the arc: from a table
+    of that integral by angle, whatever the arc."""
+    mill = MILL.replace(flutes=flutes, helix_angle=math.radians(helix))
+    force = MechanisticForce(mill, REF190)
+    arc = CutConditions.steady(0.03, 200.0, a_p, arc=(first, last))
+    peak, mean = force.peak(arc), force.components(arc)[0]
+    phi = np.linspace(first, last, 20001)
+    h = 0.03 / 200.0 / flutes * np.sin(phi)
+    F_t, F_r, F_a = REF190.Ktc * h + REF190.Kte, REF190.Krc * h + REF190.Kre, REF190.Kac * h + REF190.Kae
+    loads = np.stack([-F_t * np.cos(phi) - F_r * np.sin(phi), F_t * np.sin(phi) - F_r * np.cos(phi), -F_a])
+    steps = 0.5 * (loads[:, 1:] + loads[:, :-1]) * np.diff(phi)
+    so_far = np.hstack([np.zeros((3, 1)), np.cumsum(steps, axis=1)])
+    lag = a_p * math.tan(mill.helix_angle) / mill.radius
+    turn = np.linspace(0.0, 2.0 * np.pi, 20001)[:-1]
+    course = np.zeros((len(turn), 3))
+    for tooth in range(2 * flutes):  # twice round: a long edge is in the arc more than a turn after its tip came in
+        low, high = turn + 2.0 * np.pi * tooth / flutes - lag, turn + 2.0 * np.pi * tooth / flutes
+        for n in range(3):
+            course[:, n] += a_p / lag * (np.interp(high, phi, so_far[n]) - np.interp(low, phi, so_far[n]))
+    course = course[: len(turn) // flutes] if flutes > 1 else course
+    size = np.linalg.norm(course, axis=1).max()
+    np.testing.assert_allclose(mean, course.mean(axis=0), atol=1e-3 * size)
+    assert np.linalg.norm(peak.at_peak[0]) == pytest.approx(size, rel=0.03)
+    np.testing.assert_allclose(peak.high[0], course.max(axis=0), atol=0.03 * size)
+    np.testing.assert_allclose(peak.low[0], course.min(axis=0), atol=0.03 * size)
+
+
 def test_peak_is_at_least_the_mean_and_helix_smooths_it():
     force = MechanisticForce(MILL, REF190)
     mean, peak = force.components(SLOT), force.peak(SLOT)
