@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray, next_true, stretches
+from robomill.cutting.tool import DISH
 from robomill.progress import checkpoint
 from robomill.simulation.judging.places import cut_axes
 from robomill.simulation.led import led_beside, plunges, tip_error
@@ -20,6 +21,8 @@ from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, kept_to_path, spin_of
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
+from robomill.toolpath.sampling import CORNER
+from robomill.vectors import angle_between
 
 COMPONENTS = ("normal", "axial", "feed")
 AGREED = 0.5e-6  # m: corrections that change by no more have settled
@@ -115,8 +118,8 @@ class _Seeking:
     """Corrections c (m, 3) m on their way to a fixed point.
 
     Of the last change, ``before``, the ``share`` (m, 1) was taken (Aitken). ``least`` (m,) m is the smallest change
-    that each sample was ever asked for, ``best`` its correction then, ``lately`` what it was when last looked at;
-    those that are ``held`` (m,) bool are given up.
+    that each sample was asked for since it was last looked at, ``best`` its correction then, ``lately`` the smallest
+    until then; those that are ``held`` (m,) bool are given up.
     """
 
     c: FloatArray
@@ -148,7 +151,8 @@ class _Seeking:
         """Without those, and all samples at their place, that have not come closer by half since last time."""
         stuck = (self.least > AGREED) & (self.least > 0.5 * self.lately)
         stuck = np.bincount(place, stuck)[place] > 0
-        return replace(self, held=self.held | stuck, lately=self.least)
+        least = np.where(self.held | stuck, self.least, np.inf)
+        return replace(self, held=self.held | stuck, lately=self.least, least=least)
 
     def moved(self, asked: FloatArray) -> "_Seeking":
         """After the next change: all of it, but less where the last one overshot."""
@@ -175,15 +179,17 @@ def corrected_run(wanted: SimulationResult, p: FloatArray, **wrong: float) -> Si
 class Places:
     """Where samples of a ``path`` stand: ``place`` (m,) counts the points on it; ``then`` (m,) is, for samples on the
     way down, the first one of the level cut that goes on from there, else -1; ``steep`` (m,) bool are plunges, and ways
-    ``out``, along the tool. ``short`` (m,) bool are those where a ramp ends and it is not as far to the next one as the
-    tool is pushed: sent on along the feed there, it would have to go back."""
+    ``out``, along the tool. ``alone`` (m,) bool are those where a ramp ends and the cut goes straight on, or it is not
+    as far to the next one as the tool is pushed: sent on along the feed there, it would have to go back. ``falling``
+    (m,) bool are ramps of a run without coupling, whose end is not felt before it touches, and then at once."""
 
     path: Toolpath
     place: IntArray
     then: IntArray
     steep: BoolArray
     out: BoolArray
-    short: BoolArray
+    alone: BoolArray
+    falling: BoolArray
 
     @classmethod
     def along(cls, run: SimulationResult) -> "Places":
@@ -192,14 +198,18 @@ class Places:
         then, steep = plunges(path, run.conditions)
         room = np.append(path.step_length[1:], 0.0) > np.linalg.norm(run.delta, axis=1)
         ramps = then[(then >= 0) & ~steep]
-        short = np.isin(place, place[ramps[~room[ramps]]])
-        return cls(path, place, then, steep, path.cutting & steep & (run.conditions.along > 0.0), short)
+        feed = cut_axes(run)[:, 0]
+        on = np.append(False, angle_between(feed[1:], feed[:-1]) < CORNER)
+        alone = np.isin(place, place[ramps[~room[ramps] | on[ramps]]])
+        slope = run.conditions.along
+        falling = path.cutting & ~steep & (slope < -DISH) & (not run.setup.coupling)
+        return cls(path, place, then, steep, path.cutting & steep & (slope > 0.0), alone, falling)
 
     def ends(self) -> IntArray:
-        """Samples at which a level cut goes on from a way down, and has room for that."""
+        """Samples at which a level cut goes on from a plunge, or another way than its ramp and with room for that."""
         down = self.then >= 0
         then = self.then[down]
-        return np.unique(then[self.steep[down] | ~self.short[then]])
+        return np.unique(then[self.steep[down] | ~self.alone[then]])
 
     def one_each(self, P: FloatArray, d: FloatArray, known: BoolArray) -> FloatArray:
         """c (m, 3): what undoes deflections d (m, 3) m in directions P; at one place one for all that are ``known``
@@ -234,14 +244,15 @@ class Places:
     def held_outside(self, c: FloatArray, pushed: BoolArray, outside: BoolArray) -> FloatArray:
         """c (m, 3) m with that of the next sample of the cut that is ``pushed`` (m,), else of the last one, where the
         tool is ``outside`` (m,) the stock: where it first touches the force is there at once, and so has to be what
-        undoes it. Not on a way out: that is behind its cut."""
+        undoes it. Not on a way out: that is behind its cut; nor on a ramp, where that would send the tool into the part
+        before it touches, by all that its end is pushed up then."""
         path, every = self.path, np.arange(len(pushed))
         cut = np.cumsum(~path.cutting & (path.step_length > 0.0))
         after = next_true(pushed, len(every) - 1)
         before = np.maximum.accumulate(np.where(pushed, every, 0))
         of = every.copy()
         for near in (before, after):
-            some = path.cutting & outside & ~pushed & ~self.out & pushed[near] & (cut[near] == cut)
+            some = path.cutting & outside & ~pushed & ~self.out & ~self.falling & pushed[near] & (cut[near] == cut)
             of[some] = near[some]
         return self._arriving(c[of])
 
@@ -258,8 +269,8 @@ class Places:
 
     def _shared(self, P: FloatArray, d: FloatArray, known: BoolArray) -> FloatArray:
         """c (m, 3) m, the same for all samples at a place where that does for them; else each undoes its own deflection
-        in the directions of all of them, for where one cut ends another has its wall; where that is too ``short``, in
-        its own."""
+        in the directions of all of them, for where one cut ends another has its wall; where it is ``alone``, in its
+        own."""
         own = -np.einsum("mij,mj->mi", P, d)
         count = np.bincount(self.place, known)
         found = np.zeros((len(count), 3))
@@ -282,7 +293,7 @@ class Places:
         U = np.einsum("qij,qjk->qik", inverse, every)
         at = some[linked]
         together = -np.einsum("mij,mj->mi", U[number[linked]], d[at])
-        c[at] = np.where(self.short[at, None], own[at], together)
+        c[at] = np.where(self.alone[at, None], own[at], together)
         return np.asarray(c)
 
 

@@ -33,9 +33,14 @@ def led_beside(path: Toolpath, p: FloatArray, down: tuple[IntArray, BoolArray], 
     of either."""
     then, steep = down
     behind = np.arange(len(p)) if links is None else _behind(links)
-    beside = path.p - p + (p - path.p)[behind[then]]
+    ahead = p - path.p
+    aside = ahead[behind[then]]
+    aside = aside - np.einsum("mi,mi->m", aside, path.k)[:, None] * path.k
+    beside = aside - ahead
     beside -= np.where(steep, np.einsum("mi,mi->m", beside, path.k), 0.0)[:, None] * path.k
     tips = np.where((then >= 0)[:, None], p + beside, p)[behind]
+    arrives = np.flatnonzero(~path.cutting[:-1] & path.cutting[1:] & (path.step_length[1:] == 0.0))
+    tips[arrives] = tips[arrives + 1]  # the way there is no cut
     way = ways(path)
     back = np.einsum("mi,mi->m", np.diff(tips, axis=0, prepend=tips[:1]), way) < 0.0
     back &= path.step_length > 0.0  # a link is no step of the cut

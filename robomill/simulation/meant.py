@@ -101,7 +101,7 @@ def meant(path: Toolpath, wanted: Toolpath, step: float, corrected: tuple[str, .
             f"{format_count(len(cuts), 'cut')}: the program was not corrected for it; give the one that was meant."
         )
     directed = path.step_length >= min(DIRECTED, 0.5 * step)
-    here, there = ways(path), ways(wanted)
+    here, there = (np.where(each.cutting[:, None], ways(each), 0.0) for each in (path, wanted))  # a rapid's is no cut's
     for every, all_ in zip(cuts, told, strict=True):
         moves = path.step_length[every] > 0.0
         moves[0] = True
@@ -268,15 +268,21 @@ def _stepped(total: FloatArray, s: FloatArray, far: FloatArray) -> tuple[FloatAr
 
 def _nearest(q: FloatArray, t: FloatArray, p: FloatArray, at: IntArray) -> FloatArray:
     """(n,) m along p (m, 3) m: the nearest place to each of q (n, 3) m at the samples ``at`` (n,), or on those of the
-    two steps about them that go its way, t (n, 3): a link belongs to the corner that it leads around."""
+    two steps about them that go its way, t (n, 3): a link belongs to the corner that it leads around. Where there is
+    none, it ends where the next sample goes on."""
     s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1)))
     found, least = s[at], np.linalg.norm(q - p[at], axis=1)
-    for a in (np.maximum(at - 1, 0), at):
-        b = np.minimum(a + 1, len(p) - 1)
+    about = [(a, np.minimum(a + 1, len(p) - 1)) for a in (np.maximum(at - 1, 0), at)]
+    way = np.stack([p[b] - p[a] for a, b in about])
+    size = np.linalg.norm(way, axis=2)
+    way = np.divide(way, size[..., None], out=np.zeros_like(way), where=size[..., None] > 0.0)
+    own, behind = (np.einsum("ni,eni->en", each, way) for each in (t, np.vstack([t[1:], t[-1:]])))
+    link = ~(own > ITS_WAY).any(axis=0) & t.any(axis=1)
+    on = np.einsum("ni,ni->n", *way) > np.cos(CORNER)  # where it turns, or its slope does, a link is that corner's
+    goes = np.where(link, on & (behind > ITS_WAY), own > ITS_WAY)
+    for (a, b), its in zip(about, goes, strict=True):
         share, off = nearest_on(q, p[a], p[b])
-        way = p[b] - p[a]
-        goes = np.einsum("ni,ni->n", t, way) > ITS_WAY * np.linalg.norm(way, axis=1)
-        better = goes & (off < least)
+        better = its & (off < least)
         found = np.where(better, s[a] + share * (s[b] - s[a]), found)
         least = np.where(better, off, least)
     return np.asarray(found)

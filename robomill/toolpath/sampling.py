@@ -13,15 +13,19 @@ from robomill.units import format_count, format_number, format_short, to_si
 from robomill.vectors import angle_between
 
 CORNER = to_si(10.0, "deg")
+#: Slopes against the tool's axis: from the one on all of the hollow end of a tool cuts on a way down, up to the other
+#: nothing of it.
+SINKING, LEVEL = to_si(0.5, "deg"), to_si(0.05, "deg")
 
 
 def resample(path: Toolpath, step: float | FloatArray) -> Toolpath:
     """``path`` with every feed move cut into equal pieces no longer than ``step`` (m, one for all moves or one each);
     corners are kept.
 
-    A feed move that begins a cut or turns by more than ``CORNER`` also gets a sample at its start (a step of
-    no length): there the force already has the new direction. One that draws the tool straight back out of a plunge
-    does not, but behind a dwell: what the tool is off at the bottom stays in the part, as it does before a rapid.
+    A feed move that begins a cut, turns by more than ``CORNER``, or begins or ends a way down also gets a sample at its
+    start (a step of no length): there the force already has the new direction, and the end of the tool pushes or does
+    no longer. One that draws the tool straight back out of a plunge does not, but behind a dwell: what the tool is off
+    at the bottom stays in the part, as it does before a rapid.
     Rapids stay whole: no force acts on them.
     The tool axis is interpolated on the great circle. Raises ToolpathError if the step is not positive or
     would give more points than the memory holds.
@@ -78,11 +82,14 @@ def check_samples(path: Toolpath, step: float, total: float, most: int) -> None:
 
 
 def _begins(path: Toolpath) -> BoolArray:
-    """(m,) feed moves that begin a cut or turn sharply."""
+    """(m,) feed moves that begin a cut, turn sharply, or go down where those before do not, or the other way."""
     moved = path.step_length > 0
     angle, _ = _turns(path)
     resumed = np.append(True, ~path.cutting[:-1] | ~moved[:-1])
-    begins = path.cutting & moved & (resumed | ((angle > CORNER) & ~_turns_back(path)))
+    down = -np.einsum("mi,mi->m", np.diff(path.p, axis=0, prepend=path.p[:1]), path.k)
+    sinks, level = down > np.sin(SINKING) * path.step_length, down < np.sin(LEVEL) * path.step_length
+    ends = np.append(False, (sinks[:-1] & level[1:]) | (level[:-1] & sinks[1:]))
+    begins = path.cutting & moved & (resumed | (((angle > CORNER) | ends) & ~_turns_back(path)))
     begins[0] = False
     return np.asarray(begins)
 

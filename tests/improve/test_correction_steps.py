@@ -57,6 +57,19 @@ def test_what_is_given_up_keeps_the_correction_that_came_closest() -> None:
     assert closer.change(closer.c + np.outer([2e-6, 9e-6, 9e-6], way)) == pytest.approx(2e-6)
 
 
+def test_a_place_that_was_right_once_is_given_up_if_it_never_is_again() -> None:
+    """At first nothing pushes there; then what is asked goes to and fro with what its neighbours do."""
+    place, way = np.zeros(1, dtype=int), np.array([1.0, 0.0, 0.0])
+    seeking = _Seeking.begin(1)
+    for n in range(1, 16):
+        asked = seeking.c + 0.1e-3 * way * (0.0 if n == 1 else 1.0)
+        seeking = seeking.looked(asked)
+        if n % 5 == 0:
+            seeking = seeking.giving_up(place)
+        seeking = seeking.moved(asked)
+    assert seeking.held.all()
+
+
 @pytest.mark.parametrize("turn", [20.0, 90.0, 115.0, 130.0, 150.0])
 def test_two_offset_lines_meet_unless_that_is_more_than_twice_as_far_off(turn: float) -> None:
     angles = np.radians([0.0, turn])
@@ -81,7 +94,7 @@ def straight(cutting: list[int], place: list[int], steep: list[int] | None = Non
         step_length=1e-3 * np.diff(place, prepend=place[0] - 1),
     )
     down = np.zeros(m, dtype=bool) if steep is None else np.array(steep, dtype=bool)
-    return Places(path, np.array(place), np.full(m, -1), down, *np.zeros((2, m), dtype=bool))  # type: ignore[arg-type]
+    return Places(path, np.array(place), np.full(m, -1), down, *np.zeros((3, m), dtype=bool))  # type: ignore[arg-type]
 
 
 def test_where_the_tool_is_outside_it_has_the_correction_of_the_next_sample_that_is_pushed_else_of_the_last() -> None:

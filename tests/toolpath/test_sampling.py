@@ -101,6 +101,34 @@ def test_only_what_begins_or_turns_has_a_sample_at_its_start() -> None:
     assert fine.p[:, 0] * 1e3 == pytest.approx([0, 0, 10, 20, 30, 30, 40, 40, 40, 50, 60, 60, 60, 60], abs=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("slopes", "begins"),
+    [
+        ((-4, 0, 0), (1, 1, 0)),  # down, and on
+        ((0, -4, -2, 0), (1, 1, 0, 1)),
+        ((2, -0.6, 0.02), (1, 1, 1)),
+        ((-0.4, 0, -0.4), (1, 0, 0)),  # too gentle for a whole end to push
+        ((-1, -0.3, 0), (1, 0, 0)),  # and little by little
+        ((5, 0, 3), (1, 0, 0)),
+    ],
+)
+@pytest.mark.parametrize("lean", [0.0, 15.0])
+def test_where_a_way_down_begins_or_ends_a_sample_stands_at_the_start(
+    slopes: tuple[float, ...], begins: tuple[int, ...], lean: float
+) -> None:
+    """Moves of 10 mm with slopes in degrees against an axis that leans along them."""
+    angles = np.radians(np.array(slopes) + lean)
+    steps = 10e-3 * np.column_stack([np.cos(angles), 0.0 * angles, np.sin(angles)])
+    p = np.vstack([np.zeros(3), np.cumsum(steps, axis=0)])
+    k = np.array([-np.sin(np.radians(lean)), 0.0, np.cos(np.radians(lean))])
+    cutting = np.arange(len(p)) > 0
+    path = Toolpath(p, k, np.where(cutting, 0.01, 0.0), cutting, np.arange(len(p)), np.zeros(1), np.zeros(1))
+    expected = [0]
+    for i, begin in enumerate(begins, 1):
+        expected += [i, i] if begin else [i]
+    assert resample(path, 1.0).block.tolist() == expected
+
+
 @pytest.mark.parametrize(("wait", "twice"), [("", False), ("G4 P0.2\n", True), ("G4 P1\n", True)])
 def test_a_tool_drawn_straight_back_begins_nothing_unless_it_has_waited(wait: str, twice: bool) -> None:
     """At the bottom of a plunge it is asked once; where it waits there, as it comes and as it leaves."""
