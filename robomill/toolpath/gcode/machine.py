@@ -34,10 +34,11 @@ XYZABC = "xyzabc"
 
 @dataclass(frozen=True)
 class Scale:
-    """Factors and centre along x, y and z, in program units."""
+    """Factors and centre along x, y and z, in program units; whether a word that only ``mirrors`` has set them."""
 
     factors: tuple[float, float, float] = (1.0, 1.0, 1.0)
     centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    mirrors: bool = False
 
     def place(self, axis: int, value: float) -> float:
         """A place along an axis."""
