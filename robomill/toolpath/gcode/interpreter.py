@@ -15,6 +15,7 @@ from robomill.toolpath.gcode.fanuc.macro import with_brackets
 from robomill.toolpath.gcode.fanuc.scaling import scale_words
 from robomill.toolpath.gcode.klartext.lines import Klartext
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.offsets import place_by_numbers
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.rules.line_rules import MAX_LINE
 from robomill.toolpath.gcode.rules.motion_rules import keep_motion
@@ -132,6 +133,7 @@ class Interpreter(Klartext):
         for letter, use in check.check_words(block):
             self.dialect.unused_word(machine, block, letter, use)
         apply_settings(block, machine.store)
+        place_by_numbers(machine, block)
         if block.comment:
             self._comment(block)
         level = machine.store.level

@@ -240,8 +240,28 @@ def _set_system(machine: Machine, block: Block, kind: int, system: int) -> None:
         for axis in range(6):
             _store_axis(machine, system, axis, new[axis])
         machine.store.numbered[5210 + 20 * system] = new_rotation
+    _place(machine, block, f"G10 L{kind}", system)
+
+
+def place_by_numbers(machine: Machine, block: Block) -> None:
+    """Fanuc's #5221 and on say where G54 and on lie: a line that sets one of them places its system, as G10 L2 does."""
+    for key, _ in block.settings if machine.is_fanuc else ():
+        system, axis = divmod(key - 5201, 20) if isinstance(key, int) else (-1, 0)
+        if system == 0 and axis < 6:
+            raise block.refuse(f"#{key} moves all coordinate systems on a Fanuc control, which is not read; move G54.")
+        if 1 <= system <= 6 and axis < 6:
+            _place(machine, block, f"#{key}", system)
+
+
+def _place(machine: Machine, block: Block, name: str, system: int) -> None:
+    """A coordinate system lies where ``stored_system`` says from here on; the machine stays where it is."""
     machine.placed.setdefault(system, block.line)
     if system == machine.system:
+        machine.need_compensation_off(block, name)
+        if machine.before_turn is not None:
+            moved = system_name(machine, system)
+            raise block.refuse(f"{name} moves {moved} while coordinates are shifted or turned (G68); end that first.")
+        new, new_rotation = stored_system(machine, system)
         point = [p - n for p, n in zip(_unrotated(machine), new)]
         point[0], point[1] = rotate(point[0], point[1], -new_rotation)
         machine.p = point

@@ -285,3 +285,39 @@ def test_every_work_offset_is_chosen_by_its_own_word(number: int) -> None:
     sets = "".join(f"G10 L2 P{k} X{k * k}\n" for k in range(1, 10))
     program = interpret(f"G21 G90\n{sets}{words[number - 1]}\nG0 X7\nG54\nX7\nM2\n", dialect="linuxcnc")
     np.testing.assert_allclose(program.end[:, 0] * 1e3, [7 + number * number, 8], atol=1e-9)
+
+
+def fanuc_ends(body, unit="G21"):
+    """Where the moves of a program end in mm, on a Fanuc."""
+    program = interpret(f"{unit} G90 G94 F100\nG0 X0 Y0 Z0\n{body}M30\n", dialect="fanuc")
+    return np.round(program.end[1:] * 1e3, 6).tolist()
+
+
+def test_a_fanuc_system_moves_as_its_variable_is_set():
+    """The machine stands still, so that a word that is not there keeps its place; one that is counts from the new."""
+    body = "#5221=10.\nG1 Y5.\nX5.\nIF[#5221EQ10]THEN #5222=#5222+1.\nX5. Y5.\n#5241=100.\nG55 X5.\nG54 X#5241\n"
+    assert fanuc_ends(body) == [[0, 5, 0], [15, 5, 0], [15, 6, 0], [105, 6, 0], [110, 6, 0]]
+    # a hundred lines more: the rules of long programs leave such a line to the reader
+    assert fanuc_ends("X1.\n" * 100 + "#5223=3.\nX2. Z0\n")[-1] == [2, 0, 3]
+    assert interpret("G21 G90 F100\nG0 X0\n#5221=10.\nG1 X5\nM2\n", dialect="linuxcnc").end[-1, 0] == 0.005
+
+
+def test_fanuc_variables_of_places_count_in_the_units_of_the_program():
+    body = "G10 L2 P1 X1. Y0 Z0\n#1=#5221\nG0 X#1\nG21\n#2=#5221\nX#2\n#5221=50.8\nG20\nX#5221\n"
+    assert fanuc_ends(body, "G20") == [[50.8, 0, 0], [50.8, 0, 0], [101.6, 0, 0]]
+    found = interpret(f"G20 G90 F10\n{body}G1 Z0\nM30\n", dialect="fanuc").findings
+    assert next(f.message for f in found if f.code == "zero-placed").startswith("the program itself places G54 at X50")
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("G68 X0 Y0 R90.\nG10 L2 P1 X10.\n", "Line 4: G10 L2 moves G54 while coordinates are shifted or turned"),
+        ("G68 X0 Y0 R90.\n#5221=10.\n", "Line 4: #5221 moves G54 while coordinates are shifted or turned"),
+        ("#5201=10.\n", "Line 3: #5201 moves all coordinate systems"),
+        ("G10 L12 P1 R4.\nG41 D1 G1 X10.\nX20.\nG10 L2 P1 X5.\n", "Line 6: G10 L2 cannot be used with cutter comp"),
+    ],
+)
+def test_what_moves_a_fanuc_system_beneath_something_is_refused(body, says):
+    with pytest.raises(GCodeError, match=says):
+        fanuc_ends(body)

@@ -7,6 +7,7 @@ import re
 
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.offsets import place_by_numbers
 from robomill.toolpath.gcode.subprograms import Subprograms
 from robomill.toolpath.gcode.words import apply_settings, read_words
 
@@ -71,6 +72,7 @@ class MacroB(Subprograms):
         if block.words or block.g or block.m or not block.settings:
             raise reader.refuse("THEN sets variables, as in THEN #1=2; put moves on a line of their own behind a GOTO.")
         apply_settings(block, reader.store)
+        place_by_numbers(self.machine, block)
 
     def _loop(self, reader: Reader, index: int) -> None:
         partner = self._loops.get(index)
