@@ -11,7 +11,7 @@ from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.fanuc.cycles import as_bored, clamps, repeats
-from robomill.toolpath.gcode.fanuc.macro import with_brackets
+from robomill.toolpath.gcode.fanuc.macro import in_full, with_brackets
 from robomill.toolpath.gcode.fanuc.scaling import scale_words
 from robomill.toolpath.gcode.klartext.lines import Klartext
 from robomill.toolpath.gcode.machine import Machine
@@ -51,6 +51,8 @@ class Interpreter(Klartext):
     def run(self) -> None:
         """Execute until the program ends, plain lines and O words in stretches."""
         self._skip_percent()
+        if self.dialect.name == "fanuc":
+            self.begin_at_main()
         try:
             while not self.ended:
                 if self.machine.is_plain and not self.is_klartext and self._run_stretch():
@@ -90,6 +92,7 @@ class Interpreter(Klartext):
             raw = left
         macro = self.dialect.has_macros
         if macro:
+            raw = in_full(raw) if machine.is_fanuc else raw
             raw = self.fanuc_angle(with_brackets(self.filled_in(raw, line)), line)
         text = normalise(self.dialect.line(raw, line, machine), line)
         if not text:

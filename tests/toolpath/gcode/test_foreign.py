@@ -67,6 +67,11 @@ def test_a_word_of_another_language_is_named(line: str, word: str, language: str
         ("IN;SP1;PU0,0;PD10,10;\n", 1, "HPGL"),
         ("  0\nSECTION\n  2\nHEADER\n", 1, "a DXF drawing"),
         ("solid part\nfacet normal 0 0 1\n", 1, "an STL surface"),
+        ("G04 board*\n%FSLAX24Y24*%\n%MOMM*%\n", 2, "Gerber"),
+        ("M48\nMETRIC,TZ\nT1C0.8\n", 1, "Excellon"),
+        ("'part\nMS,1.0,0.5\nJZ,5\n", 2, "ShopBot's language"),
+        ("\n<!DOCTYPE html>\n<html>\n", 2, "a page of the web"),
+        ("version https://git-lfs.github.com/spec/v1\noid sha256:0\n", 1, "a pointer of Git LFS"),
         ("ISO-10303-21;\nHEADER;\n", 1, "STEP"),
     ],
 )

@@ -29,9 +29,11 @@ def as_bored(machine: Machine, block: Block) -> None:
     words, motion = block.words, block.g.get(modal.MOTION)
     if motion == _BACK_BORING and "q" in words:
         raise block.refuse("G87 bores from below on a Fanuc control, which is not read; write the moves out.")
-    if motion == _FINE_BORING and {"z", "r"} <= words.keys() and not {"i", "k"} <= words.keys():
+    whole = machine.is_fanuc or {"z", "r"} <= words.keys()  # on a Fanuc what a cycle before has said holds
+    if motion == _FINE_BORING and whole and not {"i", "k"} <= words.keys():
         block.g[modal.MOTION] = _BORING
-        words.pop("q", None)
+        for letter in "qij":
+            words.pop(letter, None)
         machine.note("fine-boring", "info", "G76 is read as boring (G86); its step aside in the hole is left out")
 
 

@@ -241,3 +241,9 @@ def test_a_circle_has_one_hole_to_as_many_as_are_said(monkeypatch: pytest.Monkey
     for count in (0, 7):
         with pytest.raises(GCodeError, match="for 1 to 6 holes"):
             read(f"G99 G81 Z-5 R2 L0\n{line.format(count)}\n")
+
+
+def test_fine_boring_takes_up_what_the_cycle_before_has_said() -> None:
+    """Fanuc: R, Z and P of drilling cycles are modal data; Haas: I and J are the step aside, in place of Q."""
+    assert holes("G82 X5 Z-3 R2 P500\nG76 X10 Q.5\nZ-4\n") == [(5, 0, -3), (10, 0, -3), (10, 0, -4)]
+    assert holes("G76 X5 Z-3 R2 I.5 J0 P500\n") == [(5, 0, -3)]
