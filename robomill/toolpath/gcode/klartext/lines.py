@@ -9,6 +9,7 @@ import re
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
+from robomill.rigid import axis_from_tilt
 from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
 from robomill.toolpath.gcode.dialects import plain_numbers
 from robomill.toolpath.gcode.klartext.planes import WORD, Words
@@ -235,9 +236,11 @@ class Klartext(KlartextTools):
         found = re.search(rf"MB ?(MAX|{NUMBER})", code)
         if found is None or found[1] == "MAX":
             return "G53 G0 Z0"
-        if self.machine.away[2]:
+        at, far = self.here(), self.number(found[1], line)
+        axis = axis_from_tilt(math.radians(at[3]), math.radians(at[4])).tolist()  # of the tool, which may lean
+        if any(away and k for away, k in zip(self.machine.away, axis)):
             return ""
-        return f"G0 Z{self.here()[2] + self.number(found[1], line):.9f}"
+        return "G0 " + " ".join(f"{letter}{p + far * k:.9f}" for letter, p, k in zip("XYZ", at, axis) if k)
 
     def _end(self, kind: str, words: Words, code: str, line: int) -> tuple[dict[str, float], str]:
         """Where a line leads, by letter, and the words of its arc ("" for a straight move)."""

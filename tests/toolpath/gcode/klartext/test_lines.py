@@ -236,6 +236,15 @@ def test_places_in_the_machine_are_clear_of_the_part() -> None:
     assert ends("L Z-5 F99\nL M140 MB 30\n")[-1] == [0, 0, 25]
 
 
+def test_a_retract_goes_along_the_tool() -> None:
+    """TNC 640, M140: out of the contour along the tool axis."""
+    lean = "M128\nL X+1 Y+2 Z-5 A+20 B+30 F99\n"
+    a, b = np.radians([20, 30])
+    axis = np.array([np.sin(b), -np.sin(a) * np.cos(b), np.cos(a) * np.cos(b)])
+    program = read(f"{lean}L M140 MB 30\n")
+    np.testing.assert_allclose(program.end[-1] * 1e3, [1, 2, -5] + 30 * axis, atol=1e-6)
+
+
 def test_tool_axes_and_m_words() -> None:
     program = read("M128\nLN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 TX+0 TY-0.5 TZ+0.8660254 F99 M13\n")
     np.testing.assert_allclose(np.degrees(program.rotary[-1]), [30, 0, 0], atol=1e-5)
