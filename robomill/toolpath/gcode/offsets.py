@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.rules.mode_rules import system_code
@@ -82,8 +83,11 @@ def turn_about(machine: Machine, block: Block) -> None:
     words = block.words
     if machine.scale is not None:
         raise block.refuse("G68 while coordinates are scaled (G51) is not read; end that first (G50).")
-    if machine.plane != 17 or "r" not in words or not machine.absolute:
+    plane, distance = block.g.get(modal.PLANE, 10 * machine.plane), block.g.get(modal.DISTANCE)
+    if plane != 170 or "r" not in words or not (machine.absolute or distance == 900):
         raise block.refuse("G68 is read in G17 and G90, with R, its angle; write the moves out.")
+    if words.keys() & set("zijk"):
+        raise block.refuse("G68 with Z, I, J or K turns coordinates in space, which is not read; write the moves out.")
     turn_back(machine)
     if words.keys() & {"a", "b"}:  # Mach3's names of the centre
         words["x"], words["y"] = words.pop("a", 0.0), words.pop("b", 0.0)
