@@ -10,7 +10,7 @@ from robomill.toolpath.gcode.cutters import keep_d
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
-from robomill.toolpath.gcode.fanuc.cycles import as_bored, clamps, repeats
+from robomill.toolpath.gcode.fanuc.cycles import as_bored, clamps, drill_bolts, repeats
 from robomill.toolpath.gcode.fanuc.macro import in_full, with_brackets
 from robomill.toolpath.gcode.fanuc.scaling import scale_words
 from robomill.toolpath.gcode.klartext.lines import Klartext
@@ -142,6 +142,7 @@ class Interpreter(Klartext):
         level = machine.store.level
         saved = self.saved.setdefault(level, {})
         ends = execute(machine, block, saved)
+        drill_bolts(machine, block)
         if block.motion != said:  # mirrored
             keep_motion(machine, said)
         if machine.corner is not None:

@@ -122,6 +122,8 @@ class Subprograms(OWords):
                 f"{call} calls {name}, which stands behind the % that ends the program, where a control reads no "
                 "further; move it before that %."
             )
+        if re.fullmatch(r"O98\d\d", name) and call == "G65":
+            return f"{call} calls {name}, a macro that measures with a probe and cuts nothing; take its lines out."
         return f"{call} calls {name}, but there is no {name} in the program; paste it in behind the end (M30)."
 
     def line_numbered(self, number: int) -> int | None:

@@ -158,3 +158,8 @@ def test_a_program_begins_below_the_subprograms_that_a_control_writes_above_it()
         "O9000\nG21 G90\nG0 X0 Y0 Z5.\nG1 X3. F100\nM99\nO9001\nG1 X9.\nM30\n"  # two parts, of which the first recurs
     )
     assert interpret(f"%\n{loop}%\n").end[-1, 0] == pytest.approx(0.003)
+
+
+def test_a_macro_that_measures_is_named_as_such():
+    with pytest.raises(GCodeError, match="Line 3: G65 calls O9810, a macro that measures with a probe and cuts noth"):
+        interpret("O1\nG21 G90\nG65 P9810 Z10. F500.\nG0 X1.\nM30\n", dialect="fanuc")

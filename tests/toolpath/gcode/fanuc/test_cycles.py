@@ -133,12 +133,15 @@ def test_holes_on_a_circle_about_where_the_tool_is_or_the_line_says() -> None:
     assert holes("G99 G81 Z-5 R2 L0\nG70 X50 Y0 I10 J0 L4\n") == around
     assert holes("G0 X50\nG99 G81 Z-5 R2 L0\nG70 I10 J0 L4\n") == around
     assert holes("G99 G81 Z-5 R2 L0\nG71 X5 Y5 I10 J90 K-90 L2\n") == [(5, 15, -5), (15, 5, -5)]
+    # on the line that begins the cycle: none is drilled where the tool stands, and the cycle goes on
+    assert holes("G0 X50\nG99 G81 Z-5 R2 G70 I10 J0 L4\nX1 Y1\n") == [*around, (1, 1, -5)]
+    assert holes("G91 X1\nG90 G99 G81 X5 Y5 Z-5 R2 G71 I10 J90 K-90 L2\n") == [(5, 15, -5), (15, 5, -5)]
     auto = interpret("G21 G90 F100\nM97 P5\nG0 X9. Z9.\nG99 G81 Z-5. R2. L0\nG70 I1. J0. L2\nM30\nN5 M99\n")
     assert (auto.end[auto.kind == 1, 0] * 1e3).round(9).tolist() == [10, 8]
     for line, says in (("G91 G70 I1 J0 L2", "G70 is read in G17 and G90"), ("G70 I1 J0 L0", "for 1 to 10000 holes")):
         with pytest.raises(GCodeError, match=f"Line 4: .*{says}"):
             read(f"G99 G81 Z-5 R2 L0\n{line}\n")
-    with pytest.raises(GCodeError, match="Line 3: G70 is not known"):
+    with pytest.raises(GCodeError, match="Line 3: G70 wants I, J, L and a cycle in force"):
         read("G70 I1 J0 L2\n")
 
 
