@@ -7,7 +7,7 @@ from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.rules.mode_rules import system_code
 from robomill.toolpath.gcode.rules.motion_rules import rotate
-from robomill.toolpath.gcode.standing import begins, stand
+from robomill.toolpath.gcode.standing import begins, measured, stand
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import MOST, Tool
 from robomill.units import from_si, to_si
@@ -135,6 +135,9 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
     """G52 and the G92 family."""
     machine.need_compensation_off(block, g_name(code))
     numbered = machine.store.numbered
+    if code == 920 and measured(machine):
+        stand(machine, block)
+        return
     if code == 920 and begins(machine):
         if machine.other_control:
             stand(machine, block)
@@ -196,6 +199,9 @@ def set_data(machine: Machine, block: Block) -> None:
     if "i" in block.words or "j" in block.words:
         raise block.refuse(f"G10 L{kind} takes no I or J.")
     system = round(p) or machine.system
+    if kind == 20 and system == machine.system and measured(machine):
+        stand(machine, block)
+        return
     if machine.compensation is not None and system == machine.system:
         raise block.refuse(f"G10 L{kind} cannot move the current coordinate system {_CORNER_OFF}")
     if kind == 20 and "r" in block.words:

@@ -1,6 +1,8 @@
-"""Where a machine stands before its first move: where G92 says, on controls that are not LinuxCNC."""
+"""Where a machine stands that nobody knows: before its first move, on controls that are not LinuxCNC, and where a
+probe has met something. There G92 says it."""
 
 from robomill.toolpath.gcode.machine import XYZABC, Machine
+from robomill.toolpath.gcode.program import PROBE
 from robomill.toolpath.gcode.rules.motion_rules import to_frame
 from robomill.toolpath.gcode.words import Block
 from robomill.units import to_si
@@ -11,8 +13,15 @@ def begins(machine: Machine) -> bool:
     return not (machine.strict or len(machine.recorder) or machine.recorder.held or any(machine.g92) or any(machine.p))
 
 
+def measured(machine: Machine) -> bool:
+    """Whether the tool stands where its probe has met something: the program does not say where that is."""
+    last = machine.recorder.last()
+    return not machine.strict and last is not None and int(last["kind"]) == PROBE
+
+
 def stand(machine: Machine, block: Block) -> None:
-    """G92 before the first move says where the tool stands: part zero is where it counts from."""
+    """G92 (or G10 L20) says where the tool stands: part zero is where it counts from."""
+    probed = measured(machine)
     for axis, letter in enumerate(XYZABC):
         machine.p[axis] = block.words.get(letter, machine.p[axis])
         if axis >= 3:
@@ -20,4 +29,8 @@ def stand(machine: Machine, block: Block) -> None:
     machine.sent = list(machine.p)
     x, y, z = machine.p[:3]
     to_frame(machine, x, y, z, machine.at)
+    if probed:
+        text = "is read as where the tool stands, from part zero, as its probe has just found it"
+        machine.note("probed-zero", "info", f"G92 or G10 L20 behind a probe {text}")
+        return
     machine.note("begins-at", "info", "G92 before the first move is read as where the tool stands, from part zero")

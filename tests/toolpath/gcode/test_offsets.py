@@ -321,3 +321,18 @@ def test_fanuc_variables_of_places_count_in_the_units_of_the_program():
 def test_what_moves_a_fanuc_system_beneath_something_is_refused(body, says):
     with pytest.raises(GCodeError, match=says):
         fanuc_ends(body)
+
+
+@pytest.mark.parametrize("dialect", ["grbl", "auto"])
+@pytest.mark.parametrize("zero", ["G92 Z10", "G10 L20 P1 Z10", "G10 L20 P0 Z10"])
+def test_behind_a_probe_the_tool_stands_where_the_program_says(dialect, zero):
+    """A plate of 10 mm lies on the part: where it is touched is Z10, however far the probe was sent, and once more
+    after a change of the tool."""
+    touch = f"G38.2 Z-40 F50\nG0 Z-35\nG38.2 Z-60 F9\n{zero}\nG0 Z15\n"
+    found = interpret(f"G21 G90\n{touch}G0 X3\nG1 Z-1 F100\nX9\nM0\n{touch}G1 Z-2\nX3\nM2\n", dialect=dialect)
+    cuts = found.end[found.kind == 1] * 1e3
+    np.testing.assert_allclose(cuts, [[3, 0, -1], [9, 0, -1], [9, 0, -2], [3, 0, -2]], atol=1e-9)
+    assert [f.count for f in found.findings if f.code == "probed-zero"] == [2]
+    # what LinuxCNC itself shows: the place the probe was sent to, counted from there
+    plain = interpret(f"G21 G90\n{touch}G1 Z-1 F100\nM2\n", dialect="linuxcnc")
+    assert plain.end[-1, 2] == pytest.approx(-0.071)
