@@ -7,7 +7,7 @@ from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.rules.mode_rules import system_code
 from robomill.toolpath.gcode.rules.motion_rules import rotate
-from robomill.toolpath.gcode.standing import begins, measured, stand
+from robomill.toolpath.gcode.standing import begins, measured, stand, stand_at_home
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import MOST, Tool
 from robomill.units import from_si, to_si
@@ -149,6 +149,7 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
             text = f"{g_name(code)} on top of {g_name(machine.shifted_by)}, as a control adds them, is not read"
             raise block.refuse(f"{text}; end that before.")
         numbered[5210], machine.shifted_by = 1.0, code
+        homes = stand_at_home(machine, block) if code == 920 else set()
         for axis, letter in enumerate(XYZABC):
             if letter not in block.words:
                 continue
@@ -156,7 +157,7 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
             if code == 520:
                 machine.p[axis] += machine.g92[axis] - value
                 machine.g92[axis] = value
-            else:
+            elif axis not in homes:
                 machine.g92[axis] += machine.p[axis] - value
                 machine.p[axis] = value
         for axis in range(6):

@@ -34,3 +34,19 @@ def stand(machine: Machine, block: Block) -> None:
         machine.note("probed-zero", "info", f"G92 or G10 L20 behind a probe {text}")
         return
     machine.note("begins-at", "info", "G92 before the first move is read as where the tool stands, from part zero")
+
+
+def stand_at_home(machine: Machine, block: Block) -> set[int]:
+    """G92 behind G28 says where the machine's home lies from part zero, as programs without G54 do: of x, y and z those
+    that are so, whose zero is not moved. The home stays a place that is clear of the part, wherever it is.
+    """
+    homes = {axis for axis, letter in enumerate("xyz") if machine.away[axis] and letter in block.words}
+    homes = set() if machine.strict else homes
+    for axis in homes:
+        machine.p[axis] = machine.sent[axis] = block.words["xyz"[axis]]
+    if homes:
+        x, y, z = machine.p[:3]
+        to_frame(machine, x, y, z, machine.at)
+        text = "G92 behind G28, G30 or G53 is read as where the tool stands there, from part zero"
+        machine.note("begins-at", "info", text)
+    return homes

@@ -336,3 +336,16 @@ def test_behind_a_probe_the_tool_stands_where_the_program_says(dialect, zero):
     # what LinuxCNC itself shows: the place the probe was sent to, counted from there
     plain = interpret(f"G21 G90\n{touch}G1 Z-1 F100\nM2\n", dialect="linuxcnc")
     assert plain.end[-1, 2] == pytest.approx(-0.071)
+
+
+def test_g92_behind_g28_says_where_the_home_lies_from_part_zero():
+    """Programs without G54, as Fanuc's manual has them: part zero stays where it is, whatever tool is set again."""
+    home = "G91 G28 Z0\nG28 X0 Y0\nG90 G92 X300. Y200. Z{}.\nG0 X10. Y10.\nZ5.\nG1 Z-1.\nX20.\n"
+    found = interpret(f"O1\nG21 F100\n{home.format(400)}{home.format(350)}M30\n", dialect="fanuc")
+    cuts = found.end[found.kind == 1] * 1e3
+    np.testing.assert_allclose(cuts, [[10, 10, -1], [20, 10, -1]] * 2, atol=1e-9)
+    assert not found.away[found.kind == 1].any()
+    assert [(f.line, f.count) for f in found.findings if f.code == "begins-at"] == [(5, 2)]
+    # Z alone comes from there: X and Y are known, and are shifted
+    found = interpret("O1\nG21 G90 F9\nG0 X5. Y0 Z9.\nG28 Z9.\nG92 X0 Z400.\nG1 X1. Z-1.\nM30\n", dialect="fanuc")
+    np.testing.assert_allclose(found.end[-1] * 1e3, [6, 0, -1], atol=1e-9)
