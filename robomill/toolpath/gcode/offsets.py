@@ -203,6 +203,9 @@ def set_data(machine: Machine, block: Block) -> None:
     if kind == 20 and system == machine.system and measured(machine):
         stand(machine, block)
         return
+    if kind == 20 and system == machine.system:
+        for axis in stand_at_home(machine, block):
+            del block.words[XYZABC[axis]]
     if machine.compensation is not None and system == machine.system:
         raise block.refuse(f"G10 L{kind} cannot move the current coordinate system {_CORNER_OFF}")
     if kind == 20 and "r" in block.words:

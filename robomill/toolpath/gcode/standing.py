@@ -47,6 +47,6 @@ def stand_at_home(machine: Machine, block: Block) -> set[int]:
     if homes:
         x, y, z = machine.p[:3]
         to_frame(machine, x, y, z, machine.at)
-        text = "G92 behind G28, G30 or G53 is read as where the tool stands there, from part zero"
+        text = "G92 or G10 L20 behind G28, G30 or G53 is read as where the tool stands there, from part zero"
         machine.note("begins-at", "info", text)
     return homes

@@ -346,6 +346,8 @@ def test_g92_behind_g28_says_where_the_home_lies_from_part_zero():
     np.testing.assert_allclose(cuts, [[10, 10, -1], [20, 10, -1]] * 2, atol=1e-9)
     assert not found.away[found.kind == 1].any()
     assert [(f.line, f.count) for f in found.findings if f.code == "begins-at"] == [(5, 2)]
+    grbl = interpret("G21 G90 F9\nG28 Z0\nG10 L20 P1 X0 Y0 Z400\nG0 X1 Y1\nG1 Z-1\nM2\n", dialect="grbl")
+    np.testing.assert_allclose(grbl.end[-1] * 1e3, [1, 1, -1], atol=1e-9)
     # Z alone comes from there: X and Y are known, and are shifted
     found = interpret("O1\nG21 G90 F9\nG0 X5. Y0 Z9.\nG28 Z9.\nG92 X0 Z400.\nG1 X1. Z-1.\nM30\n", dialect="fanuc")
     np.testing.assert_allclose(found.end[-1] * 1e3, [6, 0, -1], atol=1e-9)

@@ -377,3 +377,17 @@ def test_a_feed_per_turn_of_a_tool_is_that_times_its_turns(call: str, feed: floa
             read(body)
     else:
         assert read(body).v_f[-1] * 6e4 == pytest.approx(feed)
+
+
+def test_blocks_as_older_controls_print_them() -> None:
+    """TNC 155 and 2500: the second half of a block on a line of its own, and R, F and M with nothing behind them."""
+    pad = " " * 40
+    text = (
+        "0 BEGIN PGM 1 MM\n1 TOOL CALL 1 Z S 1000.000\n"
+        f"2 L Z+50.000\n{pad}R0 F15000 M03\n3 L X+0.000 Y+0.000\n{pad}R F M\n4 L Z-1.000\n{pad}R F100 M08\n"
+        f"5 CC X+10.000 Y+0.000\n6 C X+20.000 Y+0.000\n{pad}DR- R F M\n7 L X+30.000 R F M\n8 STOP M02\n9 END PGM 1 MM\n"
+    )
+    found = interpret(text, dialect="heidenhain")
+    np.testing.assert_allclose(found.end[[0, -3, -2, -1]] * 1e3, [[0, 0, 50], [0, 0, -1], [20, 0, -1], [30, 0, -1]])
+    np.testing.assert_allclose(found.v_f[-3:] * 60e3, 100)
+    assert found.clockwise[-3:].tolist() == [False, True, False]
