@@ -78,6 +78,7 @@ def _end_mirror(machine: Machine, given: dict[str, float]) -> None:
 
 def _enlarge(machine: Machine, block: Block, given: dict[str, float]) -> None:
     """G51 P, or I, J and K, about X, Y and Z, or where the tool is."""
+    factors: tuple[float, ...]
     if "p" in given:
         factors = (_factor(machine, block, given["p"]),) * 3
     elif given.keys() & set("ijk"):
