@@ -16,6 +16,8 @@ SYSTEMS = {540: 1, 550: 2, 560: 3, 570: 4, 580: 5, 590: 6, 591: 7, 592: 8, 593: 
 LAST_SYSTEM, MOST_EXTENDED = 9, 300
 """Behind these nine come those of G54.1 P1 (Fanuc) and G154 P1 (Haas), and on."""
 _FANUC_TOOLS = (1, 10, 11, 12, 13)
+_OFFSETS = range(2001, 2801)
+"""A Fanuc's variables of its tools' lengths and radii."""
 _CORNER_OFF = "with cutter compensation on; use G40 first."
 
 
@@ -180,9 +182,7 @@ def set_data(machine: Machine, block: Block) -> None:
         _set_radius(machine, block, kind == 13)
         return
     if machine.is_fanuc and kind in _FANUC_TOOLS:
-        machine.note(
-            "tool-set", "warning", f"G10 L{kind} sets a tool of the control, which is left out: the tool table holds"
-        )
+        _leave_tool(machine, f"G10 L{kind}")
         return
     if kind not in (1, 2, 10, 11, 20):
         raise block.refuse("G10 needs L1, L2, L10, L11 or L20.")
@@ -211,6 +211,11 @@ def set_data(machine: Machine, block: Block) -> None:
     if kind == 20 and "r" in block.words:
         raise block.refuse("G10 L20 takes no R.")
     _set_system(machine, block, kind, system)
+
+
+def _leave_tool(machine: Machine, word: str) -> None:
+    text = f"{word} sets a tool of the control, which is left out: the tool table holds"
+    machine.note("tool-set", "warning", text)
 
 
 def _set_as_fanuc(machine: Machine, block: Block, kind: int, number: int) -> None:
@@ -260,6 +265,8 @@ def _set_system(machine: Machine, block: Block, kind: int, system: int) -> None:
 def place_by_numbers(machine: Machine, block: Block) -> None:
     """Fanuc's #5221 and on say where G54 and on lie: a line that sets one of them places its system, as G10 L2 does."""
     for key, _ in block.settings if machine.is_fanuc else ():
+        if isinstance(key, int) and key in _OFFSETS:
+            _leave_tool(machine, f"#{key}")
         system, axis = divmod(key - 5201, 20) if isinstance(key, int) else (-1, 0)
         if system == 0 and axis < 6:
             raise block.refuse(f"#{key} moves all coordinate systems on a Fanuc control, which is not read; move G54.")

@@ -351,3 +351,13 @@ def test_g92_behind_g28_says_where_the_home_lies_from_part_zero():
     # Z alone comes from there: X and Y are known, and are shifted
     found = interpret("O1\nG21 G90 F9\nG0 X5. Y0 Z9.\nG28 Z9.\nG92 X0 Z400.\nG1 X1. Z-1.\nM30\n", dialect="fanuc")
     np.testing.assert_allclose(found.end[-1] * 1e3, [6, 0, -1], atol=1e-9)
+
+
+def test_a_fanuc_variable_of_a_tool_is_left_out_as_g10_is():
+    said = {}
+    for line in ("#2001=5.", "G10 L10 P1 R5."):
+        found = interpret(f"O1\nG21 G90\n{line}\nG43 H1 G0 Z9.\nG1 Z1. F9\nM30\n", dialect="fanuc")
+        assert found.end[-1, 2] == pytest.approx(1e-3)
+        said[line] = [f.message.split(" ", 1 + (line[0] == "G"))[-1] for f in found.findings if f.code == "tool-set"]
+    assert said["#2001=5."] == said["G10 L10 P1 R5."]
+    assert said["#2001=5."] == ["sets a tool of the control, which is left out: the tool table holds"]
