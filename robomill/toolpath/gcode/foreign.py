@@ -50,8 +50,13 @@ def said_of(raw: str, text: str, at: int) -> str:
     return ""
 
 
-def meant_elsewhere(letter: str, words: Mapping[str, float], control: str) -> str:
-    """What a word that nothing on its line uses means, where it must not be left out; "" for others."""
+def meant_elsewhere(letter: str, words: Mapping[str, float], control: str, arc: bool) -> str:
+    """What a word that nothing on its line uses means, where it must not be left out; "" for others.
+
+    ``arc`` says that the line moves along one.
+    """
+    if control == "fanuc" and arc and letter in "lq":
+        return f"{letter.upper()} beside G2 or G3 makes a spiral or a cone (Fanuc), which is not read; write its moves."
     if control == "sinumerik":
         texts = {
             "e": "E is no word of a Sinumerik; it writes 1000 as 1EX3, with EX for times ten to the.",

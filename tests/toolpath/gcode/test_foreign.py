@@ -123,3 +123,17 @@ def test_controls_whose_commands_stand_in_brackets_are_named(text: str, line: in
     with pytest.raises(GCodeError, match=f"Line {line}: this is {name}"):
         interpret(text)
     assert len(interpret("(CALL 10 IF IT BREAKS)\n(RPT 3 TIMES)\nG0 X5\n")) == 1
+
+
+@pytest.mark.parametrize("word", ["L3", "Q-2."])
+def test_a_spiral_is_no_arc_with_a_word_too_many(word: str) -> None:
+    """Fanuc, spiral interpolation: G02 X Y I J Q L, with Q the radius of a turn more and L the turns."""
+    letter = word[0]
+    with pytest.raises(GCodeError, match=f"Line 3: {letter} beside G2 or G3 makes a spiral or a cone"):
+        interpret(f"O1\nG21 G90 F9\nG2 X20. Y0 I10. J0 {word}\nM30\n", dialect="fanuc")
+
+
+@pytest.mark.parametrize("code", ["G43", "G43.1", "G43.4"])
+def test_lengths_along_the_tool_move_it_to_the_tip_s_place(code: str) -> None:
+    found = interpret(f"O1\nG21 G90 F9\nG0 Z50.\n{code} H1 Z20.\nG1 Z-1.\nM30\n", dialect="fanuc")
+    assert (found.end[:, 2] * 1e3).round(9).tolist() == [50, 20, -1]
