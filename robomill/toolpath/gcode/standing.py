@@ -41,7 +41,8 @@ def stand_at_home(machine: Machine, block: Block) -> set[int]:
     that are so, whose zero is not moved. The home stays a place that is clear of the part, wherever it is.
     """
     homes = {axis for axis, letter in enumerate("xyz") if machine.away[axis] and letter in block.words}
-    homes = set() if machine.strict else homes
+    if not (machine.other_control or machine.feed_in_block):  # LinuxCNC, said or supposed, knows where its home lies
+        return set()
     for axis in homes:
         machine.p[axis] = machine.sent[axis] = block.words["xyz"[axis]]
     if homes:
