@@ -139,8 +139,8 @@ class Klartext(KlartextTools):
             index += 1
             if len(text) > MAX_CODE or len(parts) > MAX_LINES:
                 raise GCodeError.at(index, f"a block is over {MAX_CODE} characters or {MAX_LINES} lines; split it.")
-            numbered = found is not None and found[0].strip("/ \t") != ""
-            carried = numbered and index < len(lines) and _CARRIED.match(lines[index]) is not None
+            moves = found is not None and found[0].strip("/ \t") and _MOVES.match(parts[0].upper())
+            carried = moves and index < len(lines) and _CARRIED.match(lines[index])
             if not raw.rstrip().endswith("~") and not carried:
                 break
             if parts == [""] and found is not None and found[0].strip("/ \t"):
