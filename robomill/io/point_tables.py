@@ -169,7 +169,8 @@ def _path(columns: Columns, name: str, unit: str, v_f: float | None) -> Toolpath
     try:
         path = _from(columns, v_f, given)
     except ToolpathError as exc:
-        raise ToolpathError(f"{place}: {exc}", where=exc.where) from None
+        told = str(exc) if name and str(exc).startswith(name) else f"{place}: {exc}"  # of a cell: with its file
+        raise ToolpathError(told, where=exc.where) from None
     if not path.cutting.any():
         raise ToolpathError(f"{place}: no move has a feed, so nothing is cut; give the moves that cut a feed above 0.")
     return path

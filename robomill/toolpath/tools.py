@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+from robomill.errors import ArgumentError
+
 MOST = 2**31 - 1
 """No column of whole numbers holds more; nobody turns so often, or has so many tools."""
 
@@ -42,7 +44,13 @@ Tools = Mapping[int, Sized]
 
 
 def own_copy(tools: Tools) -> dict[int, Tool]:
-    """The tools of a table, to be changed by G10."""
+    """The tools of a table, to be changed by G10. Raises ArgumentError where one is no tool of a table."""
+    for number, tool in tools.items():
+        if not hasattr(tool, "offset"):
+            give = f"rm.ToolTable((rm.TableTool({number}, cutter),))"
+            raise ArgumentError(
+                f"Tool {number}: found a {type(tool).__name__}, expected a tool of a table, as in {give}."
+            )
     return {
         number: Tool(number, tool.diameter, tool.offset, tool.orientation, tool.name, tool.sized)
         for number, tool in tools.items()

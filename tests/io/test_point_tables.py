@@ -100,6 +100,11 @@ def test_refusals_name_row_and_column(text, said) -> None:
     assert said in str(refused.value)
 
 
+def test_the_refusal_of_a_cell_names_its_file_once() -> None:
+    with pytest.raises(ToolpathError, match=r"^p.csv, row 3, column feed_mm_min: found a feed below 0"):
+        points_from_bytes(b"X_mm,Y_mm,Z_mm,feed_mm_min\n0,0,0,0\n1,0,0,-5\n", "p.csv")
+
+
 def test_a_packed_parquet_file_that_inflates_is_refused_before_it_is_read() -> None:
     pyarrow = pytest.importorskip("pyarrow")
     from pyarrow import parquet

@@ -5,8 +5,9 @@ are multiplied, and points go through the product. Where circles stay round they
 """
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -148,13 +149,40 @@ def _spline(entity: Any, place: Place, to: Reading) -> Made:
             f"it has a spline through {format_count(entity.fit_point_count())} points, at most "
             f"{format_count(MOST_FIT)} are read"
         )
-    return _curve(entity, place, to)
+    off = CHORD_ERROR / place.stretch
+    curve = entity.construction_tool()
+    return _chained(curve.flattening(off) if curve.is_clamped else _defined(curve, off), place, to)
 
 
-def _curve(entity: Any, place: Place, to: Reading) -> Made:
-    """An ellipse or a spline, in as many chords as ``CHORD_ERROR`` asks for."""
+def _defined(curve: Any, off: float) -> Iterator[Any]:
+    """Points of a spline whose ends are not clamped, such as a closed one: it is defined between the knots that as
+    many others stand before and behind as its degree says, and ezdxf would follow it over all of them."""
+    inner = np.unique(np.array(curve.knots())[curve.degree : -curve.degree])
+    steps = np.unique(np.concatenate([np.linspace(a, b, 5) for a, b in pairwise(inner)])).tolist()
+    yield curve.point(steps[0])
+    for first, last in pairwise(steps):
+        yield from _halved(curve, first, last, off)
+
+
+def _halved(curve: Any, first: float, last: float, off: float) -> Iterator[Any]:
+    """Points behind the one at ``first``, so that the middle of no chord lies farther than ``off`` from the curve."""
+    middle = 0.5 * (first + last)
+    a, b = (curve.point(t) for t in (first, last))
+    if curve.point(middle).distance(a.lerp(b)) < off or not first < middle < last:
+        yield b
+        return
+    yield from _halved(curve, first, middle, off)
+    yield from _halved(curve, middle, last, off)
+
+
+def _ellipse(entity: Any, place: Place, to: Reading) -> Made:
+    return _chained(entity.flattening(CHORD_ERROR / place.stretch), place, to)
+
+
+def _chained(flat: Iterable[Any], place: Place, to: Reading) -> Made:
+    """A curve in as many chords as ``CHORD_ERROR`` asks for."""
     points = []
-    for p in entity.flattening(CHORD_ERROR / place.stretch):
+    for p in flat:
         points.append(p)
         if len(points) > to.room:
             to.look(len(points))
@@ -167,6 +195,6 @@ MAKERS: dict[str, Callable[[Any, Place, Reading], Made]] = {
     "ARC": _arc,
     "LWPOLYLINE": _lwpolyline,
     "POLYLINE": _polyline,
-    "ELLIPSE": _curve,
+    "ELLIPSE": _ellipse,
     "SPLINE": _spline,
 }

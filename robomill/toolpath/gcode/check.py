@@ -95,10 +95,12 @@ def _ends_and_moves(machine: Machine, block: Block, dialect: Dialect) -> int:
 def _read_polar(machine: Machine, block: Block) -> None:
     """With G16 X is the distance from part zero and Y the angle, which G91 adds to the angle of where the tool is."""
     words = block.words
-    if block.g.get(modal.NON_MODAL) is not None or not words.keys() & {"x", "y"}:
+    if block.g.get(modal.NON_MODAL) is not None or not words.keys() & {"x", "y", "z"}:
         return
-    if machine.plane != 17:
+    if block.g.get(modal.PLANE, 10 * machine.plane) != 170:
         raise block.refuse("G16 is read in G17 alone; write the moves out.")
+    if not words.keys() & {"x", "y"}:
+        return
     if "x" in words and block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 910:
         raise block.refuse("G16 counts X from where the tool is in G91, which is not read; give the radius in G90.")
     for letter, polar in (("x", "@"), ("y", "^")):
@@ -118,7 +120,8 @@ def _read_tool_axis(machine: Machine, block: Block) -> None:
     angles = angles_of(axis, before)
     for letter in "ijk":
         del words[letter]
-    words["a"], words["b"] = (now - (0.0 if machine.absolute else old) for now, old in zip(angles, before))
+    steps = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 910
+    words["a"], words["b"] = (now - (old if steps else 0.0) for now, old in zip(angles, before))
     machine.note("tool-axis", "info", "I J K of a straight move are read as the direction of the tool")
 
 

@@ -154,13 +154,9 @@ class Dialect:
         if self._is_fanuc_like:
             raw = self._without_smoothing(raw, number, findings)
         if self.name == "fanuc":
-            if _TIP.search(raw):
-                findings.add(
-                    "tip-control",
-                    "info",
-                    number,
-                    "G43.4 (tool centre point control) is read as G43: points are tip points",
-                )
+            if tip := _TIP.search(raw):
+                text = f"{tip[0].upper()} (tool centre point control) is read as G43: points are tip points"
+                findings.add("tip-control", "info", number, text)
             raw = _take_corner(raw, machine)
             if "." in raw and _POINT.search(raw):  # Z. is Z0.
                 raw = _VERBATIM_OR_CODE.sub(
@@ -269,7 +265,7 @@ class Dialect:
             del block.g[modal.COORDINATES]
             select_extended(machine, block, block.words["p"])
             return
-        if meant := meant_elsewhere(letter, block.words, self.name):
+        if meant := meant_elsewhere(letter, block.words, self.name, is_arc(block.motion)):
             raise block.refuse(meant)
         if block.unknown_m or modal.USER in block.m:
             code = [*block.unknown_m, block.m.get(modal.USER)][0]
@@ -334,7 +330,7 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
 _MAIN_BLOCK = re.compile(r":[ \t]*\d+[ \t]*[A-Z]", re.IGNORECASE)
 """The number of a line from which a program may be begun, as Sinumerik and NX's posts write it."""
 _POINT = re.compile(r"(?<![A-Za-z_])([A-Za-z]\s*[-+]?)\.(?![\d.])")
-_TIP = re.compile(r"\bG43\.[45]\b", re.IGNORECASE)
+_TIP = re.compile(r"\bG43\.[145]\b", re.IGNORECASE)
 _SMOOTHING = re.compile(
     r"\bG0?5\.1\s*Q[0123]\b(?:\s*[RXYZ]\d+\.?)*|\bG0?5\s*P(?:10000|[0123])\b|\bG0?8\s*P[01]\b|"
     r"\bG187\b(?:\s*[PE]\s*[\d.]+)*|\bG103\b(?:\s*P\s*\d+)?|\b(?:POPEN|PCLOS)\b|\b[BD]PRNT\s*\[.*\]",

@@ -11,7 +11,7 @@ from robomill.toolpath.gcode.offsets import stored_system, system_name
 from robomill.toolpath.gcode.program import TRAVERSE, Program
 from robomill.toolpath.gcode.scan import COMMENT_BYTES
 from robomill.toolpath.path import NO_SPINDLE, ROTARY_ASKED
-from robomill.units import format_si, to_si
+from robomill.units import format_si, from_si, to_si
 
 LIKELY = (0.008, 3.0)
 """m: parts smaller or larger than this are doubted."""
@@ -185,12 +185,12 @@ def _doubt_zero(machine: Machine, program: Program) -> None:
     used = [machine.systems[i][1] for i in np.unique(np.searchsorted(first, cuts, "right") - 1)]
     for system in sorted(set(used) & set(machine.placed)):
         place, turned = stored_system(machine, system)
-        origin = [machine.to_user(value) for value in place[:3]]
+        origin = [from_si(to_si(value, machine.unit), "mm") for value in place[:3]]
         if any(origin) or turned:
             shown = " ".join(f"{letter}{value:g}" for letter, value in zip("XYZ", origin))
             text = (
                 f"the program itself places {system_name(machine, system)} at {shown} (mm): the path lies that far "
-                "from part zero; remove the G10 where part zero is meant to be there"
+                "from part zero; remove that line where part zero is meant to be there"
             )
             machine.findings.add("zero-placed", "warning", machine.placed[system], text)
     unset = [system_name(machine, system) for system in sorted(set(used) - set(machine.placed))]

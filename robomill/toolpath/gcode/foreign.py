@@ -50,8 +50,13 @@ def said_of(raw: str, text: str, at: int) -> str:
     return ""
 
 
-def meant_elsewhere(letter: str, words: Mapping[str, float], control: str) -> str:
-    """What a word that nothing on its line uses means, where it must not be left out; "" for others."""
+def meant_elsewhere(letter: str, words: Mapping[str, float], control: str, arc: bool) -> str:
+    """What a word that nothing on its line uses means, where it must not be left out; "" for others.
+
+    ``arc`` says that the line moves along one.
+    """
+    if control == "fanuc" and arc and letter in "lq":
+        return f"{letter.upper()} beside G2 or G3 makes a spiral or a cone (Fanuc), which is not read; write its moves."
     if control == "sinumerik":
         texts = {
             "e": "E is no word of a Sinumerik; it writes 1000 as 1EX3, with EX for times ten to the.",
@@ -90,6 +95,11 @@ _TOLD = (
     ),
     ("OSAI's language", r"(?:N\d+[ \t]*)?\((?:U[TA]O|RPT|DIS|TMR),|(?:N\d+[ \t]*)?\(ERP\)[ \t]*$"),
     ("HPGL (a plotter's language)", r"(?:IN|PU|PD|SP\d?);"),
+    ("Gerber (a circuit board's layer)", r"%FS[LT][AI]X\d"),
+    ("Excellon (a circuit board's holes)", r"M48[ \t]*$"),
+    ("ShopBot's language", r"(?:SA|SR)[ \t]*$|(?:VD|MS|JS|M[23XYZ]|J[23XYZ])[ \t]*,[ \t]*[-.\d]"),
+    ("a page of the web (HTML)", r"[ \t]*<(?:!DOCTYPE[ \t]+html|html)\b"),
+    ("a pointer of Git LFS, in place of the file", r"version https://git-lfs"),
     ("a DXF drawing", r"[ \t]*0[ \t]*\n[ \t]*SECTION\b"),
     ("an STL surface", r"solid[ \t]*\w*[^\n]*\n[ \t]*facet\b"),
     ("STEP", r"ISO-10303-21;"),

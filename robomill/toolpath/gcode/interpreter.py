@@ -10,11 +10,12 @@ from robomill.toolpath.gcode.cutters import keep_d
 from robomill.toolpath.gcode.dialects import Dialect
 from robomill.toolpath.gcode.execute import execute
 from robomill.toolpath.gcode.expressions import Reader
-from robomill.toolpath.gcode.fanuc.cycles import as_bored, clamps, repeats
-from robomill.toolpath.gcode.fanuc.macro import with_brackets
+from robomill.toolpath.gcode.fanuc.cycles import as_bored, clamps, drill_bolts, repeats
+from robomill.toolpath.gcode.fanuc.macro import in_full, with_brackets
 from robomill.toolpath.gcode.fanuc.scaling import scale_words
 from robomill.toolpath.gcode.klartext.lines import Klartext
 from robomill.toolpath.gcode.machine import Machine
+from robomill.toolpath.gcode.offsets import place_by_numbers
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.rules.line_rules import MAX_LINE
 from robomill.toolpath.gcode.rules.motion_rules import keep_motion
@@ -50,6 +51,8 @@ class Interpreter(Klartext):
     def run(self) -> None:
         """Execute until the program ends, plain lines and O words in stretches."""
         self._skip_percent()
+        if self.dialect.name == "fanuc":
+            self.begin_at_main()
         try:
             while not self.ended:
                 if self.machine.is_plain and not self.is_klartext and self._run_stretch():
@@ -89,6 +92,7 @@ class Interpreter(Klartext):
             raw = left
         macro = self.dialect.has_macros
         if macro:
+            raw = in_full(raw) if machine.is_fanuc else raw
             raw = self.fanuc_angle(with_brackets(self.filled_in(raw, line)), line)
         text = normalise(self.dialect.line(raw, line, machine), line)
         if not text:
@@ -132,11 +136,13 @@ class Interpreter(Klartext):
         for letter, use in check.check_words(block):
             self.dialect.unused_word(machine, block, letter, use)
         apply_settings(block, machine.store)
+        place_by_numbers(machine, block)
         if block.comment:
             self._comment(block)
         level = machine.store.level
         saved = self.saved.setdefault(level, {})
         ends = execute(machine, block, saved)
+        drill_bolts(machine, block)
         if block.motion != said:  # mirrored
             keep_motion(machine, said)
         if machine.corner is not None:

@@ -30,14 +30,17 @@ _SAVED = (
     *("retract_r", "spindle_mode", "diameter_mode", "system"),
 )
 XYZABC = "xyzabc"
+STORED_PLACES = (5161, 5181, 5211, *range(5221, 5400, 20))
+"""The first of three parameters each that hold a place: of G28, G30 and G92, and of G54 and on."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Factors and centre along x, y and z, in program units."""
+    """Factors and centre along x, y and z, in program units; whether a word that only ``mirrors`` has set them."""
 
     factors: tuple[float, float, float] = (1.0, 1.0, 1.0)
     centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    mirrors: bool = False
 
     def place(self, axis: int, value: float) -> float:
         """A place along an axis."""
@@ -186,18 +189,20 @@ class Machine:
             values[:3] = [v * ratio for v in values[:3]]
         if self.scale is not None:
             self.scale = replace(self.scale, centre=tuple(v * ratio for v in self.scale.centre))  # type: ignore[arg-type]
+        for first in STORED_PLACES if self.is_fanuc else ():
+            self.store.put(first, [v * ratio for v in self.store.values(first, 3)])
         self.feed, self.rounding = self.feed * ratio, self.rounding * ratio
         if self.compensation is not None:
             self.compensation.scale(ratio)
         self.unit_code, self.factor = code, to_si(1.0, unit)
 
     def to_user(self, length: float) -> float:
-        """A length of the program in mm, the unit of stored parameters."""
-        return from_si(to_si(length, self.unit), "mm")
+        """A length of the program in the unit of stored parameters: mm, on a Fanuc what the program counts in."""
+        return length if self.is_fanuc else from_si(to_si(length, self.unit), "mm")
 
     def from_user(self, length: float) -> float:
-        """A stored parameter (mm) in program units."""
-        return from_si(to_si(length, "mm"), self.unit)
+        """A stored parameter in program units."""
+        return length if self.is_fanuc else from_si(to_si(length, "mm"), self.unit)
 
     def need_compensation_off(self, block: Block, name: str) -> None:
         """Refuse what cannot be done while cutter compensation is on."""

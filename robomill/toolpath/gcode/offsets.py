@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 
+from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.rules.mode_rules import system_code
 from robomill.toolpath.gcode.rules.motion_rules import rotate
-from robomill.toolpath.gcode.standing import begins, stand
+from robomill.toolpath.gcode.standing import begins, measured, stand, stand_at_home
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.tools import MOST, Tool
 from robomill.units import from_si, to_si
@@ -15,6 +16,8 @@ SYSTEMS = {540: 1, 550: 2, 560: 3, 570: 4, 580: 5, 590: 6, 591: 7, 592: 8, 593: 
 LAST_SYSTEM, MOST_EXTENDED = 9, 300
 """Behind these nine come those of G54.1 P1 (Fanuc) and G154 P1 (Haas), and on."""
 _FANUC_TOOLS = (1, 10, 11, 12, 13)
+_OFFSETS = range(2001, 2801)
+"""A Fanuc's variables of its tools' lengths and radii."""
 _CORNER_OFF = "with cutter compensation on; use G40 first."
 
 
@@ -82,8 +85,11 @@ def turn_about(machine: Machine, block: Block) -> None:
     words = block.words
     if machine.scale is not None:
         raise block.refuse("G68 while coordinates are scaled (G51) is not read; end that first (G50).")
-    if machine.plane != 17 or "r" not in words or not machine.absolute:
+    plane, distance = block.g.get(modal.PLANE, 10 * machine.plane), block.g.get(modal.DISTANCE)
+    if plane != 170 or "r" not in words or not (machine.absolute or distance == 900):
         raise block.refuse("G68 is read in G17 and G90, with R, its angle; write the moves out.")
+    if words.keys() & set("zijk"):
+        raise block.refuse("G68 with Z, I, J or K turns coordinates in space, which is not read; write the moves out.")
     turn_back(machine)
     if words.keys() & {"a", "b"}:  # Mach3's names of the centre
         words["x"], words["y"] = words.pop("a", 0.0), words.pop("b", 0.0)
@@ -131,6 +137,9 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
     """G52 and the G92 family."""
     machine.need_compensation_off(block, g_name(code))
     numbered = machine.store.numbered
+    if code == 920 and measured(machine):
+        stand(machine, block)
+        return
     if code == 920 and begins(machine):
         if machine.other_control:
             stand(machine, block)
@@ -142,6 +151,7 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
             text = f"{g_name(code)} on top of {g_name(machine.shifted_by)}, as a control adds them, is not read"
             raise block.refuse(f"{text}; end that before.")
         numbered[5210], machine.shifted_by = 1.0, code
+        homes = stand_at_home(machine, block) if code == 920 else set()
         for axis, letter in enumerate(XYZABC):
             if letter not in block.words:
                 continue
@@ -149,7 +159,7 @@ def axis_offsets(machine: Machine, block: Block, code: int) -> None:
             if code == 520:
                 machine.p[axis] += machine.g92[axis] - value
                 machine.g92[axis] = value
-            else:
+            elif axis not in homes:
                 machine.g92[axis] += machine.p[axis] - value
                 machine.p[axis] = value
         for axis in range(6):
@@ -172,9 +182,7 @@ def set_data(machine: Machine, block: Block) -> None:
         _set_radius(machine, block, kind == 13)
         return
     if machine.is_fanuc and kind in _FANUC_TOOLS:
-        machine.note(
-            "tool-set", "warning", f"G10 L{kind} sets a tool of the control, which is left out: the tool table holds"
-        )
+        _leave_tool(machine, f"G10 L{kind}")
         return
     if kind not in (1, 2, 10, 11, 20):
         raise block.refuse("G10 needs L1, L2, L10, L11 or L20.")
@@ -192,11 +200,22 @@ def set_data(machine: Machine, block: Block) -> None:
     if "i" in block.words or "j" in block.words:
         raise block.refuse(f"G10 L{kind} takes no I or J.")
     system = round(p) or machine.system
+    if kind == 20 and system == machine.system and measured(machine):
+        stand(machine, block)
+        return
+    if kind == 20 and system == machine.system:
+        for axis in stand_at_home(machine, block):
+            del block.words[XYZABC[axis]]
     if machine.compensation is not None and system == machine.system:
         raise block.refuse(f"G10 L{kind} cannot move the current coordinate system {_CORNER_OFF}")
     if kind == 20 and "r" in block.words:
         raise block.refuse("G10 L20 takes no R.")
     _set_system(machine, block, kind, system)
+
+
+def _leave_tool(machine: Machine, word: str) -> None:
+    text = f"{word} sets a tool of the control, which is left out: the tool table holds"
+    machine.note("tool-set", "warning", text)
 
 
 def _set_as_fanuc(machine: Machine, block: Block, kind: int, number: int) -> None:
@@ -240,8 +259,30 @@ def _set_system(machine: Machine, block: Block, kind: int, system: int) -> None:
         for axis in range(6):
             _store_axis(machine, system, axis, new[axis])
         machine.store.numbered[5210 + 20 * system] = new_rotation
+    _place(machine, block, f"G10 L{kind}", system)
+
+
+def place_by_numbers(machine: Machine, block: Block) -> None:
+    """Fanuc's #5221 and on say where G54 and on lie: a line that sets one of them places its system, as G10 L2 does."""
+    for key, _ in block.settings if machine.is_fanuc else ():
+        if isinstance(key, int) and key in _OFFSETS:
+            _leave_tool(machine, f"#{key}")
+        system, axis = divmod(key - 5201, 20) if isinstance(key, int) else (-1, 0)
+        if system == 0 and axis < 6:
+            raise block.refuse(f"#{key} moves all coordinate systems on a Fanuc control, which is not read; move G54.")
+        if 1 <= system <= 6 and axis < 6:
+            _place(machine, block, f"#{key}", system)
+
+
+def _place(machine: Machine, block: Block, name: str, system: int) -> None:
+    """A coordinate system lies where ``stored_system`` says from here on; the machine stays where it is."""
     machine.placed.setdefault(system, block.line)
     if system == machine.system:
+        machine.need_compensation_off(block, name)
+        if machine.before_turn is not None:
+            moved = system_name(machine, system)
+            raise block.refuse(f"{name} moves {moved} while coordinates are shifted or turned (G68); end that first.")
+        new, new_rotation = stored_system(machine, system)
         point = [p - n for p, n in zip(_unrotated(machine), new)]
         point[0], point[1] = rotate(point[0], point[1], -new_rotation)
         machine.p = point

@@ -1,6 +1,8 @@
-"""Where a machine stands before its first move: where G92 says, on controls that are not LinuxCNC."""
+"""Where a machine stands that nobody knows: before its first move, on controls that are not LinuxCNC, and where a
+probe has met something. There G92 says it."""
 
 from robomill.toolpath.gcode.machine import XYZABC, Machine
+from robomill.toolpath.gcode.program import PROBE
 from robomill.toolpath.gcode.rules.motion_rules import to_frame
 from robomill.toolpath.gcode.words import Block
 from robomill.units import to_si
@@ -11,8 +13,15 @@ def begins(machine: Machine) -> bool:
     return not (machine.strict or len(machine.recorder) or machine.recorder.held or any(machine.g92) or any(machine.p))
 
 
+def measured(machine: Machine) -> bool:
+    """Whether the tool stands where its probe has met something: the program does not say where that is."""
+    last = machine.recorder.last()
+    return not machine.strict and last is not None and int(last["kind"]) == PROBE
+
+
 def stand(machine: Machine, block: Block) -> None:
-    """G92 before the first move says where the tool stands: part zero is where it counts from."""
+    """G92 (or G10 L20) says where the tool stands: part zero is where it counts from."""
+    probed = measured(machine)
     for axis, letter in enumerate(XYZABC):
         machine.p[axis] = block.words.get(letter, machine.p[axis])
         if axis >= 3:
@@ -20,4 +29,25 @@ def stand(machine: Machine, block: Block) -> None:
     machine.sent = list(machine.p)
     x, y, z = machine.p[:3]
     to_frame(machine, x, y, z, machine.at)
+    if probed:
+        text = "is read as where the tool stands, from part zero, as its probe has just found it"
+        machine.note("probed-zero", "info", f"G92 or G10 L20 behind a probe {text}")
+        return
     machine.note("begins-at", "info", "G92 before the first move is read as where the tool stands, from part zero")
+
+
+def stand_at_home(machine: Machine, block: Block) -> set[int]:
+    """G92 behind G28 says where the machine's home lies from part zero, as programs without G54 do: of x, y and z those
+    that are so, whose zero is not moved. The home stays a place that is clear of the part, wherever it is.
+    """
+    homes = {axis for axis, letter in enumerate("xyz") if machine.away[axis] and letter in block.words}
+    if not (machine.other_control or machine.feed_in_block):  # LinuxCNC, said or supposed, knows where its home lies
+        return set()
+    for axis in homes:
+        machine.p[axis] = machine.sent[axis] = block.words["xyz"[axis]]
+    if homes:
+        x, y, z = machine.p[:3]
+        to_frame(machine, x, y, z, machine.at)
+        text = "G92 or G10 L20 behind G28, G30 or G53 is read as where the tool stands there, from part zero"
+        machine.note("begins-at", "info", text)
+    return homes

@@ -2,6 +2,7 @@
 
 import math
 import re
+from itertools import pairwise
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
@@ -21,6 +22,8 @@ _NAMED = re.compile(
 _LEAVES = re.compile(r"\b(?:M17|M0?2|M30|RET)\b(?:[ \t]*\([^()]*\))?")
 _N = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?")
 _OVER = re.compile(r"M[ \t]*99(?![\d.])(?![ \t]*P)|^[ \t]*[O:]\d", re.IGNORECASE)
+_PROGRAM = re.compile(r"^[ \t]*[O:][ \t]*0*(\d{1,9})[ \t;\r]*(?:\([^\n]*)?$", re.MULTILINE | re.IGNORECASE)
+_ENDS = re.compile(r"M[ \t]*0*(2|30|99)(?!\d)", re.IGNORECASE)
 CALLS = (97, 98, 198)
 LOCALS = 33
 """Variables #1 to #33 of Macro B belong to the macro that is being run."""
@@ -57,6 +60,28 @@ class Subprograms(OWords):
             start, repeats = self._begun(block, at + 1, repeats)
         self._enter(block, str(number), start, repeats)
         return True
+
+    def begin_at_main(self) -> None:
+        """Go to the first program that ends for good, where it calls the one that the file begins with: as a control
+        writes all of its programs out, subprograms may stand above what calls them."""
+        lines = self.main.lines
+        data = lines.data if lines.closing is None else lines.data[: lines.starts[lines.closing]]
+        if b"M99" not in data and b"m99" not in data:
+            return
+        text = data.decode("utf-8", "replace")
+        heads = list(_PROGRAM.finditer(text))
+        if len(heads) < 2:
+            return
+        bounds = [head.start() for head in heads] + [len(text)]
+        parts = [COMMENT.sub("", text[a:b]) for a, b in pairwise(bounds)]
+        first = heads[0][1]
+        main = next((k for k, part in enumerate(parts) if {"2", "30"} & {*_ENDS.findall(part)}), 0)
+        called = rf"(?:M[ \t]*98|G[ \t]*6[56])(?!\d)[^\n]*P[ \t]*\d*{first}(?!\d)"
+        if main == 0 or not re.search(called, parts[main], re.IGNORECASE):
+            return
+        self.pc = text.count("\n", 0, heads[main].start())
+        said = f"the program begins at O{heads[main][1]}: O{first} above it is a subprogram that it calls"
+        self.machine.findings.add("begins-at-main", "info", self.pc + 1, said)
 
     def _begun(self, block: Block, start: int, repeats: int) -> tuple[int, int]:
         """Where M98 with Q (Mitsubishi: also H) begins, and how often it is run.
@@ -97,6 +122,8 @@ class Subprograms(OWords):
                 f"{call} calls {name}, which stands behind the % that ends the program, where a control reads no "
                 "further; move it before that %."
             )
+        if re.fullmatch(r"O98\d\d", name) and call == "G65":
+            return f"{call} calls {name}, a macro that measures with a probe and cuts nothing; take its lines out."
         return f"{call} calls {name}, but there is no {name} in the program; paste it in behind the end (M30)."
 
     def line_numbered(self, number: int) -> int | None:

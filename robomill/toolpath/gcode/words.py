@@ -22,7 +22,8 @@ class Block:
     ``g`` and ``m`` map modal groups to codes (G codes ten times their number); ``motion_rules`` is the G code of the
     motion that the line makes, -1 for none. ``twice`` is the refusal that LinuxCNC has for words that other controls
     take together (G0 G0, M7 M8). ``falls`` says that I, J and K are the first, the fall and the least of Haas's pecks;
-    ``then`` is the tool that Mazak's T1 T2 M6 makes ready for the next change.
+    ``then`` is the tool that Mazak's T1 T2 M6 makes ready for the next change, ``bolts`` are places around a circle
+    where the cycle of the line drills.
     """
 
     line: int
@@ -37,6 +38,7 @@ class Block:
     twice: str = ""
     falls: bool = False
     then: int = -1
+    bolts: list[tuple[float, float]] = field(default_factory=list)
 
     def refuse(self, message: str) -> GCodeError:
         """The error to raise: ``message`` with the line in front."""

@@ -85,6 +85,32 @@ def test_a_spline_is_the_bezier_curve_that_its_control_points_say() -> None:
     assert piece.length == pytest.approx(np.hypot(*np.diff(curve, axis=0).T).sum() * 1e-3, rel=1e-4)
 
 
+@pytest.mark.parametrize("weights", [None, [1, 2, 3, 1.5, 1, 2, 3]])
+def test_a_closed_spline_is_drawn_between_the_knots_where_it_is_defined_alone(weights) -> None:
+    """Cubic over even knots, as a closed curve of control points: each piece by the matrix of the uniform spline."""
+    around = [(0, 0, 0), (20, 0, 0), (20, 10, 0), (0, 10, 0)]
+    control = [*around, *around[:3]]
+
+    def draw(doc, space):
+        spline = space.add_spline()
+        spline.set_closed(around, degree=3)
+        if weights:
+            spline.weights = weights
+
+    t, w = np.linspace(0.0, 1.0, 5_001)[:, None], weights or [1.0] * 7
+    shares = [(1 - t) ** 3, 3 * t**3 - 6 * t**2 + 4, -3 * t**3 + 3 * t**2 + 3 * t + 1, t**3]
+    pieces = []
+    for k in range(4):
+        below = sum(share * w[k + i] for i, share in enumerate(shares))
+        pieces.append(sum(share * w[k + i] * np.array(control[k + i][:2]) for i, share in enumerate(shares)) / below)
+    curve = np.vstack(pieces)
+    piece = only(draw)
+    assert max(np.hypot(*(curve - corner * 1e3).T).min() for corner in piece.outline()) < 5e-3
+    assert piece.length == pytest.approx(np.hypot(*np.diff(curve, axis=0).T).sum() * 1e-3, rel=1e-4)
+    if weights is None:
+        np.testing.assert_allclose(piece.outline()[0], piece.outline()[-1], atol=1e-12)
+
+
 def test_blocks_are_opened_turned_mirrored_and_scaled_on_the_layer_of_their_insert() -> None:
     def draw(doc, space):
         block = doc.blocks.new("B")

@@ -128,6 +128,11 @@ def test_no_corner_is_where_a_cut_and_an_arc_go_on_tangentially() -> None:
         ),
         ("M8 ,C5\n", "Line 4: a corner is rounded at the end of a cut"),
         ("G68 X0 Y0\n", "Line 4: G68 is read in G17 and G90, with R"),
+        ("G18 G68 X0 Z0 R90.\nG1 X5 F100\n", "Line 4: G68 is read in G17 and G90"),
+        ("G91 G68 X0 Y0 R90.\nG91\nG68 R5.\n", "Line 6: G68 is read in G17 and G90"),
+        ("G68 X0 Y0 Z0 I1 J0 K0 R90.\n", "Line 4: G68 with Z, I, J or K turns coordinates in space"),
+        ("G18 G16\nZ5 F100\n", "Line 5: G16 is read in G17 alone"),
+        ("G18 G16 X5 Z90\n", "Line 4: G16 is read in G17 alone"),
         ("G68 X0 Y0 R30\nG55\n", "Line 5: G55 while coordinates are shifted or turned"),
         ("G16\nG91 X5 Y10\n", "Line 5: G16 counts X from where the tool is in G91, which is not read"),
         ("G16\nG18\nX5 Y10\n", "Line 6: G16 is read in G17 alone"),
@@ -145,6 +150,8 @@ def test_g68_turns_what_follows_about_its_centre_until_g69() -> None:
     body = "G68 X10 Y0 R90\nG1 X20 Y0 F100\nY5\nG91 X10\nG90 G69\nX1 Y2\n"
     assert ends(body) == [[10, 10], [5, 10], [5, 20], [1, 2]]
     assert ends("G1 X3 Y4 F9\nG68 R180\nX4 Y4\nG69\nY0\n") == [[3, 4], [2, 4], [2, 0]]
+    # plane and mode of its own line hold, as in Fanuc's "G17 G68 X Y R"
+    assert ends("G18\nG91\nG90 G17 G68 X0 Y0 R90\nG1 X5 Y1 F9\n") == [[-1, 5]]
     arc = interpret(f"{HEAD}G68 X0 Y0 R90\nG2 X10 Y0 I5 J0 F9\nM30\n%\n", dialect="fanuc")
     np.testing.assert_allclose(arc.centre[-1, :2] * 1e3, [0, 5], atol=1e-9)
 

@@ -67,6 +67,11 @@ def test_a_word_of_another_language_is_named(line: str, word: str, language: str
         ("IN;SP1;PU0,0;PD10,10;\n", 1, "HPGL"),
         ("  0\nSECTION\n  2\nHEADER\n", 1, "a DXF drawing"),
         ("solid part\nfacet normal 0 0 1\n", 1, "an STL surface"),
+        ("G04 board*\n%FSLAX24Y24*%\n%MOMM*%\n", 2, "Gerber"),
+        ("M48\nMETRIC,TZ\nT1C0.8\n", 1, "Excellon"),
+        ("'part\nMS,1.0,0.5\nJZ,5\n", 2, "ShopBot's language"),
+        ("\n<!DOCTYPE html>\n<html>\n", 2, "a page of the web"),
+        ("version https://git-lfs.github.com/spec/v1\noid sha256:0\n", 1, "a pointer of Git LFS"),
         ("ISO-10303-21;\nHEADER;\n", 1, "STEP"),
     ],
 )
@@ -118,3 +123,17 @@ def test_controls_whose_commands_stand_in_brackets_are_named(text: str, line: in
     with pytest.raises(GCodeError, match=f"Line {line}: this is {name}"):
         interpret(text)
     assert len(interpret("(CALL 10 IF IT BREAKS)\n(RPT 3 TIMES)\nG0 X5\n")) == 1
+
+
+@pytest.mark.parametrize("word", ["L3", "Q-2."])
+def test_a_spiral_is_no_arc_with_a_word_too_many(word: str) -> None:
+    """Fanuc, spiral interpolation: G02 X Y I J Q L, with Q the radius of a turn more and L the turns."""
+    letter = word[0]
+    with pytest.raises(GCodeError, match=f"Line 3: {letter} beside G2 or G3 makes a spiral or a cone"):
+        interpret(f"O1\nG21 G90 F9\nG2 X20. Y0 I10. J0 {word}\nM30\n", dialect="fanuc")
+
+
+@pytest.mark.parametrize("code", ["G43", "G43.1", "G43.4"])
+def test_lengths_along_the_tool_move_it_to_the_tip_s_place(code: str) -> None:
+    found = interpret(f"O1\nG21 G90 F9\nG0 Z50.\n{code} H1 Z20.\nG1 Z-1.\nM30\n", dialect="fanuc")
+    assert (found.end[:, 2] * 1e3).round(9).tolist() == [50, 20, -1]

@@ -285,3 +285,79 @@ def test_every_work_offset_is_chosen_by_its_own_word(number: int) -> None:
     sets = "".join(f"G10 L2 P{k} X{k * k}\n" for k in range(1, 10))
     program = interpret(f"G21 G90\n{sets}{words[number - 1]}\nG0 X7\nG54\nX7\nM2\n", dialect="linuxcnc")
     np.testing.assert_allclose(program.end[:, 0] * 1e3, [7 + number * number, 8], atol=1e-9)
+
+
+def fanuc_ends(body, unit="G21"):
+    """Where the moves of a program end in mm, on a Fanuc."""
+    program = interpret(f"{unit} G90 G94 F100\nG0 X0 Y0 Z0\n{body}M30\n", dialect="fanuc")
+    return np.round(program.end[1:] * 1e3, 6).tolist()
+
+
+def test_a_fanuc_system_moves_as_its_variable_is_set():
+    """The machine stands still, so that a word that is not there keeps its place; one that is counts from the new."""
+    body = "#5221=10.\nG1 Y5.\nX5.\nIF[#5221EQ10]THEN #5222=#5222+1.\nX5. Y5.\n#5241=100.\nG55 X5.\nG54 X#5241\n"
+    assert fanuc_ends(body) == [[0, 5, 0], [15, 5, 0], [15, 6, 0], [105, 6, 0], [110, 6, 0]]
+    # a hundred lines more: the rules of long programs leave such a line to the reader
+    assert fanuc_ends("X1.\n" * 100 + "#5223=3.\nX2. Z0\n")[-1] == [2, 0, 3]
+    assert interpret("G21 G90 F100\nG0 X0\n#5221=10.\nG1 X5\nM2\n", dialect="linuxcnc").end[-1, 0] == 0.005
+
+
+def test_fanuc_variables_of_places_count_in_the_units_of_the_program():
+    body = "G10 L2 P1 X1. Y0 Z0\n#1=#5221\nG0 X#1\nG21\n#2=#5221\nX#2\n#5221=50.8\nG20\nX#5221\n"
+    assert fanuc_ends(body, "G20") == [[50.8, 0, 0], [50.8, 0, 0], [101.6, 0, 0]]
+    found = interpret(f"G20 G90 F10\n{body}G1 Z0\nM30\n", dialect="fanuc").findings
+    assert next(f.message for f in found if f.code == "zero-placed").startswith("the program itself places G54 at X50")
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("G68 X0 Y0 R90.\nG10 L2 P1 X10.\n", "Line 4: G10 L2 moves G54 while coordinates are shifted or turned"),
+        ("G68 X0 Y0 R90.\n#5221=10.\n", "Line 4: #5221 moves G54 while coordinates are shifted or turned"),
+        ("#5201=10.\n", "Line 3: #5201 moves all coordinate systems"),
+        ("G10 L12 P1 R4.\nG41 D1 G1 X10.\nX20.\nG10 L2 P1 X5.\n", "Line 6: G10 L2 cannot be used with cutter comp"),
+    ],
+)
+def test_what_moves_a_fanuc_system_beneath_something_is_refused(body, says):
+    with pytest.raises(GCodeError, match=says):
+        fanuc_ends(body)
+
+
+@pytest.mark.parametrize("dialect", ["grbl", "auto"])
+@pytest.mark.parametrize("zero", ["G92 Z10", "G10 L20 P1 Z10", "G10 L20 P0 Z10"])
+def test_behind_a_probe_the_tool_stands_where_the_program_says(dialect, zero):
+    """A plate of 10 mm lies on the part: where it is touched is Z10, however far the probe was sent, and once more
+    after a change of the tool."""
+    touch = f"G38.2 Z-40 F50\nG0 Z-35\nG38.2 Z-60 F9\n{zero}\nG0 Z15\n"
+    found = interpret(f"G21 G90\n{touch}G0 X3\nG1 Z-1 F100\nX9\nM0\n{touch}G1 Z-2\nX3\nM2\n", dialect=dialect)
+    cuts = found.end[found.kind == 1] * 1e3
+    np.testing.assert_allclose(cuts, [[3, 0, -1], [9, 0, -1], [9, 0, -2], [3, 0, -2]], atol=1e-9)
+    assert [f.count for f in found.findings if f.code == "probed-zero"] == [2]
+    # what LinuxCNC itself shows: the place the probe was sent to, counted from there
+    plain = interpret(f"G21 G90\n{touch}G1 Z-1 F100\nM2\n", dialect="linuxcnc")
+    assert plain.end[-1, 2] == pytest.approx(-0.071)
+
+
+def test_g92_behind_g28_says_where_the_home_lies_from_part_zero():
+    """Programs without G54, as Fanuc's manual has them: part zero stays where it is, whatever tool is set again."""
+    home = "G91 G28 Z0\nG28 X0 Y0\nG90 G92 X300. Y200. Z{}.\nG0 X10. Y10.\nZ5.\nG1 Z-1.\nX20.\n"
+    found = interpret(f"O1\nG21 F100\n{home.format(400)}{home.format(350)}M30\n", dialect="fanuc")
+    cuts = found.end[found.kind == 1] * 1e3
+    np.testing.assert_allclose(cuts, [[10, 10, -1], [20, 10, -1]] * 2, atol=1e-9)
+    assert not found.away[found.kind == 1].any()
+    assert [(f.line, f.count) for f in found.findings if f.code == "begins-at"] == [(5, 2)]
+    grbl = interpret("G21 G90 F9\nG28 Z0\nG10 L20 P1 X0 Y0 Z400\nG0 X1 Y1\nG1 Z-1\nM2\n", dialect="grbl")
+    np.testing.assert_allclose(grbl.end[-1] * 1e3, [1, 1, -1], atol=1e-9)
+    # Z alone comes from there: X and Y are known, and are shifted
+    found = interpret("O1\nG21 G90 F9\nG0 X5. Y0 Z9.\nG28 Z9.\nG92 X0 Z400.\nG1 X1. Z-1.\nM30\n", dialect="fanuc")
+    np.testing.assert_allclose(found.end[-1] * 1e3, [6, 0, -1], atol=1e-9)
+
+
+def test_a_fanuc_variable_of_a_tool_is_left_out_as_g10_is():
+    said = {}
+    for line in ("#2001=5.", "G10 L10 P1 R5."):
+        found = interpret(f"O1\nG21 G90\n{line}\nG43 H1 G0 Z9.\nG1 Z1. F9\nM30\n", dialect="fanuc")
+        assert found.end[-1, 2] == pytest.approx(1e-3)
+        said[line] = [f.message.split(" ", 1 + (line[0] == "G"))[-1] for f in found.findings if f.code == "tool-set"]
+    assert said["#2001=5."] == said["G10 L10 P1 R5."]
+    assert said["#2001=5."] == ["sets a tool of the control, which is left out: the tool table holds"]

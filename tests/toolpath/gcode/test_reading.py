@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robomill.errors import GCodeError
+from robomill.errors import ArgumentError, GCodeError
 from robomill.files import PROGRAM as LIMIT
 from robomill.progress import Cancelled, Progress, watched
 from robomill.toolpath.gcode import Tool, gcode_report, interpret, read_gcode, write_moves_jsonl
@@ -300,3 +300,8 @@ def test_what_was_read_is_given_back_at_once(dialect: str, text: str, slip: str)
         assert min(left() for _ in range(5)) == 0
     finally:
         gc.enable()
+
+
+def test_what_is_no_tool_of_a_table_is_told() -> None:
+    with pytest.raises(ArgumentError, match=r"Tool 3: found a float, expected a tool of a table, as in rm.ToolTable"):
+        read_gcode(PROGRAM, tools={3: 8.0})  # type: ignore[dict-item]

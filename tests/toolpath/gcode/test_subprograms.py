@@ -142,3 +142,24 @@ def test_subroutines_may_call_one_another_nine_deep(deep: int) -> None:
     else:
         with pytest.raises(GCodeError, match="more than 9 levels deep"):
             xs(text, "linuxcnc")
+
+
+def test_a_program_begins_below_the_subprograms_that_a_control_writes_above_it():
+    step = "O9000 (STEP)\nG91 G1 X1. F100\nG90\nM99\n"
+    main = "O0001 (MAIN)\nG21 G90\nG0 X0 Y0 Z5.\nM98 P{call}\nG1 Y7. F100\nM30\n"
+    for call in ("9000 L2", "29000", "00029000"):
+        found = interpret(f"%\n{step}{main.format(call=call)}%\n")
+        assert np.round(found.end * 1e3, 9).tolist()[-3:] == [[1, 0, 5], [2, 0, 5], [2, 7, 5]]
+        said = [f for f in found.findings if f.code == "begins-at-main"]
+        assert [(f.line, f.message[:26]) for f in said] == [(6, "the program begins at O1: ")]
+    below = main.format(call="9000 L2") + step
+    assert not any(f.code == "begins-at-main" for f in interpret(f"%\n{below}%\n").findings)
+    loop = (
+        "O9000\nG21 G90\nG0 X0 Y0 Z5.\nG1 X3. F100\nM99\nO9001\nG1 X9.\nM30\n"  # two parts, of which the first recurs
+    )
+    assert interpret(f"%\n{loop}%\n").end[-1, 0] == pytest.approx(0.003)
+
+
+def test_a_macro_that_measures_is_named_as_such():
+    with pytest.raises(GCodeError, match="Line 3: G65 calls O9810, a macro that measures with a probe and cuts noth"):
+        interpret("O1\nG21 G90\nG65 P9810 Z10. F500.\nG0 X1.\nM30\n", dialect="fanuc")

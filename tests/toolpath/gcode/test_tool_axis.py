@@ -56,3 +56,10 @@ def test_a3_b3_c3_is_the_direction_of_the_tool_on_a_sinumerik(frame: str) -> Non
 def test_other_ways_to_say_it_are_refused_by_name(words: str, says: str) -> None:
     with pytest.raises(GCodeError, match=f"Line 2: {says}"):
         interpret(f"G71 G90 F500\nG1 X1 {words}\nM30\n", dialect="sinumerik")
+
+
+@pytest.mark.parametrize("line", ["G90 G1 X2. I0 J0 K1.", "G90\nG1 X2. I0 J0 K1."])
+def test_directions_of_a_line_that_goes_back_to_places_are_directions(line: str) -> None:
+    """G90 on the same line, behind G91 G28 Z0: the angles of the direction are no steps from those before."""
+    path = read_gcode(f"G21 G90 G94 F100\nG1 X1. I0.6 J0 K0.8\nG91 Z1.\n{line}\nM30\n", dialect="fanuc")
+    np.testing.assert_allclose(path.k[-1], [0, 0, 1], atol=1e-12)

@@ -29,9 +29,11 @@ def as_bored(machine: Machine, block: Block) -> None:
     words, motion = block.words, block.g.get(modal.MOTION)
     if motion == _BACK_BORING and "q" in words:
         raise block.refuse("G87 bores from below on a Fanuc control, which is not read; write the moves out.")
-    if motion == _FINE_BORING and {"z", "r"} <= words.keys() and not {"i", "k"} <= words.keys():
+    whole = machine.is_fanuc or {"z", "r"} <= words.keys()  # on a Fanuc what a cycle before has said holds
+    if motion == _FINE_BORING and whole and not {"i", "k"} <= words.keys():
         block.g[modal.MOTION] = _BORING
-        words.pop("q", None)
+        for letter in "qij":
+            words.pop(letter, None)
         machine.note("fine-boring", "info", "G76 is read as boring (G86); its step aside in the hole is left out")
 
 
@@ -46,9 +48,13 @@ def clamps(machine: Machine, block: Block) -> None:
 
 
 def bolt_holes(machine: Machine, block: Block, code: int) -> bool:
-    """G70 I radius J angle L holes, G71 with K, the angle between them; False for other words, and without a cycle."""
+    """G70 I radius J angle L holes, G71 with K, the angle between them; False for other words, and without a cycle.
+
+    On the line that begins the cycle they are drilled once that is in force, and none where the tool stands.
+    """
     words, needs = block.words, {700: {"i", "j", "l"}, 710: {"i", "j", "k", "l"}}.get(code)
-    if needs is None or not needs <= words.keys() or not is_cycle(machine.motion):
+    begins = is_cycle(block.g.get(modal.MOTION, -1))
+    if needs is None or not needs <= words.keys() or not (begins or is_cycle(machine.motion)):
         return False
     count = round(words["l"])
     absolute = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 900
@@ -57,10 +63,19 @@ def bolt_holes(machine: Machine, block: Block, code: int) -> bool:
     u, v = words.pop("x", machine.p[0]), words.pop("y", machine.p[1])
     radius, angle, between = words.pop("i"), words.pop("j"), words.pop("k", 360.0 / count)
     del words["l"]
-    for k in range(count):
-        place = dict(zip("xy", polar(radius, math.radians(angle + k * between), u, v)))
-        drill(machine, Block(block.line, place, motion=machine.motion))
+    block.bolts = [polar(radius, math.radians(angle + k * between), u, v) for k in range(count)]
+    if begins:
+        words["l"] = 0.0
+    else:
+        drill_bolts(machine, block)
     return True
+
+
+def drill_bolts(machine: Machine, block: Block) -> None:
+    """Drill the holes that a line has placed around a circle."""
+    for place in block.bolts:
+        drill(machine, Block(block.line, dict(zip("xy", place)), motion=machine.motion))
+    block.bolts = []
 
 
 def repeats(machine: Machine, block: Block) -> None:

@@ -7,18 +7,36 @@ import re
 
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.expressions import Reader
+from robomill.toolpath.gcode.offsets import place_by_numbers
+from robomill.toolpath.gcode.scan import COMMENT
 from robomill.toolpath.gcode.subprograms import Subprograms
 from robomill.toolpath.gcode.words import apply_settings, read_words
 
 _BEGINS = re.compile(r"if\[|while\[|goto|end\d|do\d")
 _LOOP = re.compile(
-    rb"^[/ \t]*(?:N[ \t]*\d+)?[ \t]*(?:(WHILE[^\n(]*DO|DO)|END)[ \t]*(\d)(?!\d)", re.MULTILINE | re.IGNORECASE
+    rb"^[/ \t]*(?:N[ \t]*\d+)?[ \t]*(?:(WH(?:ILE)?[^\n(A-Za-z]*\[[^\n(]*DO|DO)|EN(?:D)?)[ \t]*(\d)(?!\d)",
+    re.MULTILINE | re.IGNORECASE,
 )
 _SUM = re.compile(
     r"^([ \t]*/?[ \t]*(?:N\d+)?[ \t]*#\s*(?:\d+|\[[^\]=]*\])\s*=)([^=;(]*?)\s*(\(.*|;.*)?$", re.IGNORECASE
 )
 _TURN = re.compile(r"(?:do|end)\d")
 _OPERATOR = re.compile(r"[\]\d.]\s*(?:[-+*/]|MOD|AND|OR|XOR)", re.IGNORECASE)
+
+
+_SHORT = {
+    **{"WH": "WHILE", "GO": "GOTO", "EN": "END", "TH": "THEN", "XO": "XOR"},
+    **{"SI": "SIN", "CO": "COS", "TA": "TAN", "AS": "ASIN", "AC": "ACOS", "AT": "ATAN", "SQ": "SQRT", "AB": "ABS"},
+    **{"RO": "ROUND", "FI": "FIX", "FU": "FUP", "EX": "EXP"},
+}
+_SHORTENED = re.compile(rf"(?<![A-Z])({'|'.join(_SHORT)})(?=\s*[\[#\d])", re.IGNORECASE)
+
+
+def in_full(raw: str) -> str:
+    """``WH[...]DO1`` as ``WHILE[...]DO1``: two letters stand for a word, as a Fanuc writes its tapes."""
+    if not _SHORTENED.search(COMMENT.sub("", raw)):
+        return raw
+    return _SHORTENED.sub(lambda found: _SHORT[found[1].upper()], COMMENT.sub("", raw))
 
 
 def with_brackets(raw: str) -> str:
@@ -71,6 +89,7 @@ class MacroB(Subprograms):
         if block.words or block.g or block.m or not block.settings:
             raise reader.refuse("THEN sets variables, as in THEN #1=2; put moves on a line of their own behind a GOTO.")
         apply_settings(block, reader.store)
+        place_by_numbers(self.machine, block)
 
     def _loop(self, reader: Reader, index: int) -> None:
         partner = self._loops.get(index)

@@ -5,6 +5,7 @@ or the centre and radius of an arc are s times what is written. What a cycle pec
 """
 
 import math
+from dataclasses import replace
 
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
@@ -15,6 +16,8 @@ from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.plane import axes
 
 _CODES = {510: "G51", 511: "G51.1", 500: "G50", 501: "G50.1", 1010: "G101", 1000: "G100"}
+_UNSCALED, _HAAS = 500, 1010
+_MIRRORS, _STRAIGHT = (511, _HAAS), (501, 1000)
 _THOUSAND = 1000.0
 
 
@@ -22,40 +25,68 @@ def scales(machine: Machine, block: Block, code: int) -> bool:
     """Follow G51, G51.1, G50 and G50.1, and Haas's G101 and G100; False for other words."""
     if code not in _CODES:
         return False
-    if code == 500 and machine.scale is None:
+    if code == _UNSCALED and (machine.scale is None or machine.scale.mirrors):
         return False
     machine.need_compensation_off(block, _CODES[code])
     machine.initial_level = math.nan
     words = block.words
     if machine.before_turn is not None or machine.polar_words:
         raise block.refuse(f"{_CODES[code]} inside of G68 or G16 is not read; give it before them.")
-    if code in (500, 501, 1000):
-        if words.keys() & set("xyz") and code == 500:
+    if code == _UNSCALED:
+        if words.keys() & set("xyz"):
             raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")
-        for letter in "xyz":
-            words.pop(letter, None)
         machine.scale = None
         return True
     given = {letter: words.pop(letter) for letter in "xyzijkp" if letter in words}
+    if code in _STRAIGHT:
+        _end_mirror(machine, given)
+        return True
     if not _is_absolute(machine, block):
         raise block.refuse(f"{_CODES[code]} is read in G90 alone.")
-    centre = tuple(given.get(letter, at) for letter, at in zip("xyz", machine.p))
-    if code in (511, 1010):
-        if not given.keys() & set("xyz"):
-            raise block.refuse(f"{_CODES[code]} needs the axes that it mirrors, as in {_CODES[code]} X0.")
-        if code == 1010:  # about part zero, whatever its words say
-            machine.note("mirror", "info", "G101 is read as Haas's mirror image about part zero")
-            centre = tuple(0.0 if letter in given else at for letter, at in zip("xyz", centre))
-        before = machine.scale.factors if machine.scale is not None else (1.0, 1.0, 1.0)
-        factors = tuple(-1.0 if letter in given else old for letter, old in zip("xyz", before))
-    elif "p" in given:
+    if machine.scale is not None and machine.scale.mirrors != (code in _MIRRORS):  # the one would replace the other
+        mirrors = machine.scale.mirrors
+        inner, end = ("mirrored (G51.1)", "G50.1") if mirrors else ("scaled (G51)", "G50")
+        raise block.refuse(f"{_CODES[code]} while coordinates are {inner} is not read; end that first ({end}).")
+    if code in _MIRRORS:
+        _mirror(machine, block, code, given)
+    else:
+        _enlarge(machine, block, given)
+    return True
+
+
+def _mirror(machine: Machine, block: Block, code: int, given: dict[str, float]) -> None:
+    """G51.1 and G101 mirror the axes that they name; those that others have named stay mirrored where they are."""
+    if not given.keys() & set("xyz"):
+        raise block.refuse(f"{_CODES[code]} needs the axes that it mirrors, as in {_CODES[code]} X0.")
+    if code == _HAAS:
+        machine.note("mirror", "info", "G101 is read as Haas's mirror image about part zero")
+        given = dict.fromkeys(given, 0.0)  # whatever its words say
+    before = machine.scale or Scale()
+    centre = tuple(given.get(letter, at) for letter, at in zip("xyz", before.centre))
+    factors = tuple(-1.0 if letter in given else old for letter, old in zip("xyz", before.factors))
+    machine.scale = Scale(factors, centre, mirrors=True)  # type: ignore[arg-type]
+
+
+def _end_mirror(machine: Machine, given: dict[str, float]) -> None:
+    """G50.1 and G100 end the mirror images of the axes that they name, of all where they name none."""
+    before = machine.scale
+    if before is None or not before.mirrors:
+        return
+    left = tuple(1.0 if letter in given or not given else old for letter, old in zip("xyz", before.factors))
+    machine.scale = replace(before, factors=left) if -1.0 in left else None  # type: ignore[arg-type]
+
+
+def _enlarge(machine: Machine, block: Block, given: dict[str, float]) -> None:
+    """G51 P, or I, J and K, about X, Y and Z, or where the tool is."""
+    factors: tuple[float, ...]
+    if "p" in given:
         factors = (_factor(machine, block, given["p"]),) * 3
     elif given.keys() & set("ijk"):
         factors = tuple(_factor(machine, block, given[letter]) if letter in given else 1.0 for letter in "ijk")
     else:
         raise block.refuse("G51 needs P, or I, J and K: how many times larger everything is.")
+    centre = tuple(given.get(letter, at) for letter, at in zip("xyz", machine.p))
     machine.scale = Scale(factors, centre)  # type: ignore[arg-type]
-    return True
 
 
 def _is_absolute(machine: Machine, block: Block) -> bool:

@@ -9,6 +9,7 @@ import re
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
+from robomill.rigid import axis_from_tilt
 from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
 from robomill.toolpath.gcode.dialects import plain_numbers
 from robomill.toolpath.gcode.klartext.planes import WORD, Words
@@ -42,6 +43,10 @@ _SILENT = re.compile(
 )
 MAX_CODE, MAX_LINES = 1000, 100
 """Characters of a line and lines of a block that can be read."""
+_CARRIED = re.compile(r"[ \t]+(?:R[0LR]?|DR[-+]|F|M)(?:[ \t]*\d|[ \t\r]|$)", re.IGNORECASE)
+"""The second line of a block as a TNC 155 prints it: indented and without a number, where blocks have numbers."""
+_MOVES, _EMPTY = re.compile(r"(?:L|C|CR|LP|CP|CT) "), re.compile(r" [RFM](?= (?!MAX\b|AUTO\b|[-+.\dQ])|$)")
+"""Lines that move, and their R, F and M with nothing behind them: as it was."""
 _PLANES = {frozenset({0, 1}): 17, frozenset({0, 2}): 18, frozenset({1, 2}): 19}
 _KEPT_M = (0, 1, 2, 3, 4, 5, 7, 8, 9, 30)
 _PAIRS = {13: "M3 M8", 14: "M4 M8"}
@@ -134,12 +139,14 @@ class Klartext(KlartextTools):
             index += 1
             if len(text) > MAX_CODE or len(parts) > MAX_LINES:
                 raise GCodeError.at(index, f"a block is over {MAX_CODE} characters or {MAX_LINES} lines; split it.")
-            if not raw.rstrip().endswith("~"):
+            moves = found is not None and found[0].strip("/ \t") and _MOVES.match(parts[0].upper())
+            carried = moves and index < len(lines) and _CARRIED.match(lines[index])
+            if not raw.rstrip().endswith("~") and not carried:
                 break
             if parts == [""] and found is not None and found[0].strip("/ \t"):
                 return "", behind_remark(lines, index), skipped
-        code = re.sub(r"(?<=[-+\dXYZABC]),(?=\d)", ".", " ".join(parts).upper())
-        return " ".join(code.split()), index, skipped
+        code = " ".join(re.sub(r"(?<=[-+\dXYZABC]),(?=\d)", ".", " ".join(parts).upper()).split())
+        return _EMPTY.sub("", code) if _MOVES.match(code) else code, index, skipped
 
     # --- moves
     def here(self) -> list[float]:
@@ -235,9 +242,11 @@ class Klartext(KlartextTools):
         found = re.search(rf"MB ?(MAX|{NUMBER})", code)
         if found is None or found[1] == "MAX":
             return "G53 G0 Z0"
-        if self.machine.away[2]:
+        at, far = self.here(), self.number(found[1], line)
+        axis = axis_from_tilt(math.radians(at[3]), math.radians(at[4])).tolist()  # of the tool, which may lean
+        if any(away and k for away, k in zip(self.machine.away, axis)):
             return ""
-        return f"G0 Z{self.here()[2] + self.number(found[1], line):.9f}"
+        return "G0 " + " ".join(f"{letter}{p + far * k:.9f}" for letter, p, k in zip("XYZ", at, axis) if k)
 
     def _end(self, kind: str, words: Words, code: str, line: int) -> tuple[dict[str, float], str]:
         """Where a line leads, by letter, and the words of its arc ("" for a straight move)."""

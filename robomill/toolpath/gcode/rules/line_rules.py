@@ -31,6 +31,8 @@ from robomill.toolpath.gcode.rules.value_rules import (
 MAX_LINE = 100_000
 """Characters of a line that can be read."""
 NOT_PLAIN = -1
+ORIGINS_FROM, ORIGINS_TO = 5201, 5341
+"""Parameters that hold where G54 and on lie."""
 
 PLAIN_G = (
     *(0, 10, 20, 30, 730, 740, *range(800, 900, 10)),
@@ -135,6 +137,8 @@ def _setting(s, text, at, end, count: int):
         if problem != 0 or not 1.0 <= near < len(s.numbered) or math.isnan(s.numbered[int(near)]):
             return -1
         key = int(near)
+        if ORIGINS_FROM <= key < ORIGINS_TO:  # a Fanuc's coordinate system moves with them
+            return -1
     at = past_blanks(text, at, end)
     if at >= end or text[at] != 61:
         return -1

@@ -63,7 +63,14 @@ def spaced(code: str) -> str:
     """A line (capitals, no comment) with blanks between its words; names, of two letters or more, stay whole."""
     if '"' in code:
         return code
+    if "EX" in code:
+        code = _written_out(code)
     return _TIGHT.sub(lambda found: _EACH.sub(r"\1 ", found[0]), code)
+
+
+def _written_out(code: str) -> str:
+    """Numbers with EX for times ten to the, as plain ones."""
+    return _EXPONENT.sub(lambda found: f"{float(found[1] + 'e' + found[2]):.15f}", code)
 
 
 def translated(raw: str, number: int, machine: Machine) -> str:
@@ -83,7 +90,7 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = _FIXED_POINT.sub(lambda found: _fixed_point(found, machine), code)
     code = _feeds(code, number, machine)
     code = _WORDS.sub(lambda found: _UNITS[found[0].upper()], code)
-    code = _EXPONENT.sub(lambda found: f"{float(found[1] + 'e' + found[2]):.15f}", code)
+    code = _written_out(code)
     code = _tool_axis(code, number, machine)
     code = _places(code, machine)
     code = _TAP.sub(lambda _: _tapped(code, number, machine), _SPINDLE.sub(r"M\1", code))

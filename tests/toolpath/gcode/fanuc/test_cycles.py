@@ -133,6 +133,9 @@ def test_holes_on_a_circle_about_where_the_tool_is_or_the_line_says() -> None:
     assert holes("G99 G81 Z-5 R2 L0\nG70 X50 Y0 I10 J0 L4\n") == around
     assert holes("G0 X50\nG99 G81 Z-5 R2 L0\nG70 I10 J0 L4\n") == around
     assert holes("G99 G81 Z-5 R2 L0\nG71 X5 Y5 I10 J90 K-90 L2\n") == [(5, 15, -5), (15, 5, -5)]
+    # on the line that begins the cycle: none is drilled where the tool stands, and the cycle goes on
+    assert holes("G0 X50\nG99 G81 Z-5 R2 G70 I10 J0 L4\nX1 Y1\n") == [*around, (1, 1, -5)]
+    assert holes("G91 X1\nG90 G99 G81 X5 Y5 Z-5 R2 G71 I10 J90 K-90 L2\n") == [(5, 15, -5), (15, 5, -5)]
     auto = interpret("G21 G90 F100\nM97 P5\nG0 X9. Z9.\nG99 G81 Z-5. R2. L0\nG70 I1. J0. L2\nM30\nN5 M99\n")
     assert (auto.end[auto.kind == 1, 0] * 1e3).round(9).tolist() == [10, 8]
     for line, says in (("G91 G70 I1 J0 L2", "G70 is read in G17 and G90"), ("G70 I1 J0 L0", "for 1 to 10000 holes")):
@@ -241,3 +244,9 @@ def test_a_circle_has_one_hole_to_as_many_as_are_said(monkeypatch: pytest.Monkey
     for count in (0, 7):
         with pytest.raises(GCodeError, match="for 1 to 6 holes"):
             read(f"G99 G81 Z-5 R2 L0\n{line.format(count)}\n")
+
+
+def test_fine_boring_takes_up_what_the_cycle_before_has_said() -> None:
+    """Fanuc: R, Z and P of drilling cycles are modal data; Haas: I and J are the step aside, in place of Q."""
+    assert holes("G82 X5 Z-3 R2 P500\nG76 X10 Q.5\nZ-4\n") == [(5, 0, -3), (10, 0, -3), (10, 0, -4)]
+    assert holes("G76 X5 Z-3 R2 I.5 J0 P500\n") == [(5, 0, -3)]

@@ -22,6 +22,8 @@ RUN = [
     ("WHILE [1 LT 0] DO1\nX5\nEND1\nX9\n", [9]),
     ("#1=0\nWHILE[#1LT2]DO1\n#1=#1+1\n#2=0\nWHILE[#2LT2]DO2\n#2=#2+1\nX[#1*10+#2]\nEND2\nEND1\n", [11, 12, 21, 22]),
     ("#1=0\nDO1\n#1=#1+1\nX#1\nIF[#1GE3]GOTO9\nEND1\nN9 X9\n", [1, 2, 3, 9]),
+    ("#1=0\nWH[#1LT2]DO1\n#1=#1+1\nX#1 (SI[90] GO9)\nEN1\nIF[#1EQ2]GO9\nX5\nN9 X[SQ[81]]\n", [1, 2, 9]),
+    ("IF[1EQ1]TH#2=RO[1.6]+FI[1.6]+CO[60]\nX#2\n", [3.5]),
     ("GOTO 20\nX1\nN20 X2\n", [2]),
     ("#3=20\nGOTO #3\nX1\nN20 X2\nGOTO [#3+10]\nX3\nN30 X4\n", [2, 4]),
     ("#1=3\nIF [#1 EQ 3] THEN #2=7\nIF [#1 EQ 4] THEN #2=8\nX#2\n", [7]),

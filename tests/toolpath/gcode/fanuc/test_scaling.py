@@ -135,7 +135,33 @@ def test_a_scale_may_be_a_millionth_to_a_thousand(said: str, factor: float | Non
 
 def test_home_and_machine_places_are_not_scaled_and_mirrors_add_up() -> None:
     assert ends("G51 X0 Y0 Z0 P2.\nG1 X3.\nG28 X4.\n")[0] == [6, 0, 0]
-    assert ends("G51.1 X0\nG51.1 Y0\nG1 X3. Y4.\nG50.1 X0\nX3. Y4.\n") == [[-3, -4, 0], [3, 4, 0]]
+    assert ends("G51.1 X0\nG51.1 Y0\nG1 X3. Y4.\nG50.1 X0 Y0\nX3. Y4.\n") == [[-3, -4, 0], [3, 4, 0]]
     assert ends("G51 X0 Y0 Z0 P2.\nG91 G1 X3. Y-5. Z.5\n") == [[6, -10, 1]]
     assert ends("G51.1 X0\nG1 X3. Y4. Z5.\n") == [[-3, 4, 5]]
     assert ends("G91 G1 X1.\nG90 G51 P2.\nX2.\n")[-1] == [3, 0, 0]  # about where the tool is
+
+
+def test_each_axis_is_mirrored_and_straight_again_by_itself() -> None:
+    """Fanuc's manual, programmable mirror image: one figure in four quarters, about X50 and Y50."""
+    figure = np.array([[60.0, 60.0, 0.0], [100.0, 60.0, 0.0], [60.0, 100.0, 0.0]])
+    calls = ["", "G51.1 X50.\n", "G51.1 Y50.\n", "G50.1 X0\n", "G50.1 Y0\n"]
+    body = "".join(f"{call}M98 P9000\n" for call in calls)
+    found = ends(f"{body}M30\nO9000\nG0 X60. Y60.\nG1 X100.\nX60. Y100.\nM99\n")
+    for k, (x, y) in enumerate([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)]):
+        about = np.array([50.0, 50.0, 0.0])
+        expected = about + (figure - about) * [x, y, 1]
+        np.testing.assert_allclose(found[3 * k : 3 * k + 3], expected, err_msg=calls[k])
+
+
+def test_haas_ends_the_mirror_images_that_g100_names_and_g50_ends_none() -> None:
+    body = "G101 X0\nG101 Y0\nG1 X3. Y4.\nG100 X0\nX3. Y4.\nG50\nX3. Y5.\nG100\nX3. Y4.\n"
+    assert ends(body) == [[-3, -4, 0], [3, -4, 0], [3, -5, 0], [3, 4, 0]]
+    assert ends("G51 X0 Y0 P2.\nG50.1 X0\nG1 X3. Y4.\n") == [[6, 8, 0]]
+
+
+def test_mirror_images_within_scales_and_scales_within_mirror_images_are_refused() -> None:
+    """Siemens' ISO milling: "do not specify G50.1 or G51.1 during scaling"."""
+    with pytest.raises(GCodeError, match=r"Line 3: G51.1 while coordinates are scaled \(G51\) is not read"):
+        read("G51 X0 Y0 P2.\nG51.1 X0\nG1 X3. Y4.\n")
+    with pytest.raises(GCodeError, match=r"Line 3: G51 while coordinates are mirrored \(G51.1\) is not read"):
+        read("G51.1 X0\nG51 X0 Y0 P2.\nG1 X3. Y4.\n")

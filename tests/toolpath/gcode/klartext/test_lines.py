@@ -236,6 +236,15 @@ def test_places_in_the_machine_are_clear_of_the_part() -> None:
     assert ends("L Z-5 F99\nL M140 MB 30\n")[-1] == [0, 0, 25]
 
 
+def test_a_retract_goes_along_the_tool() -> None:
+    """TNC 640, M140: out of the contour along the tool axis."""
+    lean = "M128\nL X+1 Y+2 Z-5 A+20 B+30 F99\n"
+    a, b = np.radians([20, 30])
+    axis = np.array([np.sin(b), -np.sin(a) * np.cos(b), np.cos(a) * np.cos(b)])
+    program = read(f"{lean}L M140 MB 30\n")
+    np.testing.assert_allclose(program.end[-1] * 1e3, [1, 2, -5] + 30 * axis, atol=1e-6)
+
+
 def test_tool_axes_and_m_words() -> None:
     program = read("M128\nLN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 TX+0 TY-0.5 TZ+0.8660254 F99 M13\n")
     np.testing.assert_allclose(np.degrees(program.rotary[-1]), [30, 0, 0], atol=1e-5)
@@ -368,3 +377,17 @@ def test_a_feed_per_turn_of_a_tool_is_that_times_its_turns(call: str, feed: floa
             read(body)
     else:
         assert read(body).v_f[-1] * 6e4 == pytest.approx(feed)
+
+
+def test_blocks_as_older_controls_print_them() -> None:
+    """TNC 155 and 2500: the second half of a block on a line of its own, and R, F and M with nothing behind them."""
+    pad = " " * 40
+    text = (
+        "0 BEGIN PGM 1 MM\n1 TOOL CALL 1 Z S 1000.000\n"
+        f"2 L Z+50.000\n{pad}R0 F15000 M03\n3 L X+0.000 Y+0.000\n{pad}R F M\n4 L Z-1.000\n{pad}R F100 M08\n"
+        f"5 CC X+10.000 Y+0.000\n6 C X+20.000 Y+0.000\n{pad}DR- R F M\n7 L X+30.000 R F M\n8 STOP M02\n9 END PGM 1 MM\n"
+    )
+    found = interpret(text, dialect="heidenhain")
+    np.testing.assert_allclose(found.end[[0, -3, -2, -1]] * 1e3, [[0, 0, 50], [0, 0, -1], [20, 0, -1], [30, 0, -1]])
+    np.testing.assert_allclose(found.v_f[-3:] * 60e3, 100)
+    assert found.clockwise[-3:].tolist() == [False, True, False]

@@ -26,6 +26,8 @@ def heights(body: str) -> list[tuple[str, float]]:
 
 VALUES = [
     ("R1=5\nG1 X=R1\n", 5),
+    ("R1=2EX1\nG1 X=R1*1.5EX-1\n", 3),
+    ("G1 X=-2EX-1\n", -0.2),
     ("R1=5 R2=-2\nG1 X=R1*(3+R2)-1\n", 4),
     ("N10 R10=2.5\nN20 R11=R10*2\nN30 G1 X=-R11\n", -5),
     ("R1=30\nG1 X=10*SIN(R1)\n", 5),
