@@ -241,3 +241,10 @@ def test_a_circle_has_one_hole_to_as_many_as_are_said(monkeypatch: pytest.Monkey
     for count in (0, 7):
         with pytest.raises(GCodeError, match="for 1 to 6 holes"):
             read(f"G99 G81 Z-5 R2 L0\n{line.format(count)}\n")
+
+
+def test_every_hole_that_is_left_by_hand_is_said_also_where_its_dwell_is_that_of_the_cycle_before() -> None:
+    """What one cycle says holds for the next until G80: the second G88 and the one behind G82 say no P."""
+    for first, said in (("G88", (3, 2)), ("G82", (4, 1))):
+        findings = read(f"{first} X1 Z-1 R1 P500\nG88 X2\n").findings
+        assert [(each.line, each.count) for each in findings if each.code == "manual-retract"] == [said]
