@@ -128,6 +128,7 @@ def test_corners_are_rounded_and_chamfered() -> None:
         ("G1 X9 FB=R1*2\n", "Line 2: FB= is the feed of its block alone"),
         ("G2 X20 Y0 I1=10 J1=10\n", "Line 2: I1= is a point on the arc of CIP"),
         ("G1 X9 RNDM=-.5\n", "Line 2: RNDM=-0.5 is below 0"),
+        ("G1 X9 RND=2 FRC=-5\n", "Line 2: FRC=-5 is below 0"),
         ("CYCLE83(50,0,2,-10)\n", "Line 2: CYCLE83 needs FDEP or FDPR"),
         ("CYCLE81(50,0,2,-10,,0,1)\n", "Line 2: CYCLE81 counts its depth by the diameter"),
         ("POCKET3(50,0)\n", "POCKET3"),
