@@ -82,7 +82,7 @@ def test_a_path_has_a_start_and_an_end(points) -> None:
 @pytest.mark.parametrize(("size", "read"), [(0.09, False), (0.11, True)])
 def test_a_path_in_mm_is_not_as_small_as_a_tenth_wherever_it_lies(away: float, size: float, read: bool) -> None:
     """Its size is that of its extents, be they about zero or far from it."""
-    points = away + size * np.array([[0, 0, 0], [1, 0.5, 0], [1, 1, 1]])
+    points = np.array([away, 0, -away]) + size * np.array([[0, 0, 0], [1, 0.5, 0], [1, 1, 1]])
     given = {"feed_mm_min": 600, "spindle_1_min": 9000}
     if read:
         assert len(rm.Toolpath.from_points(p_mm=points, **given)) == 3
