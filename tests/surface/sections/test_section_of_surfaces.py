@@ -155,6 +155,16 @@ def test_a_slope_finished_by_rows_of_a_ball_has_its_slope_and_its_normal_error(t
     assert found.error_rms == pytest.approx(abs(truth), abs=4e-6)
 
 
+@pytest.mark.parametrize("aside", [-0.8e-3, 0.0, 0.8e-3])
+def test_the_slope_is_that_of_the_told_surface_where_the_tool_was_told_to_be(aside):
+    """Tips on a hollow of 30 mm radius, balls of 4 mm: they leave one of 34 mm, at Y6 as steep as asin(6 / 34)."""
+    rows = [(-50.0, y, z, 50.0, y, z) for y in np.arange(-13.5, 13.51, 0.3) for z in [-np.sqrt(30.0**2 - y * y)]]
+    number = int(np.argmin([abs(row[1] - 6.0) for row in rows]))
+    stock = Stock((-0.06, -0.03, -0.04), (0.06, 0.03, 0.0))
+    found = section(rows, BALL, number=number, moved=np.array([0.0, aside, -0.02e-3]), stock=stock)
+    assert found.slope == pytest.approx(np.arcsin(6.0 / 34.0), abs=2e-3)
+
+
 def test_a_slope_along_the_feed_counts_as_slope():
     """A ball goes up a ramp of 20 degrees in rows: the error along the normal is that across, by its cosine."""
     rise = 20.0 * np.tan(np.radians(20.0))
