@@ -300,3 +300,8 @@ def test_what_was_read_is_given_back_at_once(dialect: str, text: str, slip: str)
         assert min(left() for _ in range(5)) == 0
     finally:
         gc.enable()
+
+
+@pytest.mark.parametrize("text", ["G21\nG0 X1\nM2\n", "G21\nG0 X1\nM2", "\nG21\n\nG0 X1\n\n", "G0 X1"])
+def test_a_program_has_as_many_lines_as_it_has_ends_of_lines_or_one_more(text: str) -> None:
+    assert interpret(text).lines == len(text.splitlines())
