@@ -52,10 +52,15 @@ def test_the_slip_is_named(field, change, kind, says):
     assert identification_report(result)["outlier_slips"][0]["slips"][0]["kind"] == kind
 
 
-def test_forces_of_two_rows_that_changed_places_are_named():
-    result = rm.identify(ROBOT, spoilt((11, "F", lambda F: MADE.F[12]), (12, "F", lambda F: MADE.F[11])))
+@pytest.mark.parametrize("k", [0, 11, 38])
+def test_forces_of_two_rows_that_changed_places_are_named(k):
+    """In the middle of the file, at its head and at its end."""
+    result = rm.identify(ROBOT, spoilt((k, "F", lambda F: MADE.F[k + 1]), (k + 1, "F", lambda F: MADE.F[k])))
     found = {o.row: [slip.says for slip in o.slips] for o in result.outliers}
-    assert found == {13: ["the force of row 14 belongs here"], 14: ["the force of row 13 belongs here"]}
+    assert found == {
+        k + 2: [f"the force of row {k + 3} belongs here"],
+        k + 3: [f"the force of row {k + 2} belongs here"],
+    }
 
 
 def test_what_no_slip_explains_is_said_without_one():

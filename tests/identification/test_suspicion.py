@@ -9,7 +9,7 @@ import pytest
 
 import robomill as rm
 from robomill.identification.load_test import JointTests, LoadTests
-from robomill.identification.suspicion import suspicions
+from robomill.identification.suspicion import FACTOR, _off, suspicions
 from robomill.identification.synthesis import three_directions
 from tests.identification.synthetic import simulated_tests
 
@@ -239,3 +239,10 @@ def test_components_that_were_not_read_are_named():
         read[:, axes] = 0.0
         (text,) = (each.message for each in suspicions(moved(SOUND, read), ROBOT) if each.code == "unread")
         assert text.split(" is zero")[0] == " and ".join(f"d{'xyz'[axis]}" for axis in axes)
+
+
+def test_a_compliance_at_the_limit_is_off_to_its_own_side():
+    """As many times larger or smaller as is allowed at most is told as such, a hair less is not."""
+    for times, word in ((FACTOR, "larger"), (1.0 / FACTOR, "smaller")):
+        assert f"{FACTOR:g} times {word} than" in _off(times, 1.0, PLAUSIBLE)
+        assert _off(times ** (1 - 1e-9), 1.0, PLAUSIBLE) is None

@@ -93,3 +93,13 @@ def test_waits_of_a_location_file_are_written_once_however_many_pieces_a_move_be
     waits = program.dwell > 0.0
     assert program.dwell[waits].tolist() == [3.0, 2.0, 0.5]
     np.testing.assert_allclose(program.start[waits][1:, 0], [0.0, 20e-3], atol=1e-6)
+
+
+def test_a_tip_that_stands_while_its_number_changes_has_not_moved() -> None:
+    """Under the length of another tool, 10 mm more than its own, Z5 is where the tip stood at Z15."""
+    table = rm.ToolTable(tuple(rm.TableTool(n, SLOT.cutter, length=(10 + 10 * n) * 1e-3) for n in (1, 2)))
+    start = "G21 G90\nT1 M6\nS12000 M3\nG0 X-50 Y0 Z15\nG43 H2\nG0 Z5\nG43 H1\nG0 Z3\n"
+    text = f"{start}G1 Z-2 F500\nX40\nG0 Z20\nM2\n"
+    back = writing(SLOT.replace(tools=table, source=rm.GCodeSource(text, "x.nc")), toolpath_to_gcode)
+    found = back.write(np.zeros_like(back.moves.wanted.p), 2e-6).text
+    assert "".join(line for line in found.splitlines(keepends=True) if "robomill" not in line) == text

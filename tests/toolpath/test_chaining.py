@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import random
-from itertools import pairwise
+from dataclasses import replace
+from itertools import pairwise, permutations
 
 import numpy as np
 import pytest
@@ -48,6 +49,23 @@ def test_where_three_lines_meet_none_are_joined() -> None:
     assert [each.shape for each in found] == ["line"] * 4
     for each, drawn in zip(found, lines, strict=True):
         np.testing.assert_array_equal(each.points, drawn.points)
+
+
+@pytest.mark.parametrize("order", list(permutations(range(4))))
+def test_lines_are_joined_up_to_where_three_meet_in_whatever_order_they_were_drawn(order: tuple[int, ...]) -> None:
+    lines = [line((0, 0), (10, 5)), line((20, 0), (10, 5)), line((20, 0), (30, 5)), line((20, -9), (20, 0))]
+    for turned in range(2):
+        drawn = [replace(lines[k], points=lines[k].points[:: -1 if turned else 1]) for k in order]
+        ends = {frozenset(map(tuple, (each.points[[0, -1]] * 1e3).round(6).tolist())) for each in joined(drawn)[0]}
+        assert ends == {frozenset([(20, 0), end]) for end in ((0, 0), (30, 5), (20, -9))}
+
+
+@pytest.mark.parametrize("first", range(4))
+def test_a_ring_of_lines_begins_where_the_first_one_drawn_does(first: int) -> None:
+    corners = [(0, 0), (10, 0), (12, 9), (0, 10)]
+    lines = [line(corners[k - 4], corners[k - 3]) for k in range(4)]
+    (ring,), _, _ = joined(lines[first:] + lines[:first])
+    np.testing.assert_allclose(ring.points * 1e3, corners[first:] + corners[:first])
 
 
 def test_what_is_drawn_twice_or_has_no_length_is_left_out_and_counted() -> None:

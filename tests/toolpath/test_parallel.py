@@ -182,3 +182,13 @@ def test_what_cannot_be_is_refused_with_its_place(line, side, radius, said):
     with pytest.raises(ToolpathError) as refused:
         beside_line(line, side, radius)
     assert said in str(refused.value)
+
+
+@pytest.mark.parametrize("away", [1e-3, 2e-3, 9e-3])
+def test_round_a_corner_no_chord_is_off_by_more_than_is_allowed_and_one_fewer_would_be(away):
+    """A quarter turn in n chords, each off by r (1 - cos(pi / 4 n)) in its middle."""
+    (found,) = beside_line(contour("polyline", [(0, 0), (20, 0), (20, 20)]), "right", away)
+    spokes = found.outline() - [20e-3, 0.0]
+    middles = np.linalg.norm(spokes[1:] + spokes[:-1], axis=1) / 2
+    off = away - middles[middles < away]
+    assert off.max() <= CHORD_ERROR < away * (1 - math.cos(math.pi / 4 / (len(off) - 1)))

@@ -76,3 +76,16 @@ def test_what_is_no_path_is_refused(given, words: str) -> None:
 def test_a_path_has_a_start_and_an_end(points) -> None:
     with pytest.raises(ToolpathError, match="^Points: found (1 point|0 points), expected two at least"):
         rm.Toolpath.from_points(p_mm=points, feed_mm_min=600)
+
+
+@pytest.mark.parametrize("away", [0.0, 400.0])
+@pytest.mark.parametrize(("size", "read"), [(0.09, False), (0.11, True)])
+def test_a_path_in_mm_is_not_as_small_as_a_tenth_wherever_it_lies(away: float, size: float, read: bool) -> None:
+    """Its size is that of its extents, be they about zero or far from it."""
+    points = np.array([away, 0, -away]) + size * np.array([[0, 0, 0], [1, 0.5, 0], [1, 1, 1]])
+    given = {"feed_mm_min": 600, "spindle_1_min": 9000}
+    if read:
+        assert len(rm.Toolpath.from_points(p_mm=points, **given)) == 3
+    else:
+        with pytest.raises(ToolpathError, match=r"Points: the whole path lies within 0\.09 mm: p_mm is in mm"):
+            rm.Toolpath.from_points(p_mm=points, **given)

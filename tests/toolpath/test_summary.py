@@ -36,6 +36,15 @@ def test_spindle_speeds_are_those_of_cuts_where_they_are_known() -> None:
     assert summary_of(replace(path, n_s=0.0 * path.n_s)).spindles is None
 
 
+def test_the_tools_of_a_path_are_named_once_and_its_corners_are_those_of_its_cuts() -> None:
+    """Tool 3 only travels; before the first change there is none."""
+    text = "G21 G90\nS99 M3\nG0 X-50 Z5\nT9 M6\nG1 X1 Y2 Z-1 F6\nT1 M6\nG1 X4 Y-3\nT9 M6\nX5\nT3 M6\nG0 Z90\nM2\n"
+    summary = summary_of(GCodeSource(text).read())
+    assert summary.tools == (1, 3, 9)
+    np.testing.assert_allclose(summary.low * 1e3, [-50, -3, -1], atol=1e-9)
+    np.testing.assert_allclose(summary.high * 1e3, [5, 2, 5], atol=1e-9)
+
+
 def test_distinct_values_by_counting_are_those_by_sorting() -> None:
     rng = np.random.default_rng(0)
     for values in (

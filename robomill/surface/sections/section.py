@@ -93,12 +93,12 @@ class Seen:
             w = self.at[0] + across[(self.at[0] + across > self.told.low) & (self.at[0] + across < self.told.high)]
             z = self.told.height(w)
             cut = z < self.told.skin(w) - ONE_HEIGHT
-            if not self._straight(w[cut] - self.at[0], z[cut] - told):
+            if not self._straight(w[cut], z[cut]):
                 return Found(why=STEPPED_FLOOR)
         return Found(left - told)
 
     def _straight(self, across: FloatArray, z: FloatArray) -> bool:
-        """Whether heights z (q,) m over a floor's middle are those of a flat that leans as the tool does."""
+        """Whether heights z (q,) m of a floor, from anywhere, are those of a flat that leans as the tool does."""
         lean = -self.leans / np.sqrt(1.0 - self.leans**2)
         heel = HEEL * min(abs(self.heel), MOST_HEEL) * self.cutter.radius
         return bool(np.ptp(z - lean * across) <= STEP + heel)

@@ -85,7 +85,7 @@ def _row(machine: Machine, block: Block, start: list[float], end: list[float]) -
 def _block(machine: Machine, row: Move, block: Block) -> Block:
     """A cut in words: what its block says beside its form, and its centre."""
     if row.kind != ARC:
-        return block if block.motion == LINE else Block(block.line, motion=LINE)
+        return block
     start = [0.0] * 3 if machine.arc_absolute else row.start
     words = {letter: value for letter, value in block.words.items() if letter not in "ijkr"}
     for axis in machine.compensation.axes[:2]:

@@ -42,12 +42,8 @@ class Lines(Sequence[str]):
 
         A % on the first line that holds anything begins it. Headers of an archive (``%_N_NAME_SPF``) end nothing.
         """
-        begun = False
-        for found in _PERCENT.finditer(self.data):
-            if begun or self.data[: found.start()].strip():
-                return self.index_at(found.start())
-            begun = True
-        return None
+        places = (found.start() for found in _PERCENT.finditer(self.data))
+        return next((self.index_at(place) for place in places if self.data[:place].strip()), None)
 
     @cached_property
     def longest(self) -> int:

@@ -44,6 +44,23 @@ def test_rows_are_lever_by_lever():
     assert system.given is None
 
 
+def test_a_gauge_reads_what_moves_along_it_and_turns_are_read_beside_it():
+    """Rows g . J_v,ci (J_v^T F)_i for three gauges a test, each along its own way, and J_w,ci for the turns."""
+    theta, F = three_directions(THETA, 200.0)
+    along = RNG.normal(size=(18, 3, 3))
+    along /= np.linalg.norm(along, axis=2, keepdims=True)
+    moved = RNG.normal(size=(18, 6)) * 1e-3
+    moved[2, 1] = moved[5, 0] = moved[9, 4] = np.nan
+    for freed in ((), ("force",)):
+        system = build_system(ROBOT, LoadTests(F, moved, theta=theta, gauges=along), Model(), freed)
+        rows = []
+        for k, c in np.argwhere(np.isfinite(moved)):
+            J = rm.geometric_jacobian(ROBOT, theta[k])
+            rows.append((along[k, c] @ J[:3] if c < 3 else J[c]) * (J[:3].T @ F[k]))
+        np.testing.assert_allclose(system.A, rows, rtol=1e-12, atol=1e-18)
+        np.testing.assert_array_equal(system.b, moved[np.isfinite(moved)])
+
+
 def test_weights_noise_and_choices_are_those_of_weighted_least_squares():
     theta, F = three_directions(THETA, 200.0)
     sigma = RNG.uniform(1e-6, 9e-6, 18)

@@ -315,3 +315,14 @@ def test_the_cost_of_a_shift_is_the_squared_residual_there():
     right, norm = nnls(T[:, 0] + np.einsum("ekp,k->ep", T[:, 1:], shift), b)
     np.testing.assert_allclose(x, right, atol=1e-9)
     assert cost == pytest.approx(norm**2, rel=1e-9)
+
+
+@pytest.mark.parametrize(("eps", "rest", "near", "far"), [(0.02, 0.0, 5.0, 5.3), (1e-5, 300.0, 0.09, 0.11)])
+def test_the_way_to_a_point_ends_five_metres_away_and_where_it_gains_nothing(eps, rest, near, far):
+    """Two equations eps x = 0 and (0.1 + s) x = 1 are the better solved the larger s is, for ever, in steps of at most
+    0.3 m: by much where no more is read, by less than 1e-12 of it where ``rest`` is read besides."""
+    terms = np.array([[eps, 0, 0, 0], [0.1, 1, 0, 0], [0, 0, 0, 0]])
+    whole = np.column_stack([terms, [0.0, 1.0, rest]])
+    cost, shift, x = Normal(whole.T @ whole, np.ones(1, dtype=bool), ("force",)).descend(np.zeros(3))
+    assert near < shift[0] <= far
+    assert cost == pytest.approx(rest**2 + (eps * x[0]) ** 2 + ((0.1 + shift[0]) * x[0] - 1) ** 2, rel=1e-9, abs=1e-9)

@@ -172,6 +172,24 @@ def test_circles_are_walked_wherever_one_of_them_dips_below_the_top_of_the_stock
     assert min(seen.values()) > 20
 
 
+@pytest.mark.parametrize("leans", [0.0, 20.0])
+def test_the_circles_that_are_walked_lie_on_the_cutter_up_to_the_height_that_cuts(leans: float) -> None:
+    """A ball's on its sphere and above it on the flank, a flat mill's on its flank and its end, both to 5 mm."""
+    k = axis(A=leans)
+    for cutter in (BALL, FLAT):
+        R = cutter.radius
+        world, step, _ = looking(k, np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, -0.5 * R]))
+        stretches = np.array([stretch_ends(cutter.solid, stretch, 5 * MM) for stretch in range(3)])
+        walk = walk_on(world, cutter.solid, step, stretches, np.zeros((12, COLUMNS)))
+        assert walk.used > (2 if leans else 0)
+        for r, t in walk.circles[: walk.used, [RADIUS, HEIGHT]]:
+            assert 0.0 <= t <= 5 * MM
+            if cutter is BALL:
+                assert math.hypot(r, min(t - R, 0.0)) == pytest.approx(R)
+            else:
+                assert r == pytest.approx(R) or (t == 0.0 and 0.0 <= r < R)
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_where_no_side_passes_a_change_is_looked_for_from_cell_to_cell(seed: int) -> None:
     """Single columns that stand higher, somewhere under a circle: met at the first of the places a pitch apart."""

@@ -157,3 +157,11 @@ def test_a_place_in_the_machine_said_in_incremental_mode_is_one_where_linuxcnc_i
     for refused, dialect in ((text, "linuxcnc"), (f"G10 L2 P1 X5\n{text}", "auto")):
         with pytest.raises(GCodeError, match="G53 needs absolute coordinates; use G90 first"):
             interpret(refused, dialect=dialect)
+
+
+def test_the_direction_of_a_tool_is_a_direction_in_g91_too() -> None:
+    places = "G21 G90 G0 X0 Z5 I0 J0 K1\nG1 X5 I0.6 J0 K0.8 F100\nX9 I0 J-0.8 K0.6\nM30\n"
+    steps = "G21 G90 G0 X0 Z5 I0 J0 K1\nG91 G1 X5 I0.6 J0 K0.8 F100\nX4 I0 J-0.8 K0.6\nM30\n"
+    one, other = read_gcode(places), read_gcode(steps)
+    np.testing.assert_allclose(other.p, one.p, atol=1e-12)
+    np.testing.assert_allclose(other.k, one.k, atol=1e-12)

@@ -8,7 +8,6 @@ import pytest
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import Tool, interpret
 from robomill.toolpath.gcode.dialects import LONGEST, NAMES, choose_dialect
-from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.words import Block
 
 TOLD = [
@@ -133,20 +132,6 @@ def test_subprograms_that_cannot_be_are_refused() -> None:
     for call, says in (("P1.5", "M98 has P1.5"), ("P-2", "M98 has P-2"), ("P7 L1000001", "at most 1000000")):
         with pytest.raises(GCodeError, match=says):
             interpret(f"G21\nM98 {call}\nM2\nO7\nG0 X1\nM99\n", dialect="fanuc")
-
-
-@pytest.mark.parametrize("data", [b"", b"\n", b"G0", b"G0\n", b"a\nbb\n\nc\xff\n", b"\n\nlast"])
-def test_lines_are_those_of_the_bytes(data: bytes) -> None:
-    lines, expected = Lines(data), data.decode("utf-8", "replace").split("\n")
-    assert len(lines) == len(expected)
-    assert list(lines) == expected
-    assert lines[-1] == expected[-1]
-    assert lines[1:] == expected[1:]
-    assert lines[::-2] == expected[::-2]
-    for outside in (len(expected), -len(expected) - 1):
-        with pytest.raises(IndexError):
-            lines[outside]
-    assert list(lines.plain_text.starts) == lines.starts.tolist()
 
 
 @pytest.mark.parametrize("dialect", NAMES)

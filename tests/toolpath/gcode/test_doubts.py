@@ -105,6 +105,13 @@ def test_numbers_without_a_point_are_said_of_a_fanuc_program(text: str, code: st
     assert found == ([(code, level)] if code else [])
 
 
+@pytest.mark.parametrize(("unit", "read"), [("G21", "reads 50 as 0.05 mm"), ("G20", "reads 50 as 0.005 inches")])
+def test_the_least_step_of_a_control_is_a_micrometre_or_a_tenth_of_a_thou(unit: str, read: str) -> None:
+    """Fanuc's conventional input in increment system IS-B: 0.001 mm and 0.0001 inch."""
+    findings = interpret(f"{unit} G90\nG1 X50 Y20 F9\nM30\n", dialect="fanuc").findings
+    assert [read in each.message for each in findings if each.code == "no-points"] == [True]
+
+
 def codes(text: str, dialect: str = "auto") -> list[str]:
     return [each.code for each in interpret(text, dialect=dialect).findings]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import product
 
 import pytest
@@ -77,3 +78,11 @@ def test_m72_ends_and_renews_the_shift_of_g92() -> None:
     """As rs274 moves: M72 does G92.2 where G92 came behind M70, and G92.3 where G92.2 did."""
     program = interpret("G21 G90\nG0 X1\nM70\nG92 X11\nM72\nG0 X5\nG92.3\nM70\nG92.2\nG0 X6\nM72\nG0 X6\nM2\n")
     assert (program.end[:, 0] * 1e3).round(9).tolist() == [1, 5, 6, -4]
+
+
+def test_where_a_probe_ended_is_kept_in_the_program_s_units() -> None:
+    """LinuxCNC: #5061 to #5066 are X to C of the last probe, in the coordinates in force; #5070 is 1 where it hit."""
+    probe = "G20 G90\nG10 L2 P1 X1 Y2 Z3\nG0 X4 Y5 Z6 A7 B8 C9\nG38.2 Z5.5 F10\nG0 X9 Y9 Z9 A0 B0 C0\n"
+    program = interpret(f"{probe}G0 X#5061 Y#5062 Z#5063 A#5064 B#5065 C[#5066 + #5070]\nM2\n")
+    assert program.end[-1].tolist() == pytest.approx([0.0254 * v for v in (4 + 1, 5 + 2, 5.5 + 3)])
+    assert program.rotary[-1].tolist() == pytest.approx([math.radians(v) for v in (7, 8, 9)])

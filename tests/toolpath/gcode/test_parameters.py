@@ -80,6 +80,9 @@ def test_numbers_run_from_one_to_the_last() -> None:
     for key in (0, -1, COUNT):
         with pytest.raises(GCodeError, match="does not exist"):
             store.set(key, 1.0)
+        with pytest.raises(GCodeError, match="does not exist"):
+            Reader(f"#{key}", 1, store).value()
+    assert Reader(f"#{COUNT - 1}", 1, store).value() == (COUNT - 1) / 2
     store.put(7, [1.0, 2.0, 3.0])
     assert store.values(6, 5) == [0.0, 1.0, 2.0, 3.0, 0.0]
 

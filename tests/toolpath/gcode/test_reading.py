@@ -305,3 +305,8 @@ def test_what_was_read_is_given_back_at_once(dialect: str, text: str, slip: str)
 def test_what_is_no_tool_of_a_table_is_told() -> None:
     with pytest.raises(ArgumentError, match=r"Tool 3: found a float, expected a tool of a table, as in rm.ToolTable"):
         read_gcode(PROGRAM, tools={3: 8.0})  # type: ignore[dict-item]
+
+
+@pytest.mark.parametrize("text", ["G21\nG0 X1\nM2\n", "G21\nG0 X1\nM2", "\nG21\n\nG0 X1\n\n", "G0 X1"])
+def test_a_program_has_as_many_lines_as_it_has_ends_of_lines_or_one_more(text: str) -> None:
+    assert interpret(text).lines == len(text.splitlines())

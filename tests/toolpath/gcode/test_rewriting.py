@@ -47,6 +47,10 @@ UNROLLED = {
         "auto",
         "G21 G90\nG0 X0 Y0 Z10\nG98 G83 X10 Y10 Z-6 R2 Q2 F100\nX20\nG82 X30 Z-3 R1 P0.5\nG80\nM2\n",
     ),
+    "a cycle fed by the turn": (
+        "auto",
+        "G21 G90 S500 M3\nG0 X0 Y0 Z10\nG95 G98 G81 X10 Y10 Z-6 R2 F.2\nX20\nG80\nM2\n",
+    ),
     "corners": (
         "fanuc",
         "O1000\nG21 G90\nG0 X0. Y0. Z5.\nG1 Z-2. F500.\nG1 X20.,R3.\nG1 Y20.,C2.\nX0.\nG0 Z20.\nM30\n",
@@ -141,6 +145,8 @@ def test_what_is_no_plain_move_is_written_out_and_goes_where_it_went(name: str) 
         again = interpret(found.text.encode(), dialect=dialect, tools=TOOLS)
         np.testing.assert_allclose(cuts(again), cuts(program) + shift, atol=0.3e-6)
         np.testing.assert_allclose(again.dwell_time, program.dwell_time)
+        feeds, expected = (each.v_f[each.at_feed & (each.length > 1e-9)] for each in (again, program))
+        np.testing.assert_allclose(feeds, expected, rtol=1e-5)
         assert found.unrolled
 
 

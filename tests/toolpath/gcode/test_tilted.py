@@ -342,3 +342,11 @@ def test_what_the_axes_need_for_a_plane_is_the_controls_secret_until_it_ends(num
     np.testing.assert_allclose(back.end[-1] * 1e3, [0, 5, 50], atol=1e-9)
     with pytest.raises(GCodeError, match=f"Q{number} is read before the program sets it"):
         interpret(f"{KLARTEXT}Q{number} = 7\n{plane}{place}END PGM A MM\n")
+
+
+@pytest.mark.parametrize("away", ["G53 Z0", "G91 G28 Z0", "G91 G30 Z0"])
+def test_behind_a_plane_ways_to_places_of_the_machine_are_no_cuts(away: str) -> None:
+    """Also where G1 is in force: the tool still leans, and leads clear of the part."""
+    body = f"G68.2 I0 J30. K0\nG53.1\nG0 X5. Y6. Z9.\nG1 Z0 F9.\nG69\n{away}\nG90 G0 A0 X0 Y0 Z50.\nG1 X7.\n"
+    path = read_gcode(f"{FANUC}{body}M30\n%\n", dialect="fanuc")
+    np.testing.assert_allclose(path.p[-1] * 1e3, [7, 0, 50], atol=1e-9)

@@ -75,7 +75,7 @@ def old_hole(number: int, said: dict[str, float], top: float, mm: float, line: i
     dwell, feed, bottom = max(said.get("DWELL", 0.0), 0.0), said["F"], surface - depth
     if number == 2:
         return Hole(top, top, bottom, dwell, feed, feed, (), 0.0, taps=True)
-    step, stop = abs(said["PECKG"]), 0.6 * mm if depth <= 30.0 * mm else min(depth / 50.0, 7.0 * mm)
+    step, stop = abs(said["PECKG"]), min(max(depth / 50.0, 0.6 * mm), 7.0 * mm)
     count = math.ceil(depth / step - 1e-9) - 1 if step > 0.0 else 0
     if count > MAX_PECKS:
         raise GCodeError.at(line, f"CYCL DEF 1 needs more than {MAX_PECKS} pecks; give a larger PECKG.")

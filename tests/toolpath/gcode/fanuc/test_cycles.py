@@ -250,3 +250,10 @@ def test_fine_boring_takes_up_what_the_cycle_before_has_said() -> None:
     """Fanuc: R, Z and P of drilling cycles are modal data; Haas: I and J are the step aside, in place of Q."""
     assert holes("G82 X5 Z-3 R2 P500\nG76 X10 Q.5\nZ-4\n") == [(5, 0, -3), (10, 0, -3), (10, 0, -4)]
     assert holes("G76 X5 Z-3 R2 I.5 J0 P500\n") == [(5, 0, -3)]
+
+
+def test_every_hole_that_is_left_by_hand_is_said_also_where_its_dwell_is_that_of_the_cycle_before() -> None:
+    """What one cycle says holds for the next until G80: the second G88 and the one behind G82 say no P."""
+    for first, said in (("G88", (3, 2)), ("G82", (4, 1))):
+        findings = read(f"{first} X1 Z-1 R1 P500\nG88 X2\n").findings
+        assert [(each.line, each.count) for each in findings if each.code == "manual-retract"] == [said]

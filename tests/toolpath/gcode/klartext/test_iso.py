@@ -108,6 +108,7 @@ def test_inches_feeds_and_rapids() -> None:
         "G18 X+5",
         "G01 X+5 X+6",
         "G02 X+5 Y+5 R+5 I+1",
+        "G00 G01 X+5",
         "G01 X+5 R+5",
         "G01 X+5 H+5",
         "G11 R+5 H+5 F9",

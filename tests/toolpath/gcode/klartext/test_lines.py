@@ -391,3 +391,10 @@ def test_blocks_as_older_controls_print_them() -> None:
     np.testing.assert_allclose(found.end[[0, -3, -2, -1]] * 1e3, [[0, 0, 50], [0, 0, -1], [20, 0, -1], [30, 0, -1]])
     np.testing.assert_allclose(found.v_f[-3:] * 60e3, 100)
     assert found.clockwise[-3:].tolist() == [False, True, False]
+
+
+def test_a_straight_line_behind_an_arc_of_another_plane_is_followed_beside_in_the_plane_xy() -> None:
+    """A quarter turn about Y, then along +X with the tool of 4 mm radius on the left: 4 more in Y."""
+    body = "CC X+0 Z+5\nC X+5 Z+5 DR- F99\nL X+20 Y+0 RL F99\nL X+40\nL Y-20 R0\n"
+    program = read(body, tools={1: Tool(1, diameter=8e-3)})
+    np.testing.assert_allclose(program.end[-3:] * 1e3, [[20, 4, 5], [40, 4, 5], [40, -20, 5]], atol=1e-9)

@@ -93,6 +93,7 @@ IN_203 = f"CYCL DEF 203 {HOLE} Q202=6 Q210=0 Q212=1 Q205=4 Q208=500"
     [
         # Infeeds of 6, 5, then 4 mm; up by Q256 twice (Q213), the third time out of the hole and back to Q200 above.
         (f"{IN_203} Q213=2 Q256=0.5", [2, -6, -5.5, -11, -10.5, -15, 2, -13, -19, -18.5, -20, 2, 10], 500),
+        (f"{IN_203} Q213=1 Q256=0.5", [2, -6, -5.5, -11, 2, -9, -15, -14.5, -19, 2, -17, -20, 2, 10], 500),
         (f"{IN_203} Q213=0 Q256=0.5", [2, -6, 2, -4, -11, 2, -9, -15, 2, -13, -19, 2, -17, -20, 2, 10], 500),
         # Every 3 mm (Q257) of each infeed of 8 mm up by Q256; back to Q258 above the first depth, Q259 above the last.
         (

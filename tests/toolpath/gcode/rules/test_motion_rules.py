@@ -243,3 +243,26 @@ def test_what_is_allowed_is_a_share_of_the_larger_radius() -> None:
         for off, expected in ((1e-4, False), (-5e-4, True)):  # nearer to one another, farther apart
             a, b = (start, end + off) if start > end else (start + off, end)
             assert refused(f"G21 F60\nG3 X{a:.9f} Y{b:.9f} I{a:.9f} J0") == expected
+
+
+@pytest.mark.parametrize("plane", PERMUTED)
+@pytest.mark.parametrize(("said", "centre"), [("X6", (3, 0)), ("Y8", (0, 4)), ("X6 Y8", (3, 4)), ("Z1", None)])
+def test_half_a_turn_by_its_radius_says_either_place_of_its_plane_or_both(
+    plane: int, said: str, centre: tuple[float, float] | None
+) -> None:
+    """From 0 the centre of half a turn is half-way to its end; without any place in the plane there is none."""
+    radius = math.hypot(*(centre or (1.0, 0.0)))
+    text = f"G21 F100 G{plane}\nG0 X0 Y0 Z0\nG2 {in_letters(said, PERMUTED[plane])} R{radius}"
+    if centre is None:
+        with pytest.raises(GCodeError, match="Line 3"):
+            ends(text)
+        return
+    first, second = (("XYZ").index(letter) for letter in PERMUTED[plane][:2])
+    np.testing.assert_allclose(ends(text).centre[-1][[first, second]] * 1e3, centre, atol=1e-6)
+
+
+def test_dwells_are_counted_and_added_up() -> None:
+    """Two of their own, and one at the bottom of each of three holes."""
+    program = ends("G21 F100\nG4 P1\nG4 P2.5\nG82 X1 Z-1 R1 P0.25\nX2\nX3")
+    assert program.dwells == 5
+    assert program.dwell_time == pytest.approx(1 + 2.5 + 3 * 0.25)
