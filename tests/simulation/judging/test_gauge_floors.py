@@ -155,3 +155,14 @@ def test_a_ball_along_the_edge_is_off_normal_to_what_it_leaves(y, push):
 def test_a_floor_is_looked_for_as_far_to_both_sides_within_what_is_cut_flat():
     assert sorted(ACROSS) == sorted(-share for share in ACROSS)
     assert max(map(abs, (*ACROSS, RIM))) < 1.0
+
+
+@pytest.mark.parametrize("left", [0.02e-3, -0.1e-3, 0.15e-3])
+def test_a_tool_that_has_gone_aside_by_a_part_of_its_radius_has_its_floor_where_it_still_cuts(left):
+    """0.4 mm wide, from a slot along X: nothing is read beside what it was told to cut and did."""
+    made = pushed(run("G0 X-31 Y0 Z5", "G0 Z-0.2", "G1 X-26 F600", cutter=Cutter("flat", 0.4e-3)), left=left)
+    floors = made.gauge.floors
+    beside = np.abs(floors.place[:, 1])
+    assert beside.max() <= 0.2e-3 - abs(left)
+    assert (beside.max() > 0.1e-3) == (abs(left) < 0.1e-3)
+    np.testing.assert_allclose(floors.error, 0.0, atol=1e-9)
