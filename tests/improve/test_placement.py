@@ -270,6 +270,15 @@ def test_a_coupled_run_is_compared_coupled() -> None:
     assert "places-coupled" in {each.code for each in found.findings}
 
 
+@pytest.mark.parametrize(
+    "lines", ["G0 X-50 Y0 Z-2\nG1 X50 F1800\nX3000\n", "G0 X3000 Y0 Z-2\nG1 X50 F1800\n"], ids=["end", "begin"]
+)
+def test_a_path_of_which_one_end_is_out_of_reach_is_not_reached(lines: str) -> None:
+    setup = slot(source=rm.GCodeSource(f"G21 G90 S12000 M3\n{lines}"), step_mm=3000)
+    with pytest.raises(SetupError, match=r"of 12 places tried 12 not reached\. Nearest .* beyond reach"):
+        place(setup, x_mm=(-100, 100), y_mm=(-1400, -1250), candidates=12)
+
+
 def test_a_placement_is_a_value() -> None:
     box = {"x_mm": (-100, 100), "y_mm": (-1350, -1250), "candidates": 9}
     one, other = place(slot(), **box), place(slot(), **box)
