@@ -8,7 +8,17 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from robomill.simulation.coupling import AROUND, LONGEST, MOST, NARROW, TOLERANCE, _bounds, _by_bracket, settle
+from robomill.simulation.coupling import (
+    AROUND,
+    LONGEST,
+    MOST,
+    NARROW,
+    TOLERANCE,
+    _bounds,
+    _by_bracket,
+    _by_broyden,
+    settle,
+)
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -286,3 +296,19 @@ def test_there_are_no_bounds_where_a_height_is_further_than_a_tool_is_corrected_
     for far, found in ((0.4 * LONGEST, True), (4.0 * LONGEST, False)):
         low, high, _ = _bounds(lambda x, far=far: way * far * UP, np.zeros(3), UP, (-1e-6, 1e-6))
         assert bool(low < high) == found
+
+
+def test_begun_anew_it_goes_half_of_the_way_that_the_force_leads_then_a_third_and_a_quarter():
+    """From the best place so far, where a force that knows no place leads anywhere and nothing closes in."""
+    rng, asked, led = np.random.default_rng(3), [], []
+
+    def bends(x):
+        asked.append(np.array(x))
+        led.append(rng.normal(size=3) * 20e-6)
+        return x + led[-1]
+
+    assert not _by_broyden(bends, np.zeros(3)).agreed
+    for times, begun in enumerate((12, 24, 36), start=1):
+        best = int(np.argmin([np.abs(each).max() for each in led[:begun]]))
+        np.testing.assert_allclose(asked[begun] - asked[best], led[best] / (1 + times), atol=1e-12)
+    assert len(asked) == MOST
