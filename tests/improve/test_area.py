@@ -115,7 +115,9 @@ def test_about_as_many_places_are_looked_at_as_are_asked_for_whichever_ways_are_
 
 @pytest.mark.parametrize("given", [{}, {"keep_out_mm": []}])
 def test_where_nothing_is_kept_out_of_no_place_is_met_not_even_the_robots_foot(given: dict) -> None:
-    assert not area(setup(), given).meets(np.zeros((1, 4))).any()
+    found = area(setup(), given)
+    assert found.keep_out.shape == (0, 2, 3)
+    assert not found.meets(np.zeros((1, 4))).any()
 
 
 def test_a_full_turn_has_no_place_twice() -> None:
