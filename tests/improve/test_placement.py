@@ -220,10 +220,12 @@ def test_what_makes_no_sense_is_refused(given: dict, said: str) -> None:
         place(slot(), **given)
 
 
-def test_a_cut_of_which_nothing_is_judged_is_refused() -> None:
-    above = rm.Toolpath.from_points(p_mm=[[0, 0, 50], [40, 0, 50]], feed_mm_min=600)
+@pytest.mark.parametrize(("measure", "to"), [("verdict", 40), ("tip", 40), ("verdict", 5000)])
+def test_a_cut_of_which_nothing_is_judged_is_refused(measure: Any, to: float) -> None:
+    """However far the tip goes aside there, above the stock, and though it may be out of reach where it is now."""
+    above = rm.Toolpath.from_points(p_mm=[[0, 0, 50], [40, 0, 50], [to, 0, 50]], feed_mm_min=600)
     with pytest.raises(SetupError, match="nothing is judged that places could be compared by"):
-        place(slot(source=above), candidates=4)
+        place(slot(source=above, step_mm=100), measure=measure, candidates=4)
 
 
 def test_a_force_in_the_robots_axes_is_told_where_the_part_may_turn() -> None:

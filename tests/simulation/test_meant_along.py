@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import shapely
 
-from robomill.simulation.meant import LINK, _untold
+from robomill.simulation.meant import LINK, _places, _untold
 
 
 @pytest.mark.parametrize("said", [False, True])
@@ -34,3 +35,24 @@ def test_on_a_leg_whose_ends_are_both_sent_the_same_way_along_it_nobody_knows_ho
         expected[ends[n] + 1 : ends[n + 1]] = (said or alike) and n != 3
     np.testing.assert_array_equal(found, expected)
     assert found.any() or not said
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_samples_belong_where_they_are_along_a_cut_and_the_worst_is_off_it_or_leaves_most_of_it_out(seed: int) -> None:
+    """By the geometry of a line on the plan; what is left out before the first sample, and behind the last, counts."""
+    rng = np.random.default_rng(seed)
+    p = np.column_stack([np.cumsum(rng.uniform(-1.0, 2.0, (9, 2)), axis=0), np.zeros(9)]) * 1e-2
+    line = shapely.LineString(p[:, :2])
+    asked = np.sort(rng.uniform(0.0, line.length, 5)) + rng.normal(size=5) * 2e-3
+    s = [max(asked[: n + 1].max(), 0.0) for n in range(5)]  # none comes before the one ahead of it
+    q = np.array([[*line.interpolate(each).coords[0], 0.0] for each in s])
+    q += rng.normal(size=q.shape) * rng.choice([1e-4, 2e-2])
+    found, worst, at = _places(q, p, np.maximum(asked, 0.0))
+    np.testing.assert_allclose(found[:, :2], [line.interpolate(each).coords[0] for each in s], atol=1e-12)
+    bad = []
+    for n in range(5):
+        out = s[n] - (np.linalg.norm(q[n] - q[n - 1]) + s[n - 1] if n else 0.0)
+        behind = line.length - s[n] if n == 4 else 0.0
+        bad.append(max(float(np.linalg.norm(q[n] - found[n])), out, behind))
+    assert worst == pytest.approx(max(bad), abs=1e-12)
+    assert at == int(np.argmax(bad))
