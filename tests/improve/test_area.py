@@ -183,3 +183,9 @@ def test_a_grid_has_about_as_many_places_as_were_asked_for_however_long_its_box(
     assert 0.5 * candidates <= np.prod([len(each) for each in axes]) <= candidates
     for axis, half in zip(axes, (0.5, 0.5 * high)):
         assert (axis[0], axis[-1]) == pytest.approx((-half, half))
+
+
+@pytest.mark.parametrize("degrees", [(-180, 300), (0, 361), (-350, 350)])
+def test_more_than_a_full_turn_is_one(degrees: tuple[float, float]) -> None:
+    found = area(setup(), {"yaw_deg": degrees})
+    np.testing.assert_allclose(np.degrees([found.lower[3], found.upper[3]]), [degrees[0], degrees[0] + 360.0])

@@ -93,3 +93,12 @@ def test_waits_of_a_location_file_are_written_once_however_many_pieces_a_move_be
     waits = program.dwell > 0.0
     assert program.dwell[waits].tolist() == [3.0, 2.0, 0.5]
     np.testing.assert_allclose(program.start[waits][1:, 0], [0.0, 20e-3], atol=1e-6)
+
+
+@pytest.mark.parametrize("cycle", ["G84 X5 Y0 Z-3 R1 F1000", "G33.1 Z-3 K1"])
+def test_a_thread_is_not_corrected(cycle: str) -> None:
+    """Its feed is that of the spindle; the line is told."""
+    text = f"G21 G90\nS1000 M3\nG0 X5 Y0 Z5\n{cycle}\nG80\nG0 Z5\nM2\n"
+    back = writing(SLOT.replace(source=rm.GCodeSource(text, "x.nc")), toolpath_to_gcode)
+    with pytest.raises(CompensationError, match=r"^Line 4: a thread is cut in step with the spindle"):
+        back.write(np.zeros_like(back.moves.wanted.p), 2e-6)
