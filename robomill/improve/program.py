@@ -90,7 +90,7 @@ class Moves:
         for j in np.flatnonzero(self.at_feed).tolist():
             a, b = first[j], past[j]
             if a == b:  # it stands still
-                pieces[j] = [Piece(0.0, 1.0, self.end[j] + c[a - 1] if a else self.end[j])]
+                pieces[j] = [Piece(0.0, 1.0, self.end[j] + c[a - 1])]
             else:
                 links, pieces[j] = self._pieces(j, max(a, 1), b, q, bound)
                 if links and self.wanted.dwell[a] > 0.0 and self._leads_out(j, a):  # where it waits nothing pushes
@@ -143,8 +143,6 @@ class Moves:
         return led
 
     def _along_tool(self, j: int, past: list[int], k: FloatArray) -> bool:
-        if j == 0:
-            return False
         way = self.end[j] - self.end[j - 1]
         return bool(np.linalg.norm(_aside(way, k[max(past[j] - 1, 0)])) < UPRIGHT)
 
