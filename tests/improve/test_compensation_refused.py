@@ -66,3 +66,15 @@ def test_a_path_on_which_force_and_deflection_do_not_agree_is_refused(monkeypatc
     soft = setup.robot.replace(C_theta=12.0 * setup.robot.C_theta)
     with pytest.raises(CompensationError, match=r"at line \d.* force and deflection do not agree: .* remain"):
         rm.compensate(setup.replace(robot=soft, coupling=True, step_mm=5.0, cell_mm=0.4))
+
+
+@pytest.mark.parametrize(("bound_um", "kept"), [(0.2, True), (1000.0, True), (0.199, False), (1001.0, False)])
+def test_a_program_is_written_to_a_fifth_of_a_micrometre_at_best_and_to_one_millimetre_at_least(
+    bound_um: float, kept: bool
+) -> None:
+    setup = rm.load_setup(SLOT).replace(step=20e-3)
+    if kept:
+        assert rm.compensate(setup, bound_um=bound_um).bound == pytest.approx(bound_um * 1e-6)
+        return
+    with pytest.raises(CompensationError, match="Bound"):
+        rm.compensate(setup, bound_um=bound_um)

@@ -10,6 +10,7 @@ import pytest
 import robomill as rm
 from robomill.improve.compensation import _findings
 from robomill.improve.correction import Correction
+from robomill.progress import Progress, watched
 from tests.improve.corrected import SLOT
 
 RUN = rm.simulate(rm.load_setup(SLOT).replace(step=10e-3))
@@ -35,3 +36,11 @@ def test_what_was_written_out_is_told(written: tuple[str, ...]) -> None:
     told = _findings(found, RUN, SimpleNamespace(unrolled=written), ())  # type: ignore[arg-type]
     words = [each.message for each in told if each.code == "unrolled"]
     assert words == ([f"written out: {', '.join(written)}."] if written else [])
+
+
+def test_its_four_parts_are_told_as_they_begin() -> None:
+    told: list[tuple[str, float]] = []
+    with watched(Progress(say=lambda each: told.append((each.stage, each.share)))):
+        rm.compensate(rm.load_setup(SLOT).replace(step=20e-3))
+    stages = ("The program as it is", "Correcting the path", "Writing the program", "What remains")
+    assert told == [(stage, part / 4) for part, stage in enumerate(stages)]

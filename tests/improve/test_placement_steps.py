@@ -10,7 +10,7 @@ import pytest
 
 from robomill.improve.area import grid
 from robomill.improve.placed import KEPT_OUT, NO_ROOM, UNREACHED, WHY
-from robomill.improve.placement import STARTS, _Search, _spacing
+from robomill.improve.placement import STARTS, _Search, _spacing, _worst_samples
 
 AXES = (np.arange(4) * 0.1, np.arange(5) * 0.05, np.array([0.01]), np.radians(np.arange(3) * 30.0))
 
@@ -116,3 +116,12 @@ def test_of_places_none_of_which_is_allowed_the_nearest_misses_least_and_of_thos
     if open_:
         nearest = min(open_, key=lambda i: (missed[i], -room[i] if room[i] == room[i] else 9.0))
         np.testing.assert_array_equal(asked[0], places[nearest])
+
+
+def test_a_run_is_worst_where_its_readings_and_its_tip_are_and_where_it_is_first_missed() -> None:
+    """The first sample of a path may be one of them; of what has no reading there is none."""
+    wall, floor, feed, end = (SimpleNamespace(worst=worst) for worst in (0, 7, -1, 3))
+    run = SimpleNamespace(verdict=SimpleNamespace(wall=wall, floor=floor, feed=feed, end=end), worst=5)
+    for lost, first in (([], []), ([4, 9], [4]), ([0], [0])):
+        run.missed = np.isin(np.arange(12), lost)
+        assert sorted(_worst_samples(run)) == sorted([0, 7, 3, 5, *first])  # type: ignore[arg-type]
