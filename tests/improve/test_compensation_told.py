@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.improve.compensation import _findings
+from robomill.improve.compensation import _findings, _wrong
 from robomill.improve.correction import Correction
 from robomill.progress import Progress, watched
 from tests.improve.corrected import SLOT
@@ -44,3 +45,13 @@ def test_its_four_parts_are_told_as_they_begin() -> None:
         rm.compensate(rm.load_setup(SLOT).replace(step=20e-3))
     stages = ("The program as it is", "Correcting the path", "Writing the program", "What remains")
     assert told == [(stage, part / 4) for part, stage in enumerate(stages)]
+
+
+@pytest.mark.parametrize("left", [0.05, -0.05, 0.0])
+def test_numbers_that_are_a_fifth_wrong_are_wrong_to_the_worse_side(left: float) -> None:
+    """Of what the tool is pushed so much is left, or taken back too far: a fifth more, or less, is added to that."""
+    push = np.where(RUN.path.cutting[:, None], RUN.delta, 0.0)
+    softer, stronger = _wrong(replace(RUN, delta=left * push, ahead=(left - 1.0) * push))
+    off = np.abs(RUN.delta_in_cut[RUN.judged, 1]).max()
+    assert softer.wall[0] == pytest.approx((0.2 + abs(left)) * off, rel=1e-3)
+    assert stronger.wall[0] == softer.wall[0]

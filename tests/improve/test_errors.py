@@ -37,7 +37,7 @@ def test_of_what_has_no_reading_there_is_no_error() -> None:
     narrow = rm.Stock(lower_mm=(-60, -3, -20), upper_mm=(60, 3, 0))
     run = rm.simulate(RUN.setup.replace(stock=narrow))
     found = errors_of(run)
-    assert np.isnan(found.wall).all()
+    np.testing.assert_array_equal(found.wall, [np.nan, np.nan])
     floor = (run.delta @ run.setup.T_MW[:3, 2])[run.path.cutting & (np.abs(run.path.p[:, 0]) < 50e-3)]
     assert np.abs(floor).min() - 1e-6 <= found.floor[1] <= found.floor[0] <= np.abs(floor).max() + 1e-6
     assert not len(judged(run, "wall").sample)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robomill.improve.area import grid
-from robomill.improve.placed import KEPT_OUT, NO_ROOM, UNREACHED, WHY
+from robomill.improve.placed import FINE, KEPT_OUT, NO_ROOM, UNREACHED, WHY
 from robomill.improve.placement import STARTS, _Search, _spacing, _worst_samples
 
 AXES = (np.arange(4) * 0.1, np.arange(5) * 0.05, np.array([0.01]), np.radians(np.arange(3) * 30.0))
@@ -125,3 +125,20 @@ def test_a_run_is_worst_where_its_readings_and_its_tip_are_and_where_it_is_first
     for lost, first in (([], []), ([4, 9], [4]), ([0], [0])):
         run.missed = np.isin(np.arange(12), lost)
         assert sorted(_worst_samples(run)) == sorted([0, 7, 3, 5, *first])  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("start", "end"), [(0.3, 0.25), (0.25, 0.25), (0.1, 0.25), (0.26, 0.25)])
+def test_a_place_is_refined_to_where_none_beside_it_is_better_and_allowed(start: float, end: float) -> None:
+    """The larger x the better, but none beyond 0.25 m is allowed, where the start may lie; y is best in the middle."""
+    own = search([0.0, -1.0, 0.01, 0.0], [1.0, 1.0, 0.01, 0.0])
+    own.measure = own.setup = None
+
+    def look(looking: object, places: np.ndarray) -> tuple[SimpleNamespace, np.ndarray]:
+        share = 2.0 - places[:, 0] + places[:, 1] ** 2
+        return SimpleNamespace(share=lambda *_: share), np.where(places[:, 0] > 0.25, NO_ROOM, FINE)
+
+    own._look, own._around = look, lambda at, size: _Search._around(own, at, size)  # type: ignore[arg-type]
+    axes = (np.linspace(0.0, 1.0, 5), np.linspace(-1.0, 1.0, 5), np.array([0.01]), np.array([0.0]))
+    found = _Search._refined(own, None, np.array([start, 0.3, 0.01, 0.0]), axes)  # type: ignore[arg-type]
+    np.testing.assert_allclose(found, [end, 0.0, 0.01, 0.0], atol=2e-3)
+    assert found[0] <= 0.25

@@ -102,3 +102,13 @@ def test_a_thread_is_not_corrected(cycle: str) -> None:
     back = writing(SLOT.replace(source=rm.GCodeSource(text, "x.nc")), toolpath_to_gcode)
     with pytest.raises(CompensationError, match=r"^Line 4: a thread is cut in step with the spindle"):
         back.write(np.zeros_like(back.moves.wanted.p), 2e-6)
+
+
+def test_a_program_of_one_cutting_speed_whose_revolutions_nobody_knows_is_written() -> None:
+    """They are the same in both: none."""
+    text = "G21 G90\nG96 S100 M3\nG0 X0 Y0 Z5\nG0 Z-2\nG1 X20 F600\nG0 Z5\nM2\n"
+    back = writing(SLOT.replace(source=rm.GCodeSource(text, "x.nc")), toolpath_to_gcode)
+    assert np.isnan(interpret(text).n_s).any()
+    c = np.where(back.moves.wanted.cutting[:, None], [0.0, 1e-4, 0.0], 0.0)
+    found = back.write(c, 2e-6)
+    np.testing.assert_allclose(found.q[back.moves.wanted.cutting], (back.moves.wanted.p + c)[back.moves.wanted.cutting])

@@ -14,6 +14,7 @@ from robomill.simulation.coupling import (
     MOST,
     NARROW,
     TOLERANCE,
+    _between,
     _bounds,
     _by_bracket,
     _by_broyden,
@@ -312,3 +313,23 @@ def test_begun_anew_it_goes_half_of_the_way_that_the_force_leads_then_a_third_an
         best = int(np.argmin([np.abs(each).max() for each in led[:begun]]))
         np.testing.assert_allclose(asked[begun] - asked[best], led[best] / (1 + times), atol=1e-12)
     assert len(asked) == MOST
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_between_two_ends_it_is_looked_where_interpolation_truncation_and_projection_say(seed):
+    """As Oliveira and Takahashi have it (2020): with kappa_1 = 0.2 / (b - a) of the first bracket, kappa_2 = 2."""
+    rng = np.random.default_rng(seed)
+    length = 1e-3
+    a, b = np.sort(rng.uniform(0.0, length, 2))
+    over, under = rng.uniform(0.01, 1.0) * 1e-3, -rng.uniform(0.01, 1.0) * 1e-3
+    room = (b - a) * rng.uniform(0.5, 2.0)
+    half = 0.5 * (a + b)
+    straight = (over * b - under * a) / (over - under)
+    sign, delta = np.sign(half - straight), 0.2 / length * (b - a) ** 2
+    truncated = straight + sign * delta if delta <= abs(half - straight) else half
+    radius = max(room - 0.5 * (b - a), 0.0)
+    truth = truncated if abs(truncated - half) <= radius else half - sign * radius
+    assert _between((a, over), (b, under), room, length) == pytest.approx(truth, abs=1e-15)
+    for wrong in ((a, -over), (a, 0.0)):
+        assert _between(wrong, (b, under), room, length) == half
+    assert _between((a, over), (b, 0.0), room, length) == half

@@ -9,7 +9,7 @@ import pytest
 
 import robomill as rm
 from robomill.cutting.tool import Cutter
-from robomill.simulation.judging.gauge import ACROSS, RIM
+from robomill.simulation.judging.gauge import ACROSS, AROUND, LOOK, ON_NOSES, RIM
 from robomill.surface.stock import Stock
 from tests.simulation.judging.pushed_runs import R, pushed, run
 
@@ -166,3 +166,11 @@ def test_a_tool_that_has_gone_aside_by_a_part_of_its_radius_has_its_floor_where_
     assert beside.max() <= 0.2e-3 - abs(left)
     assert (beside.max() > 0.1e-3) == (abs(left) < 0.1e-3)
     np.testing.assert_allclose(floors.error, 0.0, atol=1e-9)
+
+
+def test_noses_are_looked_at_from_their_flat_end_to_their_rim_and_what_stands_in_every_direction():
+    assert np.all(np.diff([0.0, *ON_NOSES]) > 0.0)
+    assert ON_NOSES[-1] < 1.0
+    assert np.diff(ON_NOSES).max() < 0.11
+    for angles in (AROUND, LOOK):
+        np.testing.assert_allclose(np.diff([*angles, angles[0] + 2.0 * np.pi]), 2.0 * np.pi / len(angles))
