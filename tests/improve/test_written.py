@@ -112,3 +112,17 @@ def test_a_program_of_one_cutting_speed_whose_revolutions_nobody_knows_is_writte
     c = np.where(back.moves.wanted.cutting[:, None], [0.0, 1e-4, 0.0], 0.0)
     found = back.write(c, 2e-6)
     np.testing.assert_allclose(found.q[back.moves.wanted.cutting], (back.moves.wanted.p + c)[back.moves.wanted.cutting])
+
+
+def test_where_points_are_told_to_be_is_where_their_text_leads_to_the_last_digit() -> None:
+    """Corrected by what no text can say: both are rounded alike."""
+    p = np.array([[0.0, 0.0, 20.0], [0.0, 0.0, -2.0], [20.0, 0.0, -2.0], [20.0, 10.0, -2.0]]) * 1e-3
+    path = rm.Toolpath.from_points(p, 0.01, cutting=[False, False, True, True])
+    back = writing(SLOT.replace(source=path, step=5e-3), toolpath_to_gcode)
+    wanted = back.moves.wanted
+    c = np.where(wanted.cutting[:, None], np.pi * np.array([1e-5, -2e-5, 3e-5]), 0.0)
+    found = back.write(c, 2e-6)
+    read = rm.read_gcode(found.text).p
+    for q in found.q[wanted.cutting & np.append(np.diff(back.moves.owner) > 0, True)]:
+        assert np.abs(read - q).max(axis=1).min() < 1e-13
+    np.testing.assert_allclose(found.q, wanted.p + c, atol=1e-9)
