@@ -11,6 +11,7 @@ import robomill as rm
 from robomill.improve import design as module
 from robomill.improve.design import _Search, linear
 from robomill.improve.judged import judged
+from robomill.improve.least_cost import Errors
 
 X, LOW = np.array([1.0, 0.8, 1.0]), np.array([0.25, 0.2, 1.0])
 
@@ -71,3 +72,21 @@ def test_a_table_of_a_design_has_a_row_a_joint() -> None:
     np.testing.assert_allclose(table["cost"], np.array([1, 2, 3, 1, 1]) * np.log(ratio) / np.log(2.0), atol=1e-12)
     np.testing.assert_allclose(table["C_theta_before"] / table["C_theta_after"], ratio)
     assert found.cost == pytest.approx(table["cost"].sum())
+
+
+@pytest.mark.parametrize("beyond", [1.0, 1.06, 1.3])
+def test_where_what_is_left_is_not_linear_it_is_aimed_lower_until_the_tolerance_is_kept(
+    monkeypatch: pytest.MonkeyPatch, beyond: float
+) -> None:
+    """Runs use so many times what the solver was told of them."""
+    low, size = 0.5, 2.0
+    monkeypatch.setattr(module, "judged", lambda x, measure: SimpleNamespace(share=float(size * x[0]) * beyond))
+    errors = Errors(np.zeros((1, 1)), np.full((1, 1, 1), size), np.ones(1))
+    monkeypatch.setattr(module, "linear", lambda result, now, x, goes: errors)
+    own = SimpleNamespace(
+        low=np.array([low / 2.6]), high=np.ones(1), weight=np.ones(1), measure="verdict", at=lambda x: x
+    )
+    x, run, _, rounds = _Search.settled(own, np.ones(1), np.ones(1))  # type: ignore[arg-type]
+    np.testing.assert_array_equal(x, run)
+    assert 0.99 < size * x[0] * beyond <= 1.0
+    assert (rounds <= 2) == (beyond == 1.0)

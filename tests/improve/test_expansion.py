@@ -15,17 +15,19 @@ STD = np.array([0.5e-3, 0.2e-3, 1.0])
 
 
 @pytest.mark.parametrize(("judged", "reaches"), [([True, True], False), ([True, False], True)])
-@pytest.mark.parametrize("way", [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.8, -0.6)])
+@pytest.mark.parametrize("way", [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.8, -0.6), (-0.6, -0.8)])
 def test_a_single_draw_that_lies_farthest_out_and_is_not_reached_is_found(
     monkeypatch: pytest.MonkeyPatch, way: tuple[float, float], judged: list[bool], reaches: bool
 ) -> None:
-    """In standard deviations of lengths and places; what is not judged need not be reached."""
+    """In standard deviations of lengths and places, of all of them together: by itself none need be the largest. What
+    is not judged need not be reached."""
     rng = np.random.default_rng(4)
-    change = np.clip(rng.normal(size=(900, 3)), -2.0, 2.0) * STD
-    change[637, :2] = 4.0 * np.array(way) * STD[:2]
+    angle, size = rng.uniform(-np.pi, np.pi, 900), 2.0 * np.sqrt(rng.random(900))
+    change = np.column_stack([size * np.cos(angle), size * np.sin(angle), rng.normal(size=900)]) * STD
+    change[637, :2] = 2.1 * np.array(way) * STD[:2]
 
     def configurations(draw: np.ndarray) -> SimpleNamespace:
-        far = float((draw / STD)[:2] @ way) > 3.5
+        far = float((draw / STD)[:2] @ way) > 2.05
         return SimpleNamespace(reached=np.array([[True, not far]]))
 
     monkeypatch.setattr(expansion, "changed", lambda unsure, draw: draw)

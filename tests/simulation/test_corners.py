@@ -32,8 +32,10 @@ def test_where_a_leg_ends_it_belongs_to_the_corner(step: float, off: tuple[float
         assert found[at] == pytest.approx(corner, abs=1e-12)
         assert (found[:at] <= corner + 1e-12).all()
         assert (found[at:] >= corner - 1e-12).all()
-    away = np.abs(s[:, None] - [20e-3, 40e-3]).min(axis=1) > 4.5e-3
-    np.testing.assert_array_equal(found[away], np.clip(near, 0.0, s[-1])[away])
+    ends = [int(np.argmin(np.abs(s - corner))) for corner in corners]
+    low = np.repeat([0.0, *corners], np.diff([0, *ends, len(s)]))
+    high = np.repeat([*corners, s[-1]], np.diff([0, ends[0] + 1, ends[1] + 1, len(s)]))
+    np.testing.assert_allclose(found, np.clip(near, low, high), atol=1e-12)
 
 
 def test_steps_that_go_nowhere_are_no_steps_and_corners_turn_by_ten_degrees_at_least() -> None:

@@ -50,11 +50,15 @@ def cheapest(q: np.ndarray, ends: list[int], s: np.ndarray, cut: Ways) -> tuple[
     return min(costs, key=lambda each: costs[each])
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(25))
 def test_a_corner_is_where_ends_and_link_cost_least(seed: int) -> None:
     """Samples that come along the one cut, wander about the corner and leave along the other, some right at the ends of
     its steps, with links that rise."""
-    rng = np.random.default_rng(seed)
+    for draw in range(8):
+        _compare(np.random.default_rng([seed, draw]))
+
+
+def _compare(rng: np.random.Generator) -> None:
     cut = bent(*rng.choice([0.0, 0.08, -0.05], 1), rng.choice([1.5, -0.9, 2.6]))
     assert cut.corners.tolist() == [3]
     s = np.sort(np.where(rng.random(12) < 0.4, rng.integers(1, 9, 12) * 1e-3, rng.uniform(0.2e-3, 7.8e-3, 12)))

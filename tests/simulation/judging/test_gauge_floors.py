@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import robomill as rm
 from robomill.cutting.tool import Cutter
-from robomill.simulation.judging.gauge import ACROSS, AROUND, LOOK, ON_NOSES, RIM
+from robomill.simulation.judging.gauge import ACROSS, AROUND, BESIDE_ROOT, CROWN, LOOK, ON_NOSES, RIM, _under
 from robomill.surface.stock import Stock
 from tests.simulation.judging.pushed_runs import R, pushed, run
 
@@ -172,5 +173,24 @@ def test_noses_are_looked_at_from_their_flat_end_to_their_rim_and_what_stands_in
     assert np.all(np.diff([0.0, *ON_NOSES]) > 0.0)
     assert ON_NOSES[-1] < 1.0
     assert np.diff(ON_NOSES).max() < 0.11
+    np.testing.assert_allclose(BESIDE_ROOT, np.linspace(1.0, 2.0, len(BESIDE_ROOT)))
     for angles in (AROUND, LOOK):
         np.testing.assert_allclose(np.diff([*angles, angles[0] + 2.0 * np.pi]), 2.0 * np.pi / len(angles))
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.3, 0.7, 1.2, 2.0])
+def test_beside_the_axis_a_floor_is_looked_for_where_the_tool_still_cuts_and_the_heel_has_not_rounded_it(slope):
+    """So far aside as CROWN is of the slope's length, at most; nowhere but beneath the axis where nothing is flat."""
+    flat, aside = np.array([4e-3, 4e-3, 1e-3, 0.0, 0.2e-3]), np.array([0.0, 1.8e-3, 0.05e-3, 0.0, 0.13e-3])
+    way, none = np.tile([1.0, 0.0, 0.0], (5, 1)), np.zeros(5, dtype=bool)
+    at = SimpleNamespace(
+        i=np.arange(5), bottoms=none, steep=none, slope=np.full(5, slope), feed=way, left_of=way[:, [1, 0, 2]]
+    )
+    q, offset, u = _under(at, flat, aside)
+    even = CROWN / np.hypot(slope, CROWN)
+    for n in range(5):
+        rim = min(RIM, even) * max(flat[n] - aside[n], 0.0)
+        asked = [share * flat[n] for share in ACROSS if share] + [rim, -rim]
+        seen = [each for each in asked if abs(each) + aside[n] < flat[n] and abs(each) <= even * flat[n]]
+        np.testing.assert_allclose(sorted(offset[q == n]), sorted([0.0, *seen]), atol=1e-15)
+    np.testing.assert_array_equal(u, at.left_of[q])
