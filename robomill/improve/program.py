@@ -135,16 +135,16 @@ class Moves:
                 led[j] = c[past[j] - 1]
         for j in range(len(self.end) - 2, -1, -1):  # before a cut
             if rapid[j] and rapid[j + 1] and led[j + 1].any() and not led[j].any() and self._along_tool(j + 1, past, k):
-                led[j] = _aside(led[j + 1], k[max(past[j] - 1, 0)])
+                led[j] = _aside(led[j + 1], k[past[j] - 1])
         for j in range(1, len(self.end)):  # behind one
             if rapid[j] and not led[j].any() and self._along_tool(j, past, k):
-                before = led[j - 1] if rapid[j - 1] else c[max(past[j - 1] - 1, 0)]
-                led[j] = _aside(before, k[max(past[j] - 1, 0)])
+                before = led[j - 1] if rapid[j - 1] else c[past[j - 1] - 1]
+                led[j] = _aside(before, k[past[j] - 1])
         return led
 
     def _along_tool(self, j: int, past: list[int], k: FloatArray) -> bool:
         way = self.end[j] - self.end[j - 1]
-        return bool(np.linalg.norm(_aside(way, k[max(past[j] - 1, 0)])) < UPRIGHT)
+        return bool(np.linalg.norm(_aside(way, k[past[j] - 1])) < UPRIGHT)
 
     def places(self, made: dict[int, list[tuple[FloatArray, Piece]]]) -> FloatArray:
         """(n, 3) m: where the samples are on pieces as they were written, each with where it starts."""
