@@ -167,7 +167,7 @@ def _shares(path: Toolpath, owner: IntArray) -> FloatArray:
     """(n,) how much of its move each sample of a path has made, for the moves ``owner`` (n,)."""
     s = np.cumsum(path.step_length)
     first, last = np.searchsorted(owner, owner, "left"), np.searchsorted(owner, owner, "right") - 1
-    begin = np.where(first > 0, s[np.maximum(first - 1, 0)], 0.0)
+    begin = s[np.maximum(first - 1, 0)]
     length = s[last] - begin
     return np.divide(s - begin, length, out=np.ones(len(s)), where=length > 0.0)
 

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from robomill.improve import placement as module
 from robomill.improve.area import grid
 from robomill.improve.placed import FINE, KEPT_OUT, NO_ROOM, UNREACHED, WHY
 from robomill.improve.placement import STARTS, _Search, _spacing, _worst_samples
@@ -142,3 +143,29 @@ def test_a_place_is_refined_to_where_none_beside_it_is_better_and_allowed(start:
     found = _Search._refined(own, None, np.array([start, 0.3, 0.01, 0.0]), axes)  # type: ignore[arg-type]
     np.testing.assert_allclose(found, [end, 0.0, 0.01, 0.0], atol=2e-3)
     assert found[0] <= 0.25
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_where_a_part_lies_its_turn_is_counted_as_the_range_of_yaw_has_it(
+    monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    """By whole turns, of which one leads into the range if its own turn, or that and some whole ones, is in it."""
+    rng, seen = np.random.default_rng(seed), []
+    now, low = rng.uniform(-np.pi, np.pi), rng.uniform(-4.0 * np.pi, 2.0 * np.pi)
+    high = low + rng.choice([0.0, 1.0, 3.0, 2.0 * np.pi])
+    if seed < 4:
+        low = now + 2.0 * np.pi * (seed - 2)  # just at the begin of the range
+        high = low + 1.0
+    run = SimpleNamespace(verdict=SimpleNamespace(level="ok"))
+    monkeypatch.setattr(module, "today", lambda setup: np.array([0.1, 0.2, 0.3, now]))
+    monkeypatch.setattr(module, "simulate", lambda setup: run)
+    there = SimpleNamespace(reason="", known=True)
+    monkeypatch.setattr(module, "place_of", lambda result, at, measure: seen.append(at) or there)
+    own = search([0.0, 0.0, 0.0, low], [1.0, 1.0, 1.0, high], setup=SimpleNamespace(coupling=False), measure="verdict")
+    here, found, base = _Search._now(own)  # type: ignore[arg-type]
+    turns = [now + 2.0 * np.pi * n for n in range(-4, 5)]
+    inside = [turn for turn in turns if low - 1e-9 <= turn <= high + 1e-9]
+    assert here[3] == pytest.approx(inside[0] if inside else now, abs=1e-9)
+    assert here[:3].tolist() == [0.1, 0.2, 0.3]
+    np.testing.assert_array_equal(seen[0], here)
+    assert (found.known, base) == (True, run)
