@@ -213,3 +213,19 @@ def test_the_largest_feed_is_sought_from_a_tenth_of_it_to_four_times_as_much(
         return
     assert found.factor <= most < found.factor * (4.0 if most >= 1.0 else 10.0) ** (1.0 / 2**9) * (1 + 1e-12)
     assert "the most that keeps the tolerance" in found.title
+
+
+@pytest.mark.parametrize("engagement", [True, False])
+def test_ways_are_compared_by_what_they_meet_of_the_stock(engagement: bool) -> None:
+    """Be it followed in the set-up or not; nothing else of it is changed."""
+    setup, seen = SETUP.replace(engagement=engagement), []
+
+    def run(asked: rm.SimulationSetup) -> rm.SimulationResult:
+        seen.append(asked)
+        raise SetupError("enough")
+
+    with pytest.raises(SetupError, match="enough"):
+        advise(setup, run=run)
+    (first,) = seen
+    assert first.engagement
+    assert first.replace(engagement=engagement) == setup
