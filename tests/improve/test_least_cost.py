@@ -70,6 +70,9 @@ def test_what_keeps_its_bounds_costs_nothing_and_what_cannot_is_none() -> None:
     kept = least_cost(one, np.ones(2), low, high)
     assert kept is not None
     assert kept.value == 0.0
+    softer = least_cost(one, np.array([1.0, 3.0]), low, np.array([1.25, 0.5]))
+    assert softer is not None
+    assert softer.value == pytest.approx(3.0 - np.log2(1.25))
     assert least_cost(Errors(np.full((1, 1), 3.0), np.zeros((1, 1, 2)), np.ones(1)), np.ones(2), low, high) is None
 
 
