@@ -194,3 +194,16 @@ def test_beside_the_axis_a_floor_is_looked_for_where_the_tool_still_cuts_and_the
         seen = [each for each in asked if abs(each) + aside[n] < flat[n] and abs(each) <= even * flat[n]]
         np.testing.assert_allclose(sorted(offset[q == n]), sorted([0.0, *seen]), atol=1e-15)
     np.testing.assert_array_equal(u, at.left_of[q])
+
+
+@pytest.mark.parametrize("kind", ["flat", "ball"])
+def test_from_a_tool_into_the_part_floors_lie_beneath_it_and_what_noses_leave_beside_an_edge_beneath_and_aside(kind):
+    """A slot on the level; a ball along the edge of the block, whose axis is beside it."""
+    slot = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X20 F1800", cutter=Cutter(kind, 8e-3)).gauge.floors
+    np.testing.assert_allclose(slot.out, np.tile([0.0, 0.0, -1.0], (len(slot.out), 1)), atol=1e-9)
+    if kind == "ball":
+        beside = run("G0 X-40 Y21 Z5", "G0 Z-2", "G1 X20 F1800", cutter=Cutter(kind, 8e-3)).gauge.floors
+        middle = np.array([0.0, 21e-3, 2e-3])
+        way = (beside.place - middle) * [0.0, 1.0, 1.0]
+        np.testing.assert_allclose(beside.out, way / np.linalg.norm(way, axis=1, keepdims=True), atol=1e-4)
+        assert len(beside.out)
