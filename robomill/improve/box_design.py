@@ -74,7 +74,7 @@ class BoxDesign(Tabled):
     @property
     def cost(self) -> float:
         """Sum over the joints of weight times the binary logarithm of the stiffness ratio."""
-        return float(self.weight @ np.log2(self.stiffness_ratio)) + 0.0
+        return float(self.weight @ np.log2(self.stiffness_ratio))
 
     @cached_property
     def before(self) -> FloatArray:

@@ -101,7 +101,7 @@ class Design(Tabled):
     def cost(self) -> float:
         """Sum over the joints of weight times the binary logarithm of the stiffness ratio: 1 is one joint twice as
         stiff where its weight is 1."""
-        return float(self.weight @ np.log2(self.stiffness_ratio)) + 0.0
+        return float(self.weight @ np.log2(self.stiffness_ratio))
 
     @property
     def share(self) -> float:
@@ -139,7 +139,7 @@ class Design(Tabled):
         return {
             "joint": np.array(self.setup.robot.joint_numbers),
             "stiffness_ratio": self.stiffness_ratio,
-            "cost": self.weight * np.log2(self.stiffness_ratio) + 0.0,
+            "cost": self.weight * np.log2(self.stiffness_ratio),
             "C_theta_before": self.before.setup.robot.C_theta,
             "C_theta_after": self.C_theta,
         }

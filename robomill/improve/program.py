@@ -90,7 +90,7 @@ class Moves:
         for j in np.flatnonzero(self.at_feed).tolist():
             a, b = first[j], past[j]
             if a == b:  # it stands still
-                pieces[j] = [Piece(0.0, 1.0, self.end[j] + c[a - 1] if a else self.end[j])]
+                pieces[j] = [Piece(0.0, 1.0, self.end[j] + c[a - 1])]
             else:
                 links, pieces[j] = self._pieces(j, max(a, 1), b, q, bound)
                 if links and self.wanted.dwell[a] > 0.0 and self._leads_out(j, a):  # where it waits nothing pushes
@@ -135,18 +135,16 @@ class Moves:
                 led[j] = c[past[j] - 1]
         for j in range(len(self.end) - 2, -1, -1):  # before a cut
             if rapid[j] and rapid[j + 1] and led[j + 1].any() and not led[j].any() and self._along_tool(j + 1, past, k):
-                led[j] = _aside(led[j + 1], k[max(past[j] - 1, 0)])
+                led[j] = _aside(led[j + 1], k[past[j] - 1])
         for j in range(1, len(self.end)):  # behind one
             if rapid[j] and not led[j].any() and self._along_tool(j, past, k):
-                before = led[j - 1] if rapid[j - 1] else c[max(past[j - 1] - 1, 0)]
-                led[j] = _aside(before, k[max(past[j] - 1, 0)])
+                before = led[j - 1] if rapid[j - 1] else c[past[j - 1] - 1]
+                led[j] = _aside(before, k[past[j] - 1])
         return led
 
     def _along_tool(self, j: int, past: list[int], k: FloatArray) -> bool:
-        if j == 0:
-            return False
         way = self.end[j] - self.end[j - 1]
-        return bool(np.linalg.norm(_aside(way, k[max(past[j] - 1, 0)])) < UPRIGHT)
+        return bool(np.linalg.norm(_aside(way, k[past[j] - 1])) < UPRIGHT)
 
     def places(self, made: dict[int, list[tuple[FloatArray, Piece]]]) -> FloatArray:
         """(n, 3) m: where the samples are on pieces as they were written, each with where it starts."""
@@ -169,7 +167,7 @@ def _shares(path: Toolpath, owner: IntArray) -> FloatArray:
     """(n,) how much of its move each sample of a path has made, for the moves ``owner`` (n,)."""
     s = np.cumsum(path.step_length)
     first, last = np.searchsorted(owner, owner, "left"), np.searchsorted(owner, owner, "right") - 1
-    begin = np.where(first > 0, s[np.maximum(first - 1, 0)], 0.0)
+    begin = s[np.maximum(first - 1, 0)]
     length = s[last] - begin
     return np.divide(s - begin, length, out=np.ones(len(s)), where=length > 0.0)
 

@@ -1,6 +1,7 @@
 """Other ways to cut, against runs made by hand."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -187,3 +188,44 @@ def test_the_table_has_the_numbers_of_every_way_in_units_of_the_shop_floor(advic
         found = [table[name][n] for name in ("wall_mm", "floor_mm", "max_deviation_mm")]
         assert found == pytest.approx([size / 1e-3 for size in sizes], nan_ok=True)
         assert table["verdict"][n] == each.run.verdict.level
+
+
+@pytest.mark.parametrize("most", [0.05, 0.1, 0.13, 0.7, 1.0, 1.3, 3.9, 4.0, 9.0])
+def test_the_largest_feed_is_sought_from_a_tenth_of_it_to_four_times_as_much(
+    monkeypatch: pytest.MonkeyPatch, most: float
+) -> None:
+    """By halving, in logarithms, nine times, what is below and above that of the program."""
+
+    def run(factor: float) -> SimpleNamespace:
+        return SimpleNamespace(verdict=SimpleNamespace(red=factor > most))
+
+    monkeypatch.setattr(module, "held", lambda now: None)
+    monkeypatch.setattr(module, "_way", lambda name, title, _, factor: module.Way(name, title, run(factor), "", factor))
+    now = SimpleNamespace(verdict=SimpleNamespace(red=most < 1.0), setup=SimpleNamespace(toolpath=None))
+    found = module._feed(now, lambda setup: None)  # type: ignore[arg-type, return-value]
+    assert found.name == "feed"
+    if most < 0.1 or most >= 4.0:
+        assert found.factor == (0.1 if most < 0.1 else 4.0)
+        assert ("no feed keeps the tolerance" in found.title, "the most that is tried" in found.title) == (
+            most < 0.1,
+            most >= 4.0,
+        )
+        return
+    assert found.factor <= most < found.factor * (4.0 if most >= 1.0 else 10.0) ** (1.0 / 2**9) * (1 + 1e-12)
+    assert "the most that keeps the tolerance" in found.title
+
+
+@pytest.mark.parametrize("engagement", [True, False])
+def test_ways_are_compared_by_what_they_meet_of_the_stock(engagement: bool) -> None:
+    """Be it followed in the set-up or not; nothing else of it is changed."""
+    setup, seen = SETUP.replace(engagement=engagement), []
+
+    def run(asked: rm.SimulationSetup) -> rm.SimulationResult:
+        seen.append(asked)
+        raise SetupError("enough")
+
+    with pytest.raises(SetupError, match="enough"):
+        advise(setup, run=run)
+    (first,) = seen
+    assert first.engagement
+    assert first.replace(engagement=engagement) == setup

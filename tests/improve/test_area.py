@@ -115,7 +115,9 @@ def test_about_as_many_places_are_looked_at_as_are_asked_for_whichever_ways_are_
 
 @pytest.mark.parametrize("given", [{}, {"keep_out_mm": []}])
 def test_where_nothing_is_kept_out_of_no_place_is_met_not_even_the_robots_foot(given: dict) -> None:
-    assert not area(setup(), given).meets(np.zeros((1, 4))).any()
+    found = area(setup(), given)
+    assert found.keep_out.shape == (0, 2, 3)
+    assert not found.meets(np.zeros((1, 4))).any()
 
 
 def test_a_full_turn_has_no_place_twice() -> None:
@@ -181,3 +183,9 @@ def test_a_grid_has_about_as_many_places_as_were_asked_for_however_long_its_box(
     assert 0.5 * candidates <= np.prod([len(each) for each in axes]) <= candidates
     for axis, half in zip(axes, (0.5, 0.5 * high)):
         assert (axis[0], axis[-1]) == pytest.approx((-half, half))
+
+
+@pytest.mark.parametrize("degrees", [(-180, 300), (0, 361), (-350, 350)])
+def test_more_than_a_full_turn_is_one(degrees: tuple[float, float]) -> None:
+    found = area(setup(), {"yaw_deg": degrees})
+    np.testing.assert_allclose(np.degrees([found.lower[3], found.upper[3]]), [degrees[0], degrees[0] + 360.0])

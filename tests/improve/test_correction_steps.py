@@ -142,3 +142,15 @@ def test_at_one_place_each_undoes_what_one_for_all_would_leave_by_more_than_a_li
         np.testing.assert_allclose(c[1:3, 1], [mean, mean] if shared else -d[1:3, 1], atol=1e-15)
         np.testing.assert_allclose(c[1:3, 2], 3e-6, atol=1e-15)
         np.testing.assert_allclose(c[:, 0], 0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize(("apart", "one"), [(1.9e-6, True), (2.1e-6, False)])
+def test_a_plunge_is_corrected_as_its_last_sample_is_which_may_be_its_only_one(apart: float, one: bool) -> None:
+    places = straight([1] * 6, list(range(6)), [1, 1, 1, 0, 1, 0])
+    c = np.random.default_rng(1).normal(size=(6, 3)) * 1e-3
+    c[:3, :2] = c[2, :2]
+    c[2, 0] += apart
+    expected = c.copy()
+    if one:
+        expected[:3, :2] = c[2, :2]
+    np.testing.assert_allclose(places.upright(c.copy()), expected, atol=1e-15)

@@ -7,8 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import robomill as rm
 from robomill.improve import design as module
-from robomill.improve.design import _Search
+from robomill.improve.design import _Search, linear
+from robomill.improve.judged import judged
+from robomill.improve.least_cost import Errors
 
 X, LOW = np.array([1.0, 0.8, 1.0]), np.array([0.25, 0.2, 1.0])
 
@@ -41,3 +44,49 @@ def test_where_not_even_the_stiffest_keep_it_the_better_of_the_two_is_taken(
     x, run, residual = _Search.on_the_way(own, X, "first", 0.5)  # type: ignore[arg-type]
     assert (run, residual) == ("stiffest" if taken else "first", 0.5)
     np.testing.assert_array_equal(x, LOW if taken else X)
+
+
+@pytest.mark.parametrize("sag", [False, True])
+def test_errors_of_other_joints_are_those_of_a_run_with_them(sag: bool) -> None:
+    """A straight slot, whose force and contact stay: walls and floors are linear in the compliances, with what the
+    links' weight does where that is added."""
+    setup = rm.load_setup("paper_flute").replace(step=20e-3, cell=5e-4)
+    if sag:
+        setup = setup.replace(links=rm.LinkMasses(mass=np.full(5, 4.0), centre=np.zeros((5, 3))), add_sag=True)
+    before, x = rm.simulate(setup), np.array([0.5, 0.9, 1.3, 0.7, 1.1])
+    after = rm.simulate(setup.replace(robot=setup.robot.replace(C_theta=x * setup.robot.C_theta)))
+    told, found = linear(before, judged(before), np.ones(5)), judged(after)
+    np.testing.assert_allclose(told.at(np.ones(5)), judged(before).error, atol=1e-12)
+    np.testing.assert_allclose(told.at(x), found.error, atol=3e-6)
+    again = linear(after, found, x)
+    np.testing.assert_allclose(again.at(np.ones(5)), judged(before).error, atol=3e-6)
+    assert np.abs(found.error - judged(before).error).max() > 20e-6
+
+
+def test_a_table_of_a_design_has_a_row_a_joint() -> None:
+    found = rm.design(rm.load_setup("paper_flute").replace(step=20e-3), tolerance_mm=0.2, weight=[1, 2, 3, 1, 1])
+    table = found.columns()
+    assert table["joint"].tolist() == [1, 2, 3, 4, 5]
+    ratio = found.before.setup.robot.C_theta / found.setup.robot.C_theta
+    np.testing.assert_allclose(table["stiffness_ratio"], ratio)
+    np.testing.assert_allclose(table["cost"], np.array([1, 2, 3, 1, 1]) * np.log(ratio) / np.log(2.0), atol=1e-12)
+    np.testing.assert_allclose(table["C_theta_before"] / table["C_theta_after"], ratio)
+    assert found.cost == pytest.approx(table["cost"].sum())
+
+
+@pytest.mark.parametrize("beyond", [1.0, 1.06, 1.3])
+def test_where_what_is_left_is_not_linear_it_is_aimed_lower_until_the_tolerance_is_kept(
+    monkeypatch: pytest.MonkeyPatch, beyond: float
+) -> None:
+    """Runs use so many times what the solver was told of them."""
+    low, size = 0.5, 2.0
+    monkeypatch.setattr(module, "judged", lambda x, measure: SimpleNamespace(share=float(size * x[0]) * beyond))
+    errors = Errors(np.zeros((1, 1)), np.full((1, 1, 1), size), np.ones(1))
+    monkeypatch.setattr(module, "linear", lambda result, now, x, goes: errors)
+    own = SimpleNamespace(
+        low=np.array([low / 2.6]), high=np.ones(1), weight=np.ones(1), measure="verdict", at=lambda x: x
+    )
+    x, run, _, rounds = _Search.settled(own, np.ones(1), np.ones(1))  # type: ignore[arg-type]
+    np.testing.assert_array_equal(x, run)
+    assert 0.99 < size * x[0] * beyond <= 1.0
+    assert (rounds <= 2) == (beyond == 1.0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -87,3 +89,19 @@ def test_the_tables_are_in_the_units_of_their_inputs() -> None:
         [0.3, 0.4],
         [0.6, 0.2],
     ]
+
+
+def test_what_a_notebook_shows_of_draws_are_their_numbers() -> None:
+    """Three of four keep the tolerance: 75 %, and by the exact interval of SciPy 19.4 to 99.4 %."""
+    size, run = np.array([0.1, 0.2, 0.3, 0.4]) * 1e-3, SimpleNamespace(max_deviation=0.25e-3)
+    tornado = SimpleNamespace(inputs=[SimpleNamespace(label="Tool length")], part=np.array([0.6]))
+    found = drawn(np.array([0.1, 0.2, 0.3, 1.4]), wall=size, floor=0.5 * size, tip=size)
+    facts = dict(replace(found, run=run, tornado=tornado)._facts())
+    exact = binomtest(3, 4).proportion_ci(0.95, method="exact")
+    numbers = {name: [float(each) for each in re.findall(r"[0-9.]+", words)] for name, words in facts.items()}
+    assert numbers["As it is"] == [0.25]
+    assert numbers["Mean and standard deviation"] == [0.25, 0.129]
+    assert numbers["95 % of the draws keep"] == [0.4]
+    assert numbers["Tolerance kept"] == pytest.approx([75.0, 100 * exact.low, 100 * exact.high], abs=0.051)
+    assert numbers["Draws"] == [4]
+    assert facts["Most of it"].startswith("Tool length, 60")

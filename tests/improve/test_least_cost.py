@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize, nnls
+from scipy.optimize import linprog, minimize, nnls
 
 from robomill.improve.least_cost import Errors, least_cost, least_share
 
@@ -47,12 +47,32 @@ def test_the_slope_of_the_cost_is_held_by_the_errors_that_bind(seed: int) -> Non
     assert nnls(normals.T, -slope)[1] < 1e-3 * np.linalg.norm(slope)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_how_much_cheaper_any_other_could_be_is_what_the_slope_leaves_of_a_linear_program(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Left after its first step, where much is: by another solver."""
+    monkeypatch.setattr("robomill.improve.least_cost.SETTLED", 10.0)
+    errors, weight, low, high = drawn(seed, 1), np.array([1.0, 2.0, 0.5, 1.0, 3.0]), np.full(5, 0.05), np.ones(5)
+    found = least_cost(errors, weight, low, high)
+    assert found is not None
+    slope = -weight / np.log(2.0) / found.x
+    rows = np.vstack([errors.given[:, 0], -errors.given[:, 0]])
+    bound = np.concatenate([errors.bound - errors.fixed[:, 0], errors.bound + errors.fixed[:, 0]])
+    cheapest = linprog(slope, A_ub=rows, b_ub=bound, bounds=list(zip(low, high, strict=True))).fun
+    assert found.residual == pytest.approx(slope @ found.x - cheapest, abs=1e-5)
+    assert found.residual > 1e-3
+
+
 def test_what_keeps_its_bounds_costs_nothing_and_what_cannot_is_none() -> None:
     one = Errors(np.zeros((1, 1)), np.ones((1, 1, 2)), np.array([2.5]))
     low, high = np.full(2, 0.1), np.ones(2)
     kept = least_cost(one, np.ones(2), low, high)
     assert kept is not None
     assert kept.value == 0.0
+    softer = least_cost(one, np.array([1.0, 3.0]), low, np.array([1.25, 0.5]))
+    assert softer is not None
+    assert softer.value == pytest.approx(3.0 - np.log2(1.25))
     assert least_cost(Errors(np.full((1, 1), 3.0), np.zeros((1, 1, 2)), np.ones(1)), np.ones(2), low, high) is None
 
 

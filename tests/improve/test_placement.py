@@ -220,10 +220,12 @@ def test_what_makes_no_sense_is_refused(given: dict, said: str) -> None:
         place(slot(), **given)
 
 
-def test_a_cut_of_which_nothing_is_judged_is_refused() -> None:
-    above = rm.Toolpath.from_points(p_mm=[[0, 0, 50], [40, 0, 50]], feed_mm_min=600)
+@pytest.mark.parametrize(("measure", "to"), [("verdict", 40), ("tip", 40), ("verdict", 5000)])
+def test_a_cut_of_which_nothing_is_judged_is_refused(measure: Any, to: float) -> None:
+    """However far the tip goes aside there, above the stock, and though it may be out of reach where it is now."""
+    above = rm.Toolpath.from_points(p_mm=[[0, 0, 50], [40, 0, 50], [to, 0, 50]], feed_mm_min=600)
     with pytest.raises(SetupError, match="nothing is judged that places could be compared by"):
-        place(slot(source=above), candidates=4)
+        place(slot(source=above, step_mm=100), measure=measure, candidates=4)
 
 
 def test_a_force_in_the_robots_axes_is_told_where_the_part_may_turn() -> None:
@@ -268,6 +270,15 @@ def test_a_coupled_run_is_compared_coupled() -> None:
     assert found.now.share == rm.simulate(setup).verdict.share
     assert found.best.share == rm.simulate(found.moved).verdict.share
     assert "places-coupled" in {each.code for each in found.findings}
+
+
+@pytest.mark.parametrize(
+    "lines", ["G0 X-50 Y0 Z-2\nG1 X50 F1800\nX3000\n", "G0 X3000 Y0 Z-2\nG1 X50 F1800\n"], ids=["end", "begin"]
+)
+def test_a_path_of_which_one_end_is_out_of_reach_is_not_reached(lines: str) -> None:
+    setup = slot(source=rm.GCodeSource(f"G21 G90 S12000 M3\n{lines}"), step_mm=3000)
+    with pytest.raises(SetupError, match=r"of 12 places tried 12 not reached\. Nearest .* beyond reach"):
+        place(setup, x_mm=(-100, 100), y_mm=(-1400, -1250), candidates=12)
 
 
 def test_a_placement_is_a_value() -> None:

@@ -8,9 +8,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from robomill.improve import placement as module
 from robomill.improve.area import grid
-from robomill.improve.placed import KEPT_OUT, NO_ROOM, UNREACHED, WHY
-from robomill.improve.placement import STARTS, _Search, _spacing
+from robomill.improve.placed import FINE, KEPT_OUT, NO_ROOM, UNREACHED, WHY
+from robomill.improve.placement import STARTS, _Search, _spacing, _worst_samples
 
 AXES = (np.arange(4) * 0.1, np.arange(5) * 0.05, np.array([0.01]), np.radians(np.arange(3) * 30.0))
 
@@ -116,3 +117,55 @@ def test_of_places_none_of_which_is_allowed_the_nearest_misses_least_and_of_thos
     if open_:
         nearest = min(open_, key=lambda i: (missed[i], -room[i] if room[i] == room[i] else 9.0))
         np.testing.assert_array_equal(asked[0], places[nearest])
+
+
+def test_a_run_is_worst_where_its_readings_and_its_tip_are_and_where_it_is_first_missed() -> None:
+    """The first sample of a path may be one of them; of what has no reading there is none."""
+    wall, floor, feed, end = (SimpleNamespace(worst=worst) for worst in (0, 7, -1, 3))
+    run = SimpleNamespace(verdict=SimpleNamespace(wall=wall, floor=floor, feed=feed, end=end), worst=5)
+    for lost, first in (([], []), ([4, 9], [4]), ([0], [0])):
+        run.missed = np.isin(np.arange(12), lost)
+        assert sorted(_worst_samples(run)) == sorted([0, 7, 3, 5, *first])  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("start", "end"), [(0.3, 0.25), (0.25, 0.25), (0.1, 0.25), (0.26, 0.25)])
+def test_a_place_is_refined_to_where_none_beside_it_is_better_and_allowed(start: float, end: float) -> None:
+    """The larger x the better, but none beyond 0.25 m is allowed, where the start may lie; y is best in the middle."""
+    own = search([0.0, -1.0, 0.01, 0.0], [1.0, 1.0, 0.01, 0.0])
+    own.measure = own.setup = None
+
+    def look(looking: object, places: np.ndarray) -> tuple[SimpleNamespace, np.ndarray]:
+        share = 2.0 - places[:, 0] + places[:, 1] ** 2
+        return SimpleNamespace(share=lambda *_: share), np.where(places[:, 0] > 0.25, NO_ROOM, FINE)
+
+    own._look, own._around = look, lambda at, size: _Search._around(own, at, size)  # type: ignore[arg-type]
+    axes = (np.linspace(0.0, 1.0, 5), np.linspace(-1.0, 1.0, 5), np.array([0.01]), np.array([0.0]))
+    found = _Search._refined(own, None, np.array([start, 0.3, 0.01, 0.0]), axes)  # type: ignore[arg-type]
+    np.testing.assert_allclose(found, [end, 0.0, 0.01, 0.0], atol=2e-3)
+    assert found[0] <= 0.25
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_where_a_part_lies_its_turn_is_counted_as_the_range_of_yaw_has_it(
+    monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    """By whole turns, of which one leads into the range if its own turn, or that and some whole ones, is in it."""
+    rng, seen = np.random.default_rng(seed), []
+    now, low = rng.uniform(-np.pi, np.pi), rng.uniform(-4.0 * np.pi, 2.0 * np.pi)
+    high = low + rng.choice([0.0, 1.0, 3.0, 2.0 * np.pi])
+    if seed < 4:
+        low = now + 2.0 * np.pi * (seed - 2)  # just at the begin of the range
+        high = low + 1.0
+    run = SimpleNamespace(verdict=SimpleNamespace(level="ok"))
+    monkeypatch.setattr(module, "today", lambda setup: np.array([0.1, 0.2, 0.3, now]))
+    monkeypatch.setattr(module, "simulate", lambda setup: run)
+    there = SimpleNamespace(reason="", known=True)
+    monkeypatch.setattr(module, "place_of", lambda result, at, measure: seen.append(at) or there)
+    own = search([0.0, 0.0, 0.0, low], [1.0, 1.0, 1.0, high], setup=SimpleNamespace(coupling=False), measure="verdict")
+    here, found, base = _Search._now(own)  # type: ignore[arg-type]
+    turns = [now + 2.0 * np.pi * n for n in range(-4, 5)]
+    inside = [turn for turn in turns if low - 1e-9 <= turn <= high + 1e-9]
+    assert here[3] == pytest.approx(inside[0] if inside else now, abs=1e-9)
+    assert here[:3].tolist() == [0.1, 0.2, 0.3]
+    np.testing.assert_array_equal(seen[0], here)
+    assert (found.known, base) == (True, run)

@@ -133,3 +133,19 @@ def test_where_a_deflection_changes_samples_are_as_close_as_it_changes_by_ten_mi
     on = fine.wanted.cutting & (fine.owner == 2)
     np.testing.assert_allclose(fine.share[on], np.abs(fine.wanted.p[on, 0] - moves.end[1][0]) / length, atol=1e-9)
     assert moves.finer(SimpleNamespace(delta=np.zeros_like(delta))) is moves  # type: ignore[arg-type]
+
+
+def test_a_move_that_goes_nowhere_ends_where_the_one_before_it_was_sent() -> None:
+    """Written again as it stands, twice; the cut goes on from there."""
+    text = "G21 G90\nG0 X0 Y0 Z5\nG0 Z-2\nG1 X20 F600\nG1 X20\nG4 P1\nG1 X20\nG1 Y-10\nG0 Z5\nM2\n"
+    moves = Moves.of_program(SLOT.replace(source=rm.GCodeSource(text, "x.nc")), interpret(text))
+    c = np.outer(1e-3 * moves.wanted.p[:, 0], [1.0, 2.0, 3.0]) * moves.wanted.cutting[:, None]
+    pieces, ends = moves.corrected(c, 2e-6)
+    there = moves.end[2] + 20e-6 * np.array([1.0, 2.0, 3.0])
+    for j in (2, 3, 4):
+        np.testing.assert_allclose(ends[j], there, atol=1e-15)
+    for j in (3, 4):
+        ((f0, f1, end),) = ((each.f0, each.f1, each.end) for each in pieces[j])
+        assert (f0, f1) == (0.0, 1.0)
+        np.testing.assert_array_equal(end, ends[j])
+    assert len(pieces[5]) == 1

@@ -48,3 +48,11 @@ def test_a_course_that_may_not_turn_is_one_angle() -> None:
     cost = np.random.default_rng(0).uniform(1.0, 2.0, (7, 9, 1))
     angle, _ = best_course(cost, np.zeros(6, dtype=np.int64))
     assert (angle == cost[..., 0].max(axis=0).argmin()).all()
+
+
+def test_where_no_course_leads_through_there_is_none() -> None:
+    """Each stage can be stood at, on one branch or the other, but not one after the other."""
+    cost = np.ones((3, 4, 2))
+    cost[0, :, 0] = cost[2, :, 1] = np.inf
+    for each in best_course(cost, np.full(2, 4)):
+        assert each.tolist() == [-1, -1, -1]

@@ -47,6 +47,8 @@ def test_how_far_a_tip_is_beside_two_lines_that_meet() -> None:
         ((10, 0, 0), 0),
     ):
         assert _beside(np.array([tip]) * 1e-3, path, np.array([at]))[0] == pytest.approx(off * 1e-3, abs=1e-12)
+    for tip, off in (((7, 3, 0), 3), ((13, 14, 0), 5)):  # at the end of the path there is one line
+        assert _beside(np.array([tip]) * 1e-3, path, np.array([len(path) - 1]))[0] == pytest.approx(off * 1e-3)
 
 
 def test_a_corner_springs_on_its_link_as_far_as_a_plain_run_of_the_same_text_is_off_the_lines() -> None:

@@ -10,6 +10,7 @@ import pytest
 from robomill.improve.stiffening import Stiffening, some_stiffer, stiffer_joints
 from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup
+from robomill.progress import Progress, watched
 from robomill.simulation.run import simulate
 
 
@@ -71,13 +72,16 @@ def test_where_no_joint_is_enough_the_best_ones_are_taken_together_until_they_ar
     best = [int(joint) for joint in np.argsort(-of_joint, kind="stable") if of_joint[joint] > 1e-9]
     left = of_joint.sum() - 0.5 * np.cumsum(of_joint[best])
     enough = np.flatnonzero(left <= tolerance)
-    ranked = stiffer_joints(setup)
+    told: list[float] = []
+    with watched(Progress(say=lambda each: told.append(each.share) if "together" in each.stage else None)):
+        ranked = stiffer_joints(setup)
     if len(enough) and enough[0] == 0:
         assert ranked.together == ()
         assert ranked.with_together is None
         return
     count = enough[0] + 1 if len(enough) else len(best)
     assert ranked.together == tuple(best[:count])
+    np.testing.assert_allclose(told, np.arange(count - 1) / (len(best) - 1), err_msg="two, three, ... or all of them")
     assert ranked.with_together is not None
     assert ranked.with_together.wall.value == pytest.approx(left[count - 1], rel=1e-3)
     assert (ranked.with_together.level != "out") == bool(len(enough))

@@ -56,3 +56,15 @@ def test_what_is_not_reached_or_has_no_force_on_the_corrected_path_is_refused(he
         check_reached(lost, RUN)
     if held == "reached":
         check_reached(replace(lost, delta=RUN.delta), lost)
+
+
+@pytest.mark.parametrize(("mm", "trusted"), [(1.99, True), (2.01, False)])
+def test_a_tool_that_would_be_sent_further_than_two_millimetres_is_not_sent(mm: float, trusted: bool) -> None:
+    c, at = np.full_like(RUN.path.p, 1e-4), int(np.flatnonzero(RUN.path.cutting)[7])
+    c[at] = 1e-3 * mm * np.array([0.6, 0.0, -0.8])
+    found = Correction(RUN, c, RUN, (1e-9,), np.zeros(len(c), dtype=bool))
+    if trusted:
+        check_found(found, RUN)
+        return
+    with pytest.raises(CompensationError, match=rf"line {RUN.path.block[at]} the tool would be sent 2\.01"):
+        check_found(found, RUN)

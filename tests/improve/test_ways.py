@@ -88,3 +88,24 @@ def test_what_would_cut_air_is_a_rapid_and_a_tool_that_leans_is_refused() -> Non
     leaning = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [9, 0, -2]], feed_mm_min=600, k=(0.0, 0.1, 1.0))
     with pytest.raises(ToolpathError, match="leans"):
         in_levels(leaning, np.zeros(2), 0.0)
+
+
+def test_turned_round_a_program_that_ends_in_the_part_begins_there_and_what_goes_level_stays_a_rapid() -> None:
+    """Down from Z 5, across below the face, with the tool leaning otherwise at every point; nothing comes out."""
+    p = np.array([[-10, 0, 5], [-10, 0, -2], [30, 0, -2], [30, 40, -2], [-10, 40, -2]]) * 1e-3
+    k = np.array([[0.0, 0.0, 1.0], [0.0, 0.6, 0.8], [0.6, 0.0, 0.8], [0.0, -0.6, 0.8], [-0.6, 0.0, 0.8]])
+    path = rm.Toolpath.from_points(p, [0.0, 0.0, 0.002, 0.0, 0.01], cutting=[0, 0, 1, 0, 1], k=k)
+    back = turned_round(path, 0.0)
+    np.testing.assert_array_equal(back.p, p[::-1])
+    np.testing.assert_array_equal(back.k, k[::-1])
+    assert back.cutting.tolist() == [False, True, False, True, False]
+    np.testing.assert_allclose(back.v_f[[1, 3]], [0.01, 0.002])
+
+
+@pytest.mark.parametrize("feed", [120.0, 300.0, 900.0])
+def test_turned_round_it_goes_in_with_the_lowest_feed_of_the_program_or_that_of_plunges(feed: float) -> None:
+    text = f"G21 G90 S12000 M3\nG0 X-10 Y0 Z5\nG0 Z-2\nG1 X30 F1200\nG1 Y10 F{feed}\nG0 Z5\nM2\n"
+    back = turned_round(rm.read_gcode(text), 0.0)
+    down = back.cutting & (np.diff(back.p[:, 2], prepend=9.0) < 0.0)
+    assert down.sum() == 1
+    assert 6e4 * back.v_f[down][0] == pytest.approx(min(feed, 300.0))

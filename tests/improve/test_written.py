@@ -103,3 +103,36 @@ def test_a_tip_that_stands_while_its_number_changes_has_not_moved() -> None:
     back = writing(SLOT.replace(tools=table, source=rm.GCodeSource(text, "x.nc")), toolpath_to_gcode)
     found = back.write(np.zeros_like(back.moves.wanted.p), 2e-6).text
     assert "".join(line for line in found.splitlines(keepends=True) if "robomill" not in line) == text
+
+
+@pytest.mark.parametrize("cycle", ["G84 X5 Y0 Z-3 R1 F1000", "G33.1 Z-3 K1"])
+def test_a_thread_is_not_corrected(cycle: str) -> None:
+    """Its feed is that of the spindle; the line is told."""
+    text = f"G21 G90\nS1000 M3\nG0 X5 Y0 Z5\n{cycle}\nG80\nG0 Z5\nM2\n"
+    back = writing(SLOT.replace(source=rm.GCodeSource(text, "x.nc")), toolpath_to_gcode)
+    with pytest.raises(CompensationError, match=r"^Line 4: a thread is cut in step with the spindle"):
+        back.write(np.zeros_like(back.moves.wanted.p), 2e-6)
+
+
+def test_a_program_of_one_cutting_speed_whose_revolutions_nobody_knows_is_written() -> None:
+    """They are the same in both: none."""
+    text = "G21 G90\nG96 S100 M3\nG0 X0 Y0 Z5\nG0 Z-2\nG1 X20 F600\nG0 Z5\nM2\n"
+    back = writing(SLOT.replace(source=rm.GCodeSource(text, "x.nc")), toolpath_to_gcode)
+    assert np.isnan(interpret(text).n_s).any()
+    c = np.where(back.moves.wanted.cutting[:, None], [0.0, 1e-4, 0.0], 0.0)
+    found = back.write(c, 2e-6)
+    np.testing.assert_allclose(found.q[back.moves.wanted.cutting], (back.moves.wanted.p + c)[back.moves.wanted.cutting])
+
+
+def test_where_points_are_told_to_be_is_where_their_text_leads_to_the_last_digit() -> None:
+    """Corrected by what no text can say: both are rounded alike."""
+    p = np.array([[0.0, 0.0, 20.0], [0.0, 0.0, -2.0], [20.0, 0.0, -2.0], [20.0, 10.0, -2.0]]) * 1e-3
+    path = rm.Toolpath.from_points(p, 0.01, cutting=[False, False, True, True])
+    back = writing(SLOT.replace(source=path, step=5e-3), toolpath_to_gcode)
+    wanted = back.moves.wanted
+    c = np.where(wanted.cutting[:, None], np.pi * np.array([1e-5, -2e-5, 3e-5]), 0.0)
+    found = back.write(c, 2e-6)
+    read = rm.read_gcode(found.text).p
+    for q in found.q[wanted.cutting & np.append(np.diff(back.moves.owner) > 0, True)]:
+        assert np.abs(read - q).max(axis=1).min() < 1e-13
+    np.testing.assert_allclose(found.q, wanted.p + c, atol=1e-9)

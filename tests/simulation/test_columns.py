@@ -40,3 +40,18 @@ def test_sections_are_in_millimetres(result):
     assert np.isnan(columns["slope_deg"]).all()
     np.testing.assert_allclose(columns["depth_mm"], [1e3 * s.depth for s in result.sections])
     np.testing.assert_allclose(columns["centre_offset_mm"], [1e3 * s.centre_offset for s in result.sections])
+
+
+def test_springs_and_what_a_program_is_sent_aside_have_columns_of_their_own():
+    """Of a corrected program whose spindle gives way: its shares with the joints' add up to what it is pushed."""
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(step=10e-3)
+    setup = setup.replace(springs=(rm.SpindleSpring(lateral_um_N=0.5),))
+    made = rm.compensate(setup).led
+    columns, name = made.columns(), setup.springs[0].name.replace(" ", "_")
+    for i, axis in enumerate("xyz"):
+        np.testing.assert_allclose(columns[f"{name}_{axis}_mm"], made.delta_spring[:, 0, i] * 1e3)
+        np.testing.assert_allclose(columns[f"ahead_{axis}_mm"], made.ahead[:, i] * 1e3)
+        pushed = sum(columns[f"joint{j}_{axis}_mm"] for j in range(1, 6)) + columns[f"{name}_{axis}_mm"]
+        np.testing.assert_allclose(columns[f"delta_{axis}_mm"], pushed + columns[f"ahead_{axis}_mm"], atol=1e-9)
+    cut = made.path.cutting
+    np.testing.assert_allclose(made.delta_spring[cut, 0, :2], 0.5e-6 * made.F[cut, :2], atol=1e-12)

@@ -32,8 +32,10 @@ def test_where_a_leg_ends_it_belongs_to_the_corner(step: float, off: tuple[float
         assert found[at] == pytest.approx(corner, abs=1e-12)
         assert (found[:at] <= corner + 1e-12).all()
         assert (found[at:] >= corner - 1e-12).all()
-    away = np.abs(s[:, None] - [20e-3, 40e-3]).min(axis=1) > 4.5e-3
-    np.testing.assert_array_equal(found[away], np.clip(near, 0.0, s[-1])[away])
+    ends = [int(np.argmin(np.abs(s - corner))) for corner in corners]
+    low = np.repeat([0.0, *corners], np.diff([0, *ends, len(s)]))
+    high = np.repeat([*corners, s[-1]], np.diff([0, ends[0] + 1, ends[1] + 1, len(s)]))
+    np.testing.assert_allclose(found, np.clip(near, low, high), atol=1e-12)
 
 
 def test_steps_that_go_nowhere_are_no_steps_and_corners_turn_by_ten_degrees_at_least() -> None:
@@ -69,3 +71,17 @@ def test_a_step_costs_what_it_leads_aside_of_its_way_or_all_of_it_against_it(lea
         cost = size[i] * abs(np.sin(between)) if np.cos(between) > 0.0 and i >= 5 else size[i]
         cost += UPRIGHT * up[i] if i >= 5 and size[i] < 0.1 * up[i] else 0.0
         assert found[i] == pytest.approx(cost, abs=1e-15)
+
+
+@pytest.mark.parametrize("beyond", [0.15e-3, 0.05e-3])
+def test_a_cut_that_runs_straight_on_beyond_its_corner_is_linked_by_the_line_that_leads_back_across(
+    beyond: float,
+) -> None:
+    """Deflected backwards it is sent further; what leads on costs little, what leads across to the next cut more."""
+    cut = np.array([[0, 0, 0], [10, 0, 0], [20, 0, 0], [20, 10, 0], [20, 20, 0]]) * 1e-3
+    q = np.vstack([cut[:3], [20e-3 + beyond, 0.0, 0.0], [20e-3, beyond + 0.05e-3, 0.0], cut[3:]])
+    up = np.tile([0.0, 0.0, 1.0], (len(q), 1))
+    nearest = np.array([0.0, 10e-3, 20e-3, 20e-3, 20e-3 + q[4, 1], 30e-3, 40e-3])
+    s, meets = at_corners(q, up, np.array([0, 1, 1, 2, 3, 4, 4]), nearest, Ways.of(cut, up[:5]))
+    assert np.flatnonzero(meets).tolist() == [3, 4]
+    np.testing.assert_allclose(s, [0.0, 10e-3, 20e-3, 20e-3, 20e-3, 30e-3, 40e-3])

@@ -6,6 +6,7 @@ in what the earlier, deflected passes left, C from the paper's Denavit-Hartenber
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,6 +14,8 @@ import pytest
 from scipy.optimize import least_squares
 
 import robomill as rm
+from robomill.cutting.unjudged import Unjudged
+from robomill.simulation.run import kept_to_path
 from tests.cutting.brute_force import UPRIGHT, Cut, Floats, Move
 from tests.simulation.cuts import AL7075, BALL, FEED, FLAT, MM, CutCase, along_x, shoulder
 
@@ -83,3 +86,20 @@ def test_coupled_pass(case: CutCase) -> None:
     path = result.path
     middle = np.flatnonzero(path.cutting & (np.abs(path.p[:, 0]) < 0.6 * MM))[-1]
     np.testing.assert_allclose(result.delta[middle], marched(case), atol=1e-6)
+
+
+def test_kept_to_its_path_a_coupled_run_has_the_force_of_what_is_told_and_what_did_not_agree_is_known() -> None:
+    """A level slot: the force of a run without coupling; what nobody has a force for stays unknown."""
+    setup = rm.load_setup("paper_flute/setup_process").replace(step=10e-3, coupling=True)
+    run, plain = rm.simulate(setup), rm.simulate(setup.replace(coupling=False))
+    cut = np.flatnonzero(run.path.cutting)
+    where = np.zeros((2, len(run.path)), dtype=bool)
+    where[0, cut[2:4]] = where[1, cut[5]] = True
+    unjudged = (Unjudged("coupling", where[0], "open"), Unjudged("layers", where[1], "not known"))
+    kept = kept_to_path(replace(run, unjudged=unjudged, delta=np.where(where.any(axis=0)[:, None], np.nan, run.delta)))
+    assert [each.code for each in kept.unjudged] == ["layers"]
+    assert np.flatnonzero(~np.isfinite(kept.delta[:, 0]) & run.path.cutting).tolist() == [cut[5]]
+    np.testing.assert_allclose(kept.F, plain.F, rtol=1e-12)
+    known = run.path.cutting & ~where[1]
+    np.testing.assert_allclose(kept.delta[known], plain.delta[known], rtol=1e-12)
+    assert np.abs(run.F - plain.F).max() > 1.0

@@ -8,7 +8,19 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from robomill.simulation.coupling import AROUND, LONGEST, MOST, NARROW, TOLERANCE, _bounds, _by_bracket, settle
+from robomill.simulation.coupling import (
+    AROUND,
+    LONGEST,
+    MOST,
+    NARROW,
+    TOLERANCE,
+    _between,
+    _bounds,
+    _by_bracket,
+    _by_broyden,
+    _by_height,
+    settle,
+)
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -175,10 +187,10 @@ def test_an_end_that_rests_on_its_floor_holds_the_tool(seed):
 
     w = brentq(over, 0.0, 1.0, xtol=1e-15)
     root = aside(w) + (at + near * max(1.0 - w / touch, 0.0)) * axis
-    found = settle(bends, np.zeros(3), np.zeros(3), axis)
-    assert found.agreed
-    np.testing.assert_allclose(found.x, root, atol=2 * TOLERANCE)
-    assert found.rest == pytest.approx(remains(bends, found), abs=1e-12)
+    for found in (settle(bends, np.zeros(3), np.zeros(3), axis), _by_height(bends, np.zeros(3), axis)):
+        assert found.agreed
+        np.testing.assert_allclose(found.x, root, atol=2 * TOLERANCE)
+        assert found.rest == pytest.approx(remains(bends, found), abs=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -286,3 +298,39 @@ def test_there_are_no_bounds_where_a_height_is_further_than_a_tool_is_corrected_
     for far, found in ((0.4 * LONGEST, True), (4.0 * LONGEST, False)):
         low, high, _ = _bounds(lambda x, far=far: way * far * UP, np.zeros(3), UP, (-1e-6, 1e-6))
         assert bool(low < high) == found
+
+
+def test_begun_anew_it_goes_half_of_the_way_that_the_force_leads_then_a_third_and_a_quarter():
+    """From the best place so far, where a force that knows no place leads anywhere and nothing closes in."""
+    rng, asked, led = np.random.default_rng(3), [], []
+
+    def bends(x):
+        asked.append(np.array(x))
+        led.append(rng.normal(size=3) * 20e-6)
+        return x + led[-1]
+
+    assert not _by_broyden(bends, np.zeros(3)).agreed
+    for times, begun in enumerate((12, 24, 36), start=1):
+        best = int(np.argmin([np.abs(each).max() for each in led[:begun]]))
+        np.testing.assert_allclose(asked[begun] - asked[best], led[best] / (1 + times), atol=1e-12)
+    assert len(asked) == MOST
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_between_two_ends_it_is_looked_where_interpolation_truncation_and_projection_say(seed):
+    """As Oliveira and Takahashi have it (2020): with kappa_1 = 0.2 / (b - a) of the first bracket, kappa_2 = 2."""
+    rng = np.random.default_rng(seed)
+    length = 1e-3
+    a, b = np.sort(rng.uniform(0.0, length, 2))
+    over, under = rng.uniform(0.01, 1.0) * 1e-3, -rng.uniform(0.01, 1.0) * 1e-3
+    room = (b - a) * rng.uniform(0.5, 2.0)
+    half = 0.5 * (a + b)
+    straight = (over * b - under * a) / (over - under)
+    sign, delta = np.sign(half - straight), 0.2 / length * (b - a) ** 2
+    truncated = straight + sign * delta if delta <= abs(half - straight) else half
+    radius = max(room - 0.5 * (b - a), 0.0)
+    truth = truncated if abs(truncated - half) <= radius else half - sign * radius
+    assert _between((a, over), (b, under), room, length) == pytest.approx(truth, abs=1e-15)
+    for wrong in ((a, -over), (a, 0.0)):
+        assert _between(wrong, (b, under), room, length) == half
+    assert _between((a, over), (b, 0.0), room, length) == half

@@ -17,6 +17,7 @@ from robomill.simulation.cut import (
     SUSPECTED,
     cut_notes,
     moved_points,
+    over_stock,
     rotary_asked,
     steps_in_stock,
     suspicions,
@@ -177,3 +178,19 @@ def test_steps_before_which_the_material_is_not_known_are_not_judged_where_they_
         for each in found:
             np.testing.assert_array_equal(np.flatnonzero(each.where), told)
     assert unknown_material(replace(met, part=None)) == ()
+
+
+@pytest.mark.parametrize("lean", [0.0, 20.0, 50.0])
+def test_a_tool_that_leans_reaches_into_the_block_from_further_beside_it(lean: float) -> None:
+    """By its radius, and by how far its axis goes aside up to the top; what stands above the top reaches nothing."""
+    block, R = SETUP.stock_block, SETUP.cutter.radius
+    k = np.array([np.sin(np.radians(lean)), 0.0, np.cos(np.radians(lean))])
+    for depth in (4e-3, 1e-3, -1e-3):
+        reach = R + max(depth, 0.0) * np.tan(np.radians(lean))
+        off = np.array([-5e-3, 0.0, 0.5 * reach, 0.999 * reach, 1.001 * reach, 2.0 * reach])
+        for axis, side in ((0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0)):
+            p = np.tile(0.5 * (block.lower + block.upper), (6, 1))
+            p[:, axis] = (block.upper if side > 0.0 else block.lower)[axis] + side * off
+            p[:, 2] = block.upper[2] - depth
+            found = over_stock(SETUP, path_of(p, np.ones(6), k=np.tile(k, (6, 1))))
+            np.testing.assert_array_equal(found, (off < reach) & (depth > 0.0))

@@ -8,7 +8,7 @@ import robomill as rm
 from robomill.cutting.unjudged import Unjudged
 from robomill.io.samples import samples_dir
 from robomill.progress import Progress, watched
-from robomill.simulation.led import against
+from robomill.simulation.led import against, led_beside
 
 SLOT = rm.load_setup(samples_dir() / "paper_flute")
 
@@ -72,3 +72,21 @@ def test_a_later_plunge_into_what_is_opened_meets_nothing_of_the_correction_of_a
     assert again == 0.0
     assert pushed(0.0, wanted=False)[1] > 1.0
     np.testing.assert_allclose(pushed(20.0, wanted=True), first, rtol=1e-6)
+
+
+def test_a_tool_that_is_sent_back_feeds_as_it_goes_but_on_a_link() -> None:
+    """Along x, then along y, with a link of no length between; one step of each leg goes back, and so does the link."""
+    p = np.array([[0, 0], [1, 0], [2, 0], [3, 0], [3, 0], [3, 1], [3, 2], [3, 3]], dtype=float) * 1e-3
+    path = rm.Toolpath.from_points(np.column_stack([p, np.zeros(8)]), 0.03, cutting=np.arange(8) > 0)
+    off = np.array([[0, 0], [0, 0], [-1.5, 0.2], [-1.5, 0.0], [0.0, -0.5], [0, 0], [0.3, -1.2], [0, 0]]) * 1e-3
+    sent = path.p + np.column_stack([off, np.zeros(8)])
+    found = led_beside(path, sent, (np.full(8, -1), np.zeros(8, dtype=bool)))
+    np.testing.assert_array_equal(found.tips, sent)
+    np.testing.assert_array_equal(found.meant, path.p)
+    told = [[0, 0], [1, 0], [1, 0], [1, 0], [0, 1], [0, 1], [0, 1], [0, 1]]
+    for i, way in enumerate(told):
+        step = (sent[i] - sent[i - 1])[:2] if i else np.zeros(2)
+        back = i in (2, 6)
+        assert (step @ way < 0.0) == (back or i == 4)
+        expected = step / np.linalg.norm(step) if back else way
+        np.testing.assert_allclose(found.way[i, :2], expected, atol=1e-12, err_msg=str(i))

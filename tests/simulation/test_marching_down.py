@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 
 import robomill as rm
 from robomill.io.samples import samples_dir
+from robomill.simulation.marching import WayDown
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
 
@@ -169,3 +170,25 @@ def test_a_plunge_sinks_as_its_thrust_grows(drills: bool, step: float) -> None:
     truth = np.interp(-run.path.p[on, 2], down, found)
     at = run.delta_in_cut[on, 2]
     np.testing.assert_allclose(at[1:], truth[1:], atol=0.03 * found.max() + 0.04 * step)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_way_down_goes_aside_as_it_is_told_and_sinks_as_steeply_as_its_tip_really_falls(seed: int) -> None:
+    """Told 1 in 100 along a heading across a leaning axis; the tip falls from a tenth of that to fifty times as much,
+    and beside that it may have gone anywhere. A tip that rises does not sink."""
+    rng = np.random.default_rng(seed)
+    k, heading, aside = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    way = (heading - 0.01 * k) / np.hypot(1.0, 0.01)
+    start, length = rng.normal(size=3) * 20e-3, rng.uniform(0.1e-3, 2e-3)
+    down = WayDown(start, k, way, length)
+    level = length * np.hypot(1.0, 0.01) / (1.0 + 0.01**2)  # of the step, across the tool
+    for slope in (0.0005, 0.001, 0.003, 0.008, 0.02, 0.5):
+        tip = start - slope * level * k + rng.normal(size=2) * 30e-6 @ (heading, aside)
+        goes, steep = down.to(tip)
+        np.testing.assert_allclose(goes * length, level * heading - slope * level * k, atol=1e-12)
+        assert steep == pytest.approx(np.clip((slope - PRESSED) / (DISH - PRESSED), 0.0, 1.0), abs=1e-6)
+        assert down.to(start + slope * level * k)[1] == 0.0
+    for told, whole in ((-k, 1.0), (heading, 0.0)):
+        goes, steep = WayDown(start, k, told, 0.0).to(start - 1e-3 * k)
+        np.testing.assert_array_equal(goes, told)
+        assert steep == whole

@@ -136,3 +136,17 @@ def test_the_sides_of_a_cones_groove_are_painted_with_their_error_along_their_no
         inner = cells & (np.abs(x) < 3e-3)
         assert inner.sum() > 400
         assert shown.error[inner] == pytest.approx(sign * 0.2e-3 * np.cos(np.radians(30.0)), rel=1e-3)
+
+
+@pytest.mark.parametrize("times", [1.0, 20.0])
+def test_a_slope_whose_tool_lags_behind_is_painted_as_a_floor_that_is_off_in_height(
+    pocket: SimulationResult, times: float
+) -> None:
+    """Down by 1 in 10, 0.1 mm back along its way: 0.01 mm too deep, however much of that is drawn; no wall moves."""
+    lines = ["G0 X-35 Y0 Z5", "G0 Z0", "G1 X35 Z-7 F900", "G0 Z5"]
+    made = rm.simulate(pocket.setup.replace(source=GCodeSource("\n".join(["G21 G90 S12000 M3", *lines, "M2", ""]))))
+    lag = np.where(made.path.cutting, 0.1e-3, 0.0)[:, None] * [-1.0, 0.0, 0.0] @ made.setup.T_MW[:3, :3].T
+    shown = enlarged(dataclasses.replace(made, delta=lag), times)
+    x, y = np.meshgrid(shown.drawn.x, shown.drawn.y, indexing="ij")
+    floor = (np.abs(x) < 15e-3) & (np.abs(y) < 2e-3)
+    assert shown.error[floor] == pytest.approx(-0.01e-3, abs=1e-7)

@@ -43,3 +43,13 @@ def test_a_path_is_missed_where_a_point_at_feed_is_not_reached_and_the_first_of_
     assert found.reason == first.reason(0) != ""
     near = "G21 G90 S9000 M3\nG0 Y5000 Z5\nG0 Y0\nG1 Z-1 F900\nG1 X-40\nM2\n"
     assert path_reach(setup.replace(source=GCodeSource(near))).reason == ""
+
+
+@pytest.mark.parametrize("most", [20, 60, 1000])
+def test_a_long_path_is_looked_at_in_as_many_steps_as_are_asked_for(monkeypatch: pytest.MonkeyPatch, most: int) -> None:
+    """Of its length, 100 mm at feed; a short one in the steps of its run, of 1 mm."""
+    monkeypatch.setattr("robomill.simulation.reach.MAX_SAMPLES", most)
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(step=1e-3)
+    path = path_reach(setup).path
+    step = path.step_length[path.cutting]
+    assert step.max() == pytest.approx(max(setup.toolpath.s[-1] / most, 1e-3), rel=0.1)

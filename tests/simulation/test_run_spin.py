@@ -49,6 +49,7 @@ def test_held_at_the_one_spin_of_its_configurations_an_arm_stands_the_same(spin)
     held = configurations(FANUC, sampled(FANUC.toolpath, FANUC.step), spin_of(ik))
     np.testing.assert_allclose(held.theta, ik.theta, atol=1e-9)
     assert isinstance(spin_of(ik), float)
+    assert spin_of(replace(ik, spin=ik.spin[:1])) == spin_of(ik)
 
 
 def test_where_the_spin_changes_or_is_none_there_is_no_one_spin():
@@ -124,3 +125,13 @@ def test_the_toolpath_pages_reach_is_that_of_the_run(setup):
         reach.room, (1 - np.abs(2 * run.theta - low - high) / (high - low)).min(axis=1), atol=1e-12
     )
     np.testing.assert_array_equal(configurations(setup, run.path).theta, run.theta)
+
+
+def test_held_at_a_spin_that_changes_the_tool_is_turned_by_it_at_every_sample():
+    """About its own axis: the tip and that axis stay."""
+    path = sampled(FANUC.toolpath, FANUC.step)
+    held = np.linspace(0.5, 0.7, len(path))
+    found = rm.tool_pose(FANUC.robot, configurations(FANUC, path, held).theta)
+    np.testing.assert_allclose(np.arctan2(found[:, 1, 0], found[:, 0, 0]), held, atol=1e-9)
+    np.testing.assert_allclose(found[:, :3, 2], np.broadcast_to([0.0, 0.0, 1.0], (len(path), 3)), atol=1e-9)
+    np.testing.assert_allclose(found[:, :3, 3], path.p + FANUC.T_MW[:3, 3], atol=1e-9)

@@ -11,6 +11,7 @@ from robomill.cutting.tool_table import TableTool, ToolTable
 from robomill.errors import SetupError
 from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup
+from robomill.kinematics.transforms import translation
 from robomill.surface.stock import BESIDE
 from robomill.toolpath.source import GCodeSource
 
@@ -106,3 +107,13 @@ def test_a_tolerance_wider_than_any_part_has_one_is_refused(name):
             SETUP.replace(**{name: wide})
     for fits in (1e-5, 0.3e-3, 0.049):
         assert getattr(SETUP.replace(**{name: fits}), name) == fits
+
+
+def test_what_a_notebook_shows_of_a_set_up_is_in_it() -> None:
+    shown = SETUP.replace(stock=None, T_MW=translation([12e-3, -1300e-3, 2.54e-3]))
+    facts = dict(shown._facts())
+    assert facts["Part zero in {M}"].replace("\u2212", "-").startswith("12.0, -1300.0, 2.5 ")
+    assert "Stock" not in facts
+    assert {"Robot", "Path", "Cutter", "Force"} <= set(facts)
+    assert "Stock" in dict(SETUP._facts())
+    assert "0.30" in SETUP._said()

@@ -10,6 +10,7 @@ from scipy.optimize import root
 
 import robomill as rm
 from robomill.io.samples import samples_dir
+from robomill.simulation.uncoupled import met_where_pushed
 from tests.cutting.brute_force import Cut, Floats, Move, box
 from tests.cutting.test_brute_force import AL7075, UPRIGHT
 
@@ -114,3 +115,17 @@ def test_a_corrected_program_is_told_what_the_depth_that_it_is_sent_to_leaves_ou
     for note in notes:
         share = float(note.message.split("about ")[1].split(" %")[0]) / 100.0
         assert share == pytest.approx(truth, rel=0.1)
+
+
+def test_what_a_corrected_program_meets_is_that_of_its_depth_up_to_the_last_sample_of_a_steady_cut() -> None:
+    """A program that ends in its slot, 2 mm deep: sent less deep it was told the force of that; pushed down it meets
+    that of the slot, all along, but for where the mill enters."""
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup_process.toml").replace(
+        source=rm.GCodeSource("G21 G90\nS12000 M3\nG0 X-70 Y0 Z10\nG0 Z-2\nG1 X0 F1800\nM2\n"), step=5e-3
+    )
+    run, wanted = rm.simulate(setup.replace(source=rm.compensate(setup).source)), rm.simulate(setup)
+    F = met_where_pushed(run)[1]
+    assert run.path.cutting[-1]
+    told, met, slot = (np.linalg.norm(each[-3:], axis=1) for each in (run.F, F, wanted.F))
+    np.testing.assert_allclose(met, slot, rtol=3e-3)
+    assert np.all(np.abs(told - slot) > 0.02 * slot)

@@ -377,3 +377,14 @@ def test_a_reading_knows_where_it_was_taken_and_what_was_left_there(name):
     np.testing.assert_array_equal(np.sign(walls.material_left[whole]), np.where(on_left, -1.0, 1.0)[whole])
     np.testing.assert_allclose(floors.place[:, 2], -2e-3, atol=1e-9)
     np.testing.assert_allclose(floors.material_left, -0.05e-3, atol=1e-9)
+
+
+def test_a_blind_slot_has_a_wall_behind_its_begin_and_one_ahead_of_its_end():
+    """Moved along its feed by 0.1 mm it leaves so much at the one and takes as much too much at the other."""
+    ends = pushed(run("G0 X-15 Y0 Z5", "G1 Z-2 F300", "G1 X12 F1800"), along=0.1e-3).gauge.ends
+    for x, out, left in ((-15e-3 - R, -1.0, 0.1e-3), (12e-3 + R, 1.0, -0.1e-3)):
+        there = np.abs(ends.place[:, 0] - x) < 1e-9
+        assert there.any()
+        np.testing.assert_allclose(ends.out[there], np.tile([out, 0.0, 0.0], (there.sum(), 1)), atol=1e-12)
+        np.testing.assert_allclose(ends.material_left[there], left, atol=1e-12)
+    assert len({*np.round(ends.place[:, 0], 9).tolist()}) == 2

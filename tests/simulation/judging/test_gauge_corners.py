@@ -163,3 +163,17 @@ def test_a_wall_that_bends_under_the_cut_is_said(thick, thin):
 @pytest.mark.parametrize("name", PARTS)
 def test_tips_between_crossing_cuts_are_no_thin_walls(name):
     assert len(run(*PARTS[name]).gauge.thin) == 0
+
+
+@pytest.mark.parametrize("turn", [6.0, 9.0])
+def test_an_arc_of_few_chords_has_its_inner_wall_at_every_one(turn: float) -> None:
+    """Though they overlap there: a half circle of 10 mm by a mill of 8, whose inner wall has a radius of 6 mm."""
+    angle = np.radians(np.arange(-90.0, 90.0 + 0.5 * turn, turn))
+    arc = [f"G1 X{10 * np.cos(each):.6f} Y{10 * np.sin(each):.6f}" for each in angle]
+    made = pushed(run("G0 X-20 Y-10 Z5", "G0 Z-2", "G1 X-1 F1800", *arc, "G1 X-20", step=10e-3))
+    on_arc = np.flatnonzero(made.path.cutting & (made.path.p[:, 0] > 1e-3) & (made.path.step_length > 0.0))
+    walls = made.gauge.walls
+    inner = np.abs(np.hypot(walls.place[:, 0], walls.place[:, 1]) - 6e-3) < 0.5e-3
+    assert len(on_arc) == len(angle) - 2
+    assert {*on_arc.tolist()} <= {*walls.sample[inner & (walls.length > 0.0)].tolist()}
+    np.testing.assert_allclose(walls.error[inner], 0.0, atol=1e-9)

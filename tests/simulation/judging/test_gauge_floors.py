@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import robomill as rm
 from robomill.cutting.tool import Cutter
-from robomill.simulation.judging.gauge import ACROSS, RIM
+from robomill.simulation.judging.gauge import ACROSS, AROUND, BESIDE_ROOT, CROWN, LOOK, ON_NOSES, RIM, _under
 from robomill.surface.stock import Stock
 from tests.simulation.judging.pushed_runs import R, pushed, run
 
@@ -155,3 +156,54 @@ def test_a_ball_along_the_edge_is_off_normal_to_what_it_leaves(y, push):
 def test_a_floor_is_looked_for_as_far_to_both_sides_within_what_is_cut_flat():
     assert sorted(ACROSS) == sorted(-share for share in ACROSS)
     assert max(map(abs, (*ACROSS, RIM))) < 1.0
+
+
+@pytest.mark.parametrize("left", [0.02e-3, -0.1e-3, 0.15e-3])
+def test_a_tool_that_has_gone_aside_by_a_part_of_its_radius_has_its_floor_where_it_still_cuts(left):
+    """0.4 mm wide, from a slot along X: nothing is read beside what it was told to cut and did."""
+    made = pushed(run("G0 X-31 Y0 Z5", "G0 Z-0.2", "G1 X-26 F600", cutter=Cutter("flat", 0.4e-3)), left=left)
+    floors = made.gauge.floors
+    beside = np.abs(floors.place[:, 1])
+    assert beside.max() <= 0.2e-3 - abs(left)
+    assert (beside.max() > 0.1e-3) == (abs(left) < 0.1e-3)
+    np.testing.assert_allclose(floors.error, 0.0, atol=1e-9)
+
+
+def test_noses_are_looked_at_from_their_flat_end_to_their_rim_and_what_stands_in_every_direction():
+    assert np.all(np.diff([0.0, *ON_NOSES]) > 0.0)
+    assert ON_NOSES[-1] < 1.0
+    assert np.diff(ON_NOSES).max() < 0.11
+    np.testing.assert_allclose(BESIDE_ROOT, np.linspace(1.0, 2.0, len(BESIDE_ROOT)))
+    for angles in (AROUND, LOOK):
+        np.testing.assert_allclose(np.diff([*angles, angles[0] + 2.0 * np.pi]), 2.0 * np.pi / len(angles))
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.3, 0.7, 1.2, 2.0])
+def test_beside_the_axis_a_floor_is_looked_for_where_the_tool_still_cuts_and_the_heel_has_not_rounded_it(slope):
+    """So far aside as CROWN is of the slope's length, at most; nowhere but beneath the axis where nothing is flat."""
+    flat, aside = np.array([4e-3, 4e-3, 1e-3, 0.0, 0.2e-3]), np.array([0.0, 1.8e-3, 0.05e-3, 0.0, 0.13e-3])
+    way, none = np.tile([1.0, 0.0, 0.0], (5, 1)), np.zeros(5, dtype=bool)
+    at = SimpleNamespace(
+        i=np.arange(5), bottoms=none, steep=none, slope=np.full(5, slope), feed=way, left_of=way[:, [1, 0, 2]]
+    )
+    q, offset, u = _under(at, flat, aside)
+    even = CROWN / np.hypot(slope, CROWN)
+    for n in range(5):
+        rim = min(RIM, even) * max(flat[n] - aside[n], 0.0)
+        asked = [share * flat[n] for share in ACROSS if share] + [rim, -rim]
+        seen = [each for each in asked if abs(each) + aside[n] < flat[n] and abs(each) <= even * flat[n]]
+        np.testing.assert_allclose(sorted(offset[q == n]), sorted([0.0, *seen]), atol=1e-15)
+    np.testing.assert_array_equal(u, at.left_of[q])
+
+
+@pytest.mark.parametrize("kind", ["flat", "ball"])
+def test_from_a_tool_into_the_part_floors_lie_beneath_it_and_what_noses_leave_beside_an_edge_beneath_and_aside(kind):
+    """A slot on the level; a ball along the edge of the block, whose axis is beside it."""
+    slot = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X20 F1800", cutter=Cutter(kind, 8e-3)).gauge.floors
+    np.testing.assert_allclose(slot.out, np.tile([0.0, 0.0, -1.0], (len(slot.out), 1)), atol=1e-9)
+    if kind == "ball":
+        beside = run("G0 X-40 Y21 Z5", "G0 Z-2", "G1 X20 F1800", cutter=Cutter(kind, 8e-3)).gauge.floors
+        middle = np.array([0.0, 21e-3, 2e-3])
+        way = (beside.place - middle) * [0.0, 1.0, 1.0]
+        np.testing.assert_allclose(beside.out, way / np.linalg.norm(way, axis=1, keepdims=True), atol=1e-4)
+        assert len(beside.out)

@@ -75,3 +75,12 @@ def test_along_the_feed_the_far_end_is_that_of_the_worst_point() -> None:
     without_ends = replace(low.gauge, ends=Readings(*(getattr(ends, each.name)[:0] for each in fields(ends))))
     for found in (low.gauge, without_ends):
         assert far_share(low, found, (np.inf, np.inf, 2.0 * max(along))) == pytest.approx(0.5, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["walls", "floors"])
+def test_of_walls_and_floors_the_far_end_is_that_of_their_own_way(kind: str) -> None:
+    """Each alone: walls go with the tip across the feed, floors with it along the tool."""
+    low, high = (run(SLOT, share) for share in PUBLISHED["axial"])
+    worst = max(abs(getattr(each.verdict, kind[:-1]).value) for each in (low, high))
+    limits = (2.0 * worst, np.inf, np.inf) if kind == "walls" else (np.inf, 2.0 * worst, np.inf)
+    assert far_share(low, low.gauge, limits) == pytest.approx(0.5, rel=1e-3)

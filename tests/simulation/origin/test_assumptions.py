@@ -122,3 +122,12 @@ def test_every_verb_says_what_it_assumes_in_lines_and_in_json(line: str, capsys)
     assert set(PAPER) <= {each["what"] for each in found}
     assert all(each["why"] for each in found)
     assert f"assumed   {'; '.join(each['what'] for each in found)}" in lines
+
+
+@pytest.mark.parametrize("compliances", [True, False])
+def test_where_compliances_are_not_used_they_alone_are_left_out(compliances: bool) -> None:
+    robot = load_robot("slavkovic_5r")
+    guessed = dict.fromkeys(robot.provenance, Provenance("assumed", "guessed"))
+    found = names(assumed_of_robot(robot.replace(provenance=guessed), compliances=compliances))
+    of_all = ["joint compliances", "D-H table", PAPER[0], "joint limits"]
+    assert [each for each in found if each in of_all] == of_all[not compliances :]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.simulation.origin.doubts import CODE, FRAME, SLIP, frame_notes
+from robomill.simulation.origin.doubts import CODE, FRAME, SLIP, _of_robot, frame_notes
 
 SLOT = {"p_mm": [[-20, 0, -2], [20, 0, -2]], "feed_mm_min": 1800}
 
@@ -129,3 +129,14 @@ def test_a_cutter_that_sticks_out_far_and_is_taken_as_rigid_is_told() -> None:
             bent = np.hypot(F[0], F[1]) * 0.04**3 / (3 * 600e9 * np.pi * 0.0032**4 / 64)
             assert f"{bent * 1e3:.2f}" in told[length, False][0]
     assert [len(each) for each in told.values()] == [1, 0, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("zero_mm", "told"),
+    [((0, -49, 10), True), ((0, -51, 10), False), ((30, 38, -49), True), ((30, 41, 0), False), ((0, -30, 51), False)],
+)
+def test_a_part_lies_in_the_foot_of_an_arm_within_five_centimetres_of_its_axis_and_of_its_plane(
+    zero_mm: tuple[float, float, float], told: bool
+) -> None:
+    words = [*_of_robot(rm.load_robot("slavkovic_5r"), 1e-3 * np.array(zero_mm))]
+    assert ["lies in the foot of the robot" in each for each in words] == [True] * told

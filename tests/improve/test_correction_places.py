@@ -1,0 +1,66 @@
+"""Where samples stand that are corrected: ways down and what goes on from them, the room that it has, ways out."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import robomill as rm
+from robomill.improve.correction import Places
+
+PUSHED = 0.1e-3  # m: how far the tool is off everywhere
+RAMP, PLUNGE = np.array([5e-3, 0.0, -1e-3]), np.array([0.0, 0.0, -2e-3])
+
+
+def places_of(parts: list[tuple[np.ndarray, float]]) -> tuple[Places, list[int], list[tuple[int, int]]]:
+    """A rapid, then ways down in two steps each, behind which a level cut begins on the spot, with a first step of so
+    much, a second one and a way out along the tool; the samples that go out, and those of ways down with the first one
+    of the cut that goes on."""
+    steps, along, out, down = [np.zeros(3)], [0.0], [], []
+    for way, room in parts:
+        first = len(steps)
+        ways = [way, way, np.zeros(3), np.array([0.0, room, 0.0]), np.array([0.0, 9e-3, 0.0]), -2.0 * way * [0, 0, 1]]
+        steps += ways
+        along += [way[2] / np.linalg.norm(way)] * 2 + [0.0, 0.0, 0.0, 1.0]
+        down += [(first, first + 2), (first + 1, first + 2)]
+        out.append(first + 5)
+    p, rise = np.cumsum(steps, axis=0), np.array(along)
+    path = rm.Toolpath.from_points(p, 0.03, cutting=np.arange(len(p)) > 0)
+    conditions = SimpleNamespace(along=rise, mostly_axial=np.abs(rise) > 0.9)
+    run = SimpleNamespace(
+        path=path, conditions=conditions, delta=np.tile([0.0, 0.6 * PUSHED, 0.8 * PUSHED], (len(p), 1))
+    )
+    return Places.along(run), out, down  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_level_cut_behind_a_ramp_is_short_where_its_first_step_is_less_than_the_tool_is_pushed(seed: int) -> None:
+    """With all that stands where it begins. Behind a plunge it ends the way down however long that step is."""
+    rng = np.random.default_rng(seed)
+    parts = [((RAMP, PLUNGE)[i], share * PUSHED) for i, share in zip(rng.integers(0, 2, 7), rng.choice([0.9, 1.1], 7))]
+    places, out, down = places_of(parts)
+    p, m = places.path.p, len(places.path)
+    assert np.flatnonzero(places.out).tolist() == out
+    assert [(i, int(places.then[i])) for i in np.flatnonzero(places.then >= 0)] == down
+    np.testing.assert_array_equal(places.place[1:] == places.place[:-1], (p[1:] == p[:-1]).all(axis=1))
+    short, ends = np.zeros(m, dtype=bool), []
+    for n, (way, room) in enumerate(parts):
+        begins = down[2 * n][1]
+        if way is RAMP and room < PUSHED:
+            short[[begins - 1, begins]] = True
+        else:
+            ends.append(begins)
+    np.testing.assert_array_equal(places.short, short)
+    assert places.ends().tolist() == ends
+
+
+def test_where_a_path_ends_on_the_level_behind_a_ramp_there_is_no_room() -> None:
+    p = np.array([[0, 0, 1], [5, 0, 0], [10, 0, -1], [10, 0, -1]]) * 1e-3
+    path = rm.Toolpath.from_points(p, 0.03, cutting=np.arange(4) > 0)
+    conditions = SimpleNamespace(along=np.array([0.0, -0.2, -0.2, 0.0]), mostly_axial=np.zeros(4, dtype=bool))
+    run = SimpleNamespace(path=path, conditions=conditions, delta=np.full((4, 3), PUSHED))
+    places = Places.along(run)  # type: ignore[arg-type]
+    assert places.short.tolist() == [False, False, True, True]
+    assert not len(places.ends())
