@@ -9,6 +9,7 @@ import numpy as np
 from robomill.arrays import BoolArray, FloatArray, IntArray, next_true, stretches
 from robomill.cutting.conditions import CutConditions
 from robomill.cutting.tool import DISH
+from robomill.simulation.corners import SAME
 from robomill.simulation.cut import Led, met_conditions, through_stock
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.samples import ways
@@ -87,7 +88,8 @@ def against(
     """The run along a corrected path as one that was told to go along the ``wanted`` one, whose axes of the cut are
     R_MF (m, 3, 3); where nobody knows how far along it that is, ``untold`` (m,), the tip is told from the place that it
     comes by. What a gauge reads on it is the error of the part. On ``links`` (m,) from one cut to the next it is taken
-    to be where the next begins: how far the tip springs there is told apart."""
+    to be where the next begins, as on one in the air to where it touches: how far the tip springs there is told
+    apart."""
     off, ahead = (
         np.where(wanted.cutting[:, None], each, 0.0) for each in (tip_error(run, wanted), run.path.p - wanted.p)
     )
@@ -97,9 +99,9 @@ def against(
         off, ahead = off - lag, ahead - lag
     off, ahead = run.setup.to_base(off), run.setup.to_base(ahead)
     told = replace(run, path=wanted, delta=off, R_MF=R_MF, ahead=ahead, untold=untold)
-    if links is None or not links.any():
+    if links is None:
         return told
-    of = _behind(links)
+    of = _behind(links | (wanted.cutting & (wanted.step_length < SAME) & ~run.conditions.engaged))
     rows = {name: getattr(told, name)[of] for name in ("F", "delta_joint", "delta_spring", "delta", "ahead")}
     unjudged = tuple(replace(each, where=each.where[of]) for each in told.unjudged)
     return replace(told, **rows, unjudged=unjudged, untold=None if untold is None else untold[of])

@@ -28,7 +28,7 @@ def test_a_helical_entry_and_its_circle_are_corrected(top: float, step: float) -
 
 @pytest.mark.parametrize("top", [0.0, 0.3])
 @pytest.mark.parametrize("slope", [5.0, 8.0, 15.0])
-@pytest.mark.parametrize("step", [1.0, 0.5])
+@pytest.mark.parametrize("step", [1.0, 0.5, 0.25])
 def test_ramps_are_corrected_from_where_they_touch_to_where_they_end(top: float, slope: float, step: float) -> None:
     depth = 20e-3 * np.tan(np.radians(slope)) - top * 1e-3
     body = f"G0 X-40 Y0 Z5\nG0 Z{top}\nG1 X-20 Z-{depth * 1e3:.4f} F400\nG1 X20 F600\n"

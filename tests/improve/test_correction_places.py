@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,10 +30,21 @@ def places_of(parts: list[tuple[np.ndarray, float]]) -> tuple[Places, list[int],
     p, rise = np.cumsum(steps, axis=0), np.array(along)
     path = rm.Toolpath.from_points(p, 0.03, cutting=np.arange(len(p)) > 0)
     conditions = SimpleNamespace(along=rise, mostly_axial=np.abs(rise) > 0.9)
-    run = SimpleNamespace(
-        path=path, conditions=conditions, delta=np.tile([0.0, 0.6 * PUSHED, 0.8 * PUSHED], (len(p), 1))
-    )
-    return Places.along(run), out, down  # type: ignore[arg-type]
+    delta = np.tile([0.0, 0.6 * PUSHED, 0.8 * PUSHED], (len(p), 1))
+    return Places.along(run_along(path, conditions, delta)), out, down
+
+
+def run_along(path: rm.Toolpath, conditions: SimpleNamespace, delta: np.ndarray, coupling: bool = False) -> Any:
+    """A run whose feeds lead the way of each step across the tool, or of the next one where a step goes nowhere."""
+    across = np.diff(path.p, axis=0, prepend=path.p[:1])[:, :2]
+    for i in reversed(range(len(across) - 1)):
+        across[i] = across[i] if across[i].any() else across[i + 1]
+    x = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+    feed = np.column_stack([x, np.zeros(len(x))])
+    axis = np.tile([0.0, 0.0, 1.0], (len(x), 1))
+    R_MF = np.stack([feed, np.cross(axis, feed), axis], axis=-1)
+    setup = SimpleNamespace(T_MW=np.eye(4), coupling=coupling)
+    return SimpleNamespace(path=path, conditions=conditions, delta=delta, R_MF=R_MF, setup=setup)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -52,7 +64,7 @@ def test_a_level_cut_behind_a_ramp_is_short_where_its_first_step_is_less_than_th
             short[[begins - 1, begins]] = True
         else:
             ends.append(begins)
-    np.testing.assert_array_equal(places.short, short)
+    np.testing.assert_array_equal(places.alone, short)
     assert places.ends().tolist() == ends
 
 
@@ -60,7 +72,20 @@ def test_where_a_path_ends_on_the_level_behind_a_ramp_there_is_no_room() -> None
     p = np.array([[0, 0, 1], [5, 0, 0], [10, 0, -1], [10, 0, -1]]) * 1e-3
     path = rm.Toolpath.from_points(p, 0.03, cutting=np.arange(4) > 0)
     conditions = SimpleNamespace(along=np.array([0.0, -0.2, -0.2, 0.0]), mostly_axial=np.zeros(4, dtype=bool))
-    run = SimpleNamespace(path=path, conditions=conditions, delta=np.full((4, 3), PUSHED))
-    places = Places.along(run)  # type: ignore[arg-type]
-    assert places.short.tolist() == [False, False, True, True]
+    places = Places.along(run_along(path, conditions, np.full((4, 3), PUSHED)))
+    assert places.alone.tolist() == [False, False, True, True]
     assert not len(places.ends())
+
+
+@pytest.mark.parametrize(("turn", "alone"), [(0.0, True), (9.0, True), (11.0, False), (90.0, False)])
+@pytest.mark.parametrize("coupling", [False, True])
+def test_a_ramp_whose_cut_goes_on_its_way_ends_alone(turn: float, alone: bool, coupling: bool) -> None:
+    """There is room. A ramp of a run without coupling is not held to what pushes it later."""
+    c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    p = np.array([[0, 0, 1], [5, 0, 0], [10, 0, -1], [10, 0, -1], [10 + 9 * c, 9 * s, -1]]) * 1e-3
+    path = rm.Toolpath.from_points(p, 0.03, cutting=np.arange(5) > 0)
+    conditions = SimpleNamespace(along=np.array([0.0, -0.2, -0.2, 0.0, 0.0]), mostly_axial=np.zeros(5, dtype=bool))
+    places = Places.along(run_along(path, conditions, np.full((5, 3), PUSHED), coupling))
+    assert places.alone.tolist() == [False, False, alone, alone, False]
+    assert places.ends().tolist() == ([] if alone else [3])
+    assert places.falling.tolist() == [False, not coupling, not coupling, False, False]
