@@ -86,9 +86,11 @@ def _begins(path: Toolpath) -> BoolArray:
     moved = path.step_length > 0
     angle, _ = _turns(path)
     resumed = np.append(True, ~path.cutting[:-1] | ~moved[:-1])
-    down = -np.einsum("mi,mi->m", np.diff(path.p, axis=0, prepend=path.p[:1]), path.k)
-    sinks, level = down > np.sin(SINKING) * path.step_length, down < np.sin(LEVEL) * path.step_length
-    ends = np.append(False, (sinks[:-1] & level[1:]) | (level[:-1] & sinks[1:]))
+    move = np.diff(path.p, axis=0, prepend=path.p[:1])
+    down = -np.einsum("mi,nmi->nm", path.k[:-1], np.stack([move[:-1], move[1:]]))  # where one ends and the next begins
+    size = np.stack([path.step_length[:-1], path.step_length[1:]])
+    sinks, level = down > np.sin(SINKING) * size, down < np.sin(LEVEL) * size
+    ends = np.append(False, (sinks & level[::-1]).any(axis=0))
     begins = path.cutting & moved & (resumed | (((angle > CORNER) | ends) & ~_turns_back(path)))
     begins[0] = False
     return np.asarray(begins)
