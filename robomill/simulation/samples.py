@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from robomill.arrays import FloatArray
+from robomill.cutting.tool import DISH, PRESSED
 from robomill.progress import checkpoint
 from robomill.surface.passes import moves_of
 from robomill.toolpath.path import Toolpath
@@ -19,7 +20,7 @@ def sampled(path: Toolpath, step: float, seen: Callable[[Toolpath], FloatArray] 
     """``path`` in steps no longer than ``step`` (m), see ``resample``; a block that stands still changes nothing.
     ``seen`` says of every move (m,) how long its steps may be at most, m."""
     moves = moving(path)
-    return resample(moves, step if seen is None else np.minimum(seen(moves), step))
+    return resample(moves, step if seen is None else np.minimum(seen(moves), step), (PRESSED, DISH))
 
 
 def moving(path: Toolpath) -> Toolpath:

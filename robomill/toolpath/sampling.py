@@ -13,19 +13,17 @@ from robomill.units import format_count, format_number, format_short, to_si
 from robomill.vectors import angle_between
 
 CORNER = to_si(10.0, "deg")
-#: Slopes against the tool's axis: from the one on all of the hollow end of a tool cuts on a way down, up to the other
-#: nothing of it.
-SINKING, LEVEL = to_si(0.5, "deg"), to_si(0.05, "deg")
 
 
-def resample(path: Toolpath, step: float | FloatArray) -> Toolpath:
+def resample(path: Toolpath, step: float | FloatArray, sinking: tuple[float, float] | None = None) -> Toolpath:
     """``path`` with every feed move cut into equal pieces no longer than ``step`` (m, one for all moves or one each);
     corners are kept.
 
-    A feed move that begins a cut, turns by more than ``CORNER``, or begins or ends a way down also gets a sample at its
-    start (a step of no length): there the force already has the new direction, and the end of the tool pushes or does
-    no longer. One that draws the tool straight back out of a plunge does not, but behind a dwell: what the tool is off
-    at the bottom stays in the part, as it does before a rapid.
+    A feed move that begins a cut or turns by more than ``CORNER`` also gets a sample at its start (a step of
+    no length): there the force already has the new direction; and one that begins or ends a way down, if ``sinking``
+    says what is one: the sines of the slopes up to which nothing, and from which on all, of a tool's end pushes. One
+    that draws the tool straight back out of a plunge does not, but behind a dwell: what the tool is off at the bottom
+    stays in the part, as it does before a rapid.
     Rapids stay whole: no force acts on them.
     The tool axis is interpolated on the great circle. Raises ToolpathError if the step is not positive or
     would give more points than the memory holds.
@@ -33,7 +31,7 @@ def resample(path: Toolpath, step: float | FloatArray) -> Toolpath:
     if not (np.isfinite(step).all() and np.all(np.asarray(step) > 0)):
         raise ToolpathError(f"Step along the path: found {step}; expected a length above 0.")
     pieces = np.where(path.cutting, np.ceil(path.step_length / step - 1e-9), 1.0)
-    starts = _begins(path)
+    starts = _begins(path, sinking)
     total = float(np.maximum(pieces, 1.0).sum() + starts.sum())
     check_samples(path, float(np.min(step)), total, budgets.samples())
     return divided(path, np.maximum(pieces, 1.0).astype(np.int64), starts)
@@ -81,19 +79,27 @@ def check_samples(path: Toolpath, step: float, total: float, most: int) -> None:
     raise ToolpathError(f"{found}, so use {format_short(1.05 * fits, 'mm')} or more.")
 
 
-def _begins(path: Toolpath) -> BoolArray:
-    """(m,) feed moves that begin a cut, turn sharply, or go down where those before do not, or the other way."""
+def _begins(path: Toolpath, sinking: tuple[float, float] | None) -> BoolArray:
+    """(m,) feed moves that begin a cut, turn sharply, or go down (``sinking``) where those before do not, or the other
+    way."""
     moved = path.step_length > 0
     angle, _ = _turns(path)
     resumed = np.append(True, ~path.cutting[:-1] | ~moved[:-1])
-    move = np.diff(path.p, axis=0, prepend=path.p[:1])
-    down = -np.einsum("mi,nmi->nm", path.k[:-1], np.stack([move[:-1], move[1:]]))  # where one ends and the next begins
-    size = np.stack([path.step_length[:-1], path.step_length[1:]])
-    sinks, level = down > np.sin(SINKING) * size, down < np.sin(LEVEL) * size
-    ends = np.append(False, (sinks & level[::-1]).any(axis=0))
-    begins = path.cutting & moved & (resumed | (((angle > CORNER) | ends) & ~_turns_back(path)))
+    sharp = angle > CORNER
+    if sinking is not None:
+        sharp[1:] |= _sinks_or_stops(path, *sinking)
+    begins = path.cutting & moved & (resumed | (sharp & ~_turns_back(path)))
     begins[0] = False
     return np.asarray(begins)
+
+
+def _sinks_or_stops(path: Toolpath, level: float, whole: float) -> BoolArray:
+    """(m - 1,) where of a move and the next one the one goes down at a sine of ``whole`` and more against the axis in
+    which they meet, and the other at less than ``level``."""
+    move, length = np.diff(path.p, axis=0, prepend=path.p[:1]), path.step_length
+    down = -np.einsum("mi,nmi->nm", path.k[:-1], np.stack([move[:-1], move[1:]]))
+    size = np.stack([length[:-1], length[1:]])
+    return np.asarray(((down > whole * size) & (down < level * size)[::-1]).any(axis=0))
 
 
 def drawn_back(path: Toolpath) -> BoolArray:

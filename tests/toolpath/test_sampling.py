@@ -126,7 +126,9 @@ def test_where_a_way_down_begins_or_ends_a_sample_stands_at_the_start(
     expected = [0]
     for i, begin in enumerate(begins, 1):
         expected += [i, i] if begin else [i]
-    assert resample(path, 1.0).block.tolist() == expected
+    sines = (np.sin(np.radians(0.05)), np.sin(np.radians(0.5)))
+    assert resample(path, 1.0, sines).block.tolist() == expected
+    assert resample(path, 1.0).block.tolist() == [0, 1, *range(1, len(p))]
 
 
 @pytest.mark.parametrize(("wait", "twice"), [("", False), ("G4 P0.2\n", True), ("G4 P1\n", True)])
