@@ -23,6 +23,7 @@ from robomill.progress import gathered
 from robomill.provenance import BY_HAND, Finding, Provenance
 from robomill.quantities import described, settle
 from robomill.values import Said, Value
+from robomill.vectors import across
 
 Frame = Literal["path", "M"]
 COMPONENTS = {"feed": "feed", "feed_normal": "feed-normal", "axial": "axial"}
@@ -186,8 +187,8 @@ def feed_share(way: ArrayLike, k: ArrayLike) -> FloatArray:
     """
     step, axis = _ways(way, k)
     length = np.linalg.norm(step, axis=1)
-    across = np.linalg.norm(_across(step, axis), axis=1)
-    return np.divide(across, length, out=np.ones(len(length)), where=length > 0.0)
+    flat = np.linalg.norm(across(step, axis), axis=1)
+    return np.divide(flat, length, out=np.ones(len(length)), where=length > 0.0)
 
 
 def feed_along(way: ArrayLike, k: ArrayLike) -> FloatArray:
@@ -210,7 +211,7 @@ def feed_frame(way: ArrayLike, k: ArrayLike) -> FloatArray:
     m = len(step)
 
     def moves(some: slice) -> BoolArray:
-        lies_across = np.linalg.norm(_across(step[some], axis[some]), axis=1) > 0.0
+        lies_across = np.linalg.norm(across(step[some], axis[some]), axis=1) > 0.0
         return np.asarray(lies_across & (feed_share(step[some], axis[some]) > STRAIGHT))
 
     moving = gathered(m, "", moves)
@@ -221,11 +222,11 @@ def feed_frame(way: ArrayLike, k: ArrayLike) -> FloatArray:
         here = axis[some]
         feed = fallback = np.where(np.abs(here[:, :1]) > 0.9, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
         if moving.any():
-            feed = _across(step[index[some]], axis[index[some]])
+            feed = across(step[index[some]], axis[index[some]])
             # A direction carried over to a step whose axis has turned need not lie across that axis, or lie along it.
             lying = np.linalg.norm(np.cross(feed, here), axis=1, keepdims=True)
             feed = np.where(lying > STRAIGHT * np.linalg.norm(feed, axis=1, keepdims=True), feed, fallback)
-        feed = _across(feed, here)
+        feed = across(feed, here)
         feed = feed / np.linalg.norm(feed, axis=1, keepdims=True)
         return np.stack([feed, np.cross(here, feed), here], axis=-1)
 
@@ -239,11 +240,6 @@ def _ways(way: ArrayLike, k: ArrayLike) -> tuple[FloatArray, FloatArray]:
     if step.ndim != 2 or step.shape != axis.shape:
         raise CuttingError(f"Feed frame: ways {step.shape} and tool axes {axis.shape} should both be (m, 3).")
     return step, axis / np.linalg.norm(axis, axis=1, keepdims=True)
-
-
-def _across(step: FloatArray, axis: FloatArray) -> FloatArray:
-    """The part (m, 3) of a step across a unit axis."""
-    return np.asarray(step - np.sum(step * axis, axis=1, keepdims=True) * axis)
 
 
 def force_on_tool(model: ForceModel, conditions: CutConditions, R_MF: ArrayLike) -> FloatArray:

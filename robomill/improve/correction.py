@@ -19,10 +19,11 @@ from robomill.simulation.led import led_beside, plunges, tip_error
 from robomill.simulation.meant import LINK
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import along, kept_to_path, spin_of
+from robomill.simulation.samples import arrivals
 from robomill.simulation.setup import SimulationSetup
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sampling import CORNER
-from robomill.vectors import angle_between
+from robomill.vectors import across, angle_between
 
 COMPONENTS = ("normal", "axial", "feed")
 AGREED = 0.5e-6  # m: corrections that change by no more have settled
@@ -236,8 +237,7 @@ class Places:
 
     def _arriving(self, c: FloatArray) -> FloatArray:
         """c (m, 3) m with rapids that arrive where the cut begins."""
-        cutting = self.path.cutting
-        arrives = np.flatnonzero(~cutting[:-1] & cutting[1:] & (self.place[:-1] == self.place[1:]))
+        arrives = arrivals(self.path)
         c[arrives] = c[arrives + 1]
         return c
 
@@ -262,7 +262,7 @@ class Places:
         path = self.path
         for begin, past in stretches(self.steep & path.cutting & ~self.out):
             some = slice(begin, past)
-            aside = c[some] - np.einsum("mi,mi->m", c[some], path.k[some])[:, None] * path.k[some]
+            aside = across(c[some], path.k[some])
             if np.abs(aside - aside[-1]).max() <= UPRIGHT:
                 c[some] += aside[-1] - aside
         return self._arriving(c)
@@ -286,7 +286,7 @@ class Places:
         met = _meeting(inverse, own[some], number)
         found[several] = met
         c, k, off = found[self.place], self.path.k[some], met[number] - own[some]
-        beside = np.linalg.norm(off - np.einsum("mi,mi->m", off, k)[:, None] * k, axis=1)
+        beside = np.linalg.norm(across(off, k), axis=1)
         most = np.zeros(len(several))
         np.maximum.at(most, number, beside)
         linked = most[number] > LINK

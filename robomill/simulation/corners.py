@@ -13,7 +13,7 @@ import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
 from robomill.toolpath.sampling import CORNER
-from robomill.vectors import angle_between
+from robomill.vectors import across, angle_between
 
 SAME = 1e-6  # m: steps that go no further stay at one place
 FARTHEST = 2e-3  # m: no corrected program goes further beside its path, and none leaves out more of it: an arm that is
@@ -41,10 +41,10 @@ class Ways:
         length = np.linalg.norm(step, axis=1)
         moving = np.flatnonzero(length >= SAME)
         s, step, length = np.cumsum(length)[moving], step[moving], length[moving]
-        across = _across(step, k[moving + 1])
-        size = np.linalg.norm(across, axis=1)
+        flat = across(step, k[moving + 1])
+        size = np.linalg.norm(flat, axis=1)
         level = size > STEEP * length
-        way = np.where(level[:, None], across / np.where(size > 0.0, size, 1.0)[:, None], 0.0)
+        way = np.where(level[:, None], flat / np.where(size > 0.0, size, 1.0)[:, None], 0.0)
         turns = np.where(level[:, None], way, step)
         sharp = (level[:-1] | level[1:]) & (angle_between(turns[:-1], turns[1:]) >= CORNER)
         return cls(s, p[moving + 1], way, np.flatnonzero(sharp))
@@ -67,7 +67,7 @@ def at_corners(q: FloatArray, k: FloatArray, line: IntArray, s: FloatArray, cut:
         if not len(some):
             continue
         some = np.arange(some[0], some[-1] + 1)
-        near = np.linalg.norm(_across(q[some] - cut.p[corner], k[some]), axis=1) <= FARTHEST
+        near = np.linalg.norm(across(q[some] - cut.p[corner], k[some]), axis=1) <= FARTHEST
         if not (near & ends[some]).any():
             continue
         first, last = _link(q[some], k[some], np.flatnonzero(near & ends[some]), s[some], (cut, corner))
@@ -84,13 +84,13 @@ def _link(q: FloatArray, k: FloatArray, ends: IntArray, s: FloatArray, where: tu
     cut, corner = where
     of = np.minimum(np.searchsorted(cut.s, s[1:] - SAME), len(cut.s) - 1)
     step = np.diff(q, axis=0)
-    across = _across(step, k[1:])
-    up = np.linalg.norm(step - across, axis=1)
-    one = _summed(_aside(across, up, cut.way[np.minimum(of, corner)]))
-    other = _summed(_aside(across, up, cut.way[np.maximum(of, corner + 1)]))
+    flat = across(step, k[1:])
+    up = np.linalg.norm(step - flat, axis=1)
+    one = _summed(_aside(flat, up, cut.way[np.minimum(of, corner)]))
+    other = _summed(_aside(flat, up, cut.way[np.maximum(of, corner + 1)]))
     a, b = ends[:-1], ends[1:]
-    length, height = np.linalg.norm(_across(q[b] - q[a], k[b]), axis=1), np.diff(_summed(0.5 * UPRIGHT * up)[ends])
-    off = _across(q[ends] - cut.p[corner], k[ends])
+    length, height = np.linalg.norm(across(q[b] - q[a], k[b]), axis=1), np.diff(_summed(0.5 * UPRIGHT * up)[ends])
+    off = across(q[ends] - cut.p[corner], k[ends])
     to, on = np.minimum(off @ cut.way[corner], 0.0), np.maximum(off @ cut.way[corner + 1], 0.0)
     lacking = [_summed(ON_THE_SPOT * np.maximum(0.5 * length - np.diff(gone), 0.0)) for gone in (to, on)]
     before, after = one[ends] + lacking[0], other[-1] - other[ends] + lacking[1][-1] - lacking[1]
@@ -102,10 +102,10 @@ def _link(q: FloatArray, k: FloatArray, ends: IntArray, s: FloatArray, where: tu
     return int(ends[n]), int(ends[n])
 
 
-def _aside(across: FloatArray, up: FloatArray, way: FloatArray) -> FloatArray:
-    """(n,) m: how far steps ``across`` (n, 3) m the tool, and ``up`` (n,) m along it, lead aside of their ways (n, 3)
+def _aside(flat: FloatArray, up: FloatArray, way: FloatArray) -> FloatArray:
+    """(n,) m: how far steps ``flat`` (n, 3) m across the tool, ``up`` (n,) m along it, lead aside of their ways (n, 3)
     or against them; those that hardly lead across it cost a little on a level one."""
-    size, along = np.linalg.norm(across, axis=1), np.einsum("ni,ni->n", across, way)
+    size, along = np.linalg.norm(flat, axis=1), np.einsum("ni,ni->n", flat, way)
     aside = np.where(along > 0.0, np.sqrt(np.maximum(size**2 - along**2, 0.0)), size)
     level = way.any(axis=1)
     return np.asarray(aside + np.where(level & (size < 0.1 * up), UPRIGHT * up, 0.0))
@@ -113,8 +113,3 @@ def _aside(across: FloatArray, up: FloatArray, way: FloatArray) -> FloatArray:
 
 def _summed(cost: FloatArray) -> FloatArray:
     return np.append(0.0, np.cumsum(cost))
-
-
-def _across(d: FloatArray, k: FloatArray) -> FloatArray:
-    """What of vectors d (n, 3) leads across axes k (n, 3)."""
-    return np.asarray(d - np.einsum("ni,ni->n", d, k)[:, None] * k)

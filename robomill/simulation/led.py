@@ -12,10 +12,11 @@ from robomill.cutting.tool import DISH
 from robomill.simulation.corners import SAME
 from robomill.simulation.cut import Led, met_conditions, through_stock
 from robomill.simulation.result import SimulationResult
-from robomill.simulation.samples import ways
+from robomill.simulation.samples import arrivals, ways
 from robomill.simulation.setup import SimulationSetup
 from robomill.surface.contact.engagement import engagement
 from robomill.toolpath.path import Toolpath
+from robomill.vectors import across
 
 
 def plunges(path: Toolpath, conditions: CutConditions) -> tuple[IntArray, BoolArray]:
@@ -35,12 +36,10 @@ def led_beside(path: Toolpath, p: FloatArray, down: tuple[IntArray, BoolArray], 
     then, steep = down
     behind = np.arange(len(p)) if links is None else _behind(links)
     ahead = p - path.p
-    aside = ahead[behind[then]]
-    aside = aside - np.einsum("mi,mi->m", aside, path.k)[:, None] * path.k
-    beside = aside - ahead
-    beside -= np.where(steep, np.einsum("mi,mi->m", beside, path.k), 0.0)[:, None] * path.k
-    tips = np.where((then >= 0)[:, None], p + beside, p)[behind]
-    arrives = np.flatnonzero(~path.cutting[:-1] & path.cutting[1:] & (path.step_length[1:] == 0.0))
+    deep = np.where(steep[:, None], ahead - across(ahead, path.k), 0.0)
+    met = path.p + across(ahead[behind[then]], path.k) + deep
+    tips = np.where((then >= 0)[:, None], met, p)[behind]
+    arrives = arrivals(path)
     tips[arrives] = tips[arrives + 1]  # the way there is no cut
     way = ways(path)
     back = np.einsum("mi,mi->m", np.diff(tips, axis=0, prepend=tips[:1]), way) < 0.0

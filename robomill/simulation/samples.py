@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import FloatArray, IntArray
 from robomill.cutting.tool import DISH, PRESSED
 from robomill.progress import checkpoint
 from robomill.surface.passes import moves_of
@@ -49,6 +49,12 @@ def clock(path: Toolpath, rapid_rate: float | None) -> FloatArray:
         took[: cuts[0]] = 0.0
         took[cuts[0]] -= path.dwell[cuts[0]]
     return np.asarray(np.cumsum(took))
+
+
+def arrivals(path: Toolpath) -> IntArray:
+    """Samples at which a rapid arrives where a cut begins, which is the next one's place."""
+    begins = path.cutting[1:] & (path.step_length[1:] == 0.0)
+    return np.flatnonzero(~path.cutting[:-1] & begins)
 
 
 def chosen(path: Toolpath, keep: np.ndarray) -> Toolpath:

@@ -83,12 +83,12 @@ def _begins(path: Toolpath, sinking: tuple[float, float] | None) -> BoolArray:
     """(m,) feed moves that begin a cut, turn sharply, or go down (``sinking``) where those before do not, or the other
     way."""
     moved = path.step_length > 0
-    angle, _ = _turns(path)
+    turns = _turns(path)
     resumed = np.append(True, ~path.cutting[:-1] | ~moved[:-1])
-    sharp = angle > CORNER
+    sharp = turns[0] > CORNER
     if sinking is not None:
         sharp[1:] |= _sinks_or_stops(path, *sinking)
-    begins = path.cutting & moved & (resumed | (sharp & ~_turns_back(path)))
+    begins = path.cutting & moved & (resumed | (sharp & ~_turns_back(path, turns)))
     begins[0] = False
     return np.asarray(begins)
 
@@ -105,8 +105,9 @@ def _sinks_or_stops(path: Toolpath, level: float, whole: float) -> BoolArray:
 def drawn_back(path: Toolpath) -> BoolArray:
     """(m,) steps at feed on the way straight back out of a plunge that has not waited at its bottom."""
     found = np.zeros(len(path), dtype=bool)
-    begins = _turns_back(path)
-    for begin, past in stretches(path.cutting & _turns(path)[1]):
+    turns = _turns(path)
+    begins = _turns_back(path, turns)
+    for begin, past in stretches(path.cutting & turns[1]):
         found[begin:past] = begins[begin] and path.cutting[begin - 1]
     return found
 
@@ -120,9 +121,9 @@ def _turns(path: Toolpath) -> tuple[FloatArray, BoolArray]:
     return angle, np.asarray(up)
 
 
-def _turns_back(path: Toolpath) -> BoolArray:
-    """(m,) moves straight back out of a plunge that has not waited at its bottom."""
-    angle, up = _turns(path)
+def _turns_back(path: Toolpath, turns: tuple[FloatArray, BoolArray]) -> BoolArray:
+    """(m,) moves, with their ``turns``, straight back out of a plunge that has not waited at its bottom."""
+    angle, up = turns
     return np.asarray(up & (angle > np.pi - CORNER) & (path.dwell == 0.0))
 
 

@@ -71,9 +71,7 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
         block.motion = implied_motion(machine, axes or polar, any(letter in words for letter in "ijk"))
     if not dialect.strict:
         _read_tool_axis(machine, block)
-    if non_modal == 530 and (
-        block.g.get(modal.DISTANCE) == 910 or (modal.DISTANCE not in block.g and not machine.absolute)
-    ):
+    if non_modal == 530 and not machine.is_absolute(block):
         if not dialect.has_macros or machine.system in machine.placed:
             raise block.refuse("G53 needs absolute coordinates; use G90 first.")
         text = "G53 in G91 is read as a place in the machine; Fanuc controls leave the line out: write G90 before it"
@@ -101,7 +99,7 @@ def _read_polar(machine: Machine, block: Block) -> None:
         raise block.refuse("G16 is read in G17 alone; write the moves out.")
     if not words.keys() & {"x", "y"}:
         return
-    if "x" in words and block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 910:
+    if "x" in words and not machine.is_absolute(block):
         raise block.refuse("G16 counts X from where the tool is in G91, which is not read; give the radius in G90.")
     for letter, polar in (("x", "@"), ("y", "^")):
         if letter in words:
@@ -120,8 +118,8 @@ def _read_tool_axis(machine: Machine, block: Block) -> None:
     angles = angles_of(axis, before)
     for letter in "ijk":
         del words[letter]
-    steps = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 910
-    words["a"], words["b"] = (now - (old if steps else 0.0) for now, old in zip(angles, before))
+    absolute = machine.is_absolute(block)
+    words["a"], words["b"] = (now - (0.0 if absolute else old) for now, old in zip(angles, before))
     machine.note("tool-axis", "info", "I J K of a straight move are read as the direction of the tool")
 
 

@@ -13,7 +13,7 @@ from weakref import WeakMethod
 from robomill.errors import GCodeError
 from robomill.provenance import Level
 from robomill.toolpath.findings import Findings
-from robomill.toolpath.gcode.codes import LETTERS
+from robomill.toolpath.gcode.codes import DISTANCE, LETTERS
 from robomill.toolpath.gcode.corners import EACH, Corner, joined
 from robomill.toolpath.gcode.parameters import Parameters
 from robomill.toolpath.gcode.program import ARC, FEED, TAP, TRAVERSE, Move, Recorder
@@ -208,6 +208,10 @@ class Machine:
         """Refuse what cannot be done while cutter compensation is on."""
         if self.compensation is not None:
             raise block.refuse(f"{name} cannot be used with cutter compensation on; use G40 first.")
+
+    def is_absolute(self, block: Block) -> bool:
+        """Whether the words of a line are places, not steps."""
+        return bool(block.g.get(DISTANCE, 900 if self.absolute else 910) == 900)
 
     # --- moves
     def go(self, kind: int, line: int, end: list[float], v_f: float | None = None) -> None:

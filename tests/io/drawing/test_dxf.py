@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 
 import ezdxf
@@ -12,21 +11,9 @@ import pytest
 from robomill.errors import UnitAskedError
 from robomill.io.drawing.drawings import drawing_from_bytes
 from robomill.io.drawing.dxf import Dxf
+from tests.io.drawing.made import data, drawn
 
 BULGE = math.tan(math.radians(90) / 4)
-
-
-def data(doc) -> bytes:
-    out = io.StringIO()
-    doc.write(out)
-    return out.getvalue().encode()
-
-
-def drawn(draw, units=4):
-    doc = ezdxf.new("R2000")
-    doc.units = units
-    draw(doc, doc.modelspace())
-    return Dxf(data(doc), "part.dxf")
 
 
 def only(draw):

@@ -2,32 +2,18 @@
 
 from __future__ import annotations
 
-import io
 import math
 import time
 from contextlib import nullcontext
 
-import ezdxf
 import pytest
 
 from robomill.errors import ToolpathError
 from robomill.io.drawing import dxf
 from robomill.io.drawing.drawings import drawing_from_bytes
-from robomill.io.drawing.dxf import MOST_ENTITIES, Dxf
+from robomill.io.drawing.dxf import MOST_ENTITIES
 from robomill.units import format_count
-
-
-def data(doc) -> bytes:
-    out = io.StringIO()
-    doc.write(out)
-    return out.getvalue().encode()
-
-
-def drawn(draw, units=4):
-    doc = ezdxf.new("R2000")
-    doc.units = units
-    draw(doc, doc.modelspace())
-    return Dxf(data(doc), "part.dxf")
+from tests.io.drawing.made import drawn
 
 
 def bomb(doc, space) -> None:

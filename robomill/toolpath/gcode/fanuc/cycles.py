@@ -57,8 +57,7 @@ def bolt_holes(machine: Machine, block: Block, code: int) -> bool:
     if needs is None or not needs <= words.keys() or not (begins or is_cycle(machine.motion)):
         return False
     count = round(words["l"])
-    absolute = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 900
-    if machine.plane != 17 or not absolute or not 1 <= count <= MOST_BOLTS:
+    if machine.plane != 17 or not machine.is_absolute(block) or not 1 <= count <= MOST_BOLTS:
         raise block.refuse(f"G{code // 10} is read in G17 and G90, for 1 to {MOST_BOLTS} holes.")
     u, v = words.pop("x", machine.p[0]), words.pop("y", machine.p[1])
     radius, angle, between = words.pop("i"), words.pop("j"), words.pop("k", 360.0 / count)
@@ -92,7 +91,7 @@ def repeats(machine: Machine, block: Block) -> None:
     kept = machine.motion == motion or (machine.is_fanuc and is_cycle(machine.motion))
     if takes_dwell(motion) and "p" not in words and (not kept or math.isnan(machine.cycle[P])):
         words["p"] = 0.0
-    steps = block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 910
+    steps = not machine.is_absolute(block)
     given = {"r", "xyz"[axes(machine.plane)[2]]} & words.keys()
     if not steps or machine.is_fanuc or not machine.keeps_heights or machine.motion != motion or machine.kept_steps:
         return

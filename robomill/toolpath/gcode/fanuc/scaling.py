@@ -41,7 +41,7 @@ def scales(machine: Machine, block: Block, code: int) -> bool:
     if code in _STRAIGHT:
         _end_mirror(machine, given)
         return True
-    if not _is_absolute(machine, block):
+    if not machine.is_absolute(block):
         raise block.refuse(f"{_CODES[code]} is read in G90 alone.")
     if machine.scale is not None and machine.scale.mirrors != (code in _MIRRORS):  # the one would replace the other
         mirrors = machine.scale.mirrors
@@ -89,11 +89,6 @@ def _enlarge(machine: Machine, block: Block, given: dict[str, float]) -> None:
     machine.scale = Scale(factors, centre)  # type: ignore[arg-type]
 
 
-def _is_absolute(machine: Machine, block: Block) -> bool:
-    """Whether the words of a line are places, not steps."""
-    return bool(block.g.get(modal.DISTANCE, 900 if machine.absolute else 910) == 900)
-
-
 def _factor(machine: Machine, block: Block, value: float) -> float:
     """A factor; a large whole number counts in thousandths, as on Fanuc controls."""
     factor = value
@@ -120,7 +115,7 @@ def scale_words(machine: Machine, block: Block) -> None:
         raise block.refuse(f"{g_name(motion)} while coordinates are scaled (G51) is not read; end that first (G50).")
     if cycle and (scale.factors[2] < 0.0 or machine.plane != 17):
         raise block.refuse("a cycle is read in G17, and not mirrored along Z; end G51 first (G50).")
-    absolute = _is_absolute(machine, block)
+    absolute = machine.is_absolute(block)
     for axis, letter in enumerate("xyz"):
         if letter in words:
             words[letter] = scale.place(axis, words[letter]) if absolute else scale.factors[axis] * words[letter]
