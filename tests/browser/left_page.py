@@ -15,6 +15,14 @@ export default function ({ setTriggerValue }) {
   return () => clearInterval(timer);
 }
 """
+ECHOES = """
+export default function ({ setTriggerValue }) {
+  const say = () => { for (const wait of [0, 3, 12, 40]) setTimeout(() => setTriggerValue('said', 1), wait); };
+  document.addEventListener('click', say, true);
+  return () => document.removeEventListener('click', say, true);
+}
+"""
+echo = st.components.v2.component("echo", html="<i></i>", js=ECHOES)
 speak = st.components.v2.component("speak", html="<i></i>", js=SPEAKS)
 
 
@@ -71,4 +79,41 @@ def ticking() -> None:
     st.caption(f"done {_clicks()} times")
 
 
-st.navigation([st.Page(other, default=True), st.Page(whole), st.Page(part), st.Page(clicked), st.Page(ticking)]).run()
+def slow() -> None:
+    """A page that speaks as a whole on each click, beside a button whose work takes its time."""
+    echo(key="echo", on_said_change=lambda: None)
+
+    def more() -> None:
+        for _ in range(20):
+            time.sleep(0.005)
+            st.session_state["looks"] = st.session_state.get("looks", 0) + 1
+        st.session_state["count"] = st.session_state.get("count", 0) + 1
+
+    st.button("more", on_click=more)
+    st.caption(f"done {st.session_state.get('count', 0)} times")
+
+
+def typed() -> None:
+    """A page that speaks as a whole on each click, beside a box: what was typed is said again."""
+    echo(key="echo", on_said_change=lambda: None)
+
+    def take() -> None:
+        time.sleep(0.01)
+        st.session_state["taken"] = [*st.session_state.get("taken", []), st.session_state["box"]]
+
+    st.text_input("box", key="box", on_change=take)
+    st.button("less", on_click=lambda: None)
+    st.caption("taken " + " ".join(st.session_state.get("taken", [])))
+
+
+st.navigation(
+    [
+        st.Page(other, default=True),
+        st.Page(whole),
+        st.Page(part),
+        st.Page(clicked),
+        st.Page(ticking),
+        st.Page(slow),
+        st.Page(typed),
+    ]
+).run()

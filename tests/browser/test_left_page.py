@@ -50,3 +50,25 @@ def test_a_click_beside_a_part_that_ticks_is_done_once(page: Any, url: str) -> N
         page.get_by_role("button", name="more").click()
         page.wait_for_timeout(100)
     page.get_by_text("done 60 times").wait_for()
+
+
+def test_a_click_whose_work_takes_a_while_is_done_whatever_the_page_says_meanwhile(page: Any, url: str) -> None:
+    """Without our care each word of the page ends that work half way, and the click is forgotten."""
+    page.goto(f"{url}/slow")
+    for click in range(20):
+        page.get_by_text(f"done {click} times").wait_for()
+        page.get_by_role("button", name="more").click()
+    page.get_by_text("done 20 times").wait_for(timeout=20_000)
+
+
+def test_what_is_typed_is_taken_once_whatever_the_page_says_meanwhile(page: Any, url: str) -> None:
+    """Each value, also where a click follows at once."""
+    page.goto(f"{url}/typed")
+    for value in range(30):
+        page.get_by_role("textbox", name="box").fill(str(value))
+        if value % 2:
+            page.get_by_role("button", name="less").click()
+        else:
+            page.keyboard.press("Enter")
+        page.wait_for_timeout(20 * (value % 5))
+    page.get_by_text("taken " + " ".join(map(str, range(30)))).wait_for(timeout=10_000)

@@ -12,6 +12,12 @@ click too, which then comes by itself a moment later: Streamlit does what was as
 just as the whole page has been drawn, while the last of the drawing is still on its way, has that forgotten: Streamlit
 starts the part's own run, and hears nothing more of the run before it. The page then stays as it was, or without its
 end.
+
+What was clicked or typed is forgotten where the page says something else before Streamlit has called what it does, and
+what it does is broken off half way where that comes meanwhile: each look into the session is a place where a run gives
+way. Streamlit counts it as heard all the same. (A run that is asked for while another one goes on waits until that one
+gives way: ``runner.fastReruns`` is off. On, a run that was told to stop takes what it was asked for with it, and two
+runs change one session at a time.)
 """
 
 import asyncio
@@ -20,6 +26,8 @@ from functools import wraps
 from typing import Any
 
 from streamlit.runtime.app_session import AppSession
+from streamlit.runtime.scriptrunner import get_script_run_ctx
+from streamlit.runtime.scriptrunner.script_runner import ScriptRunner
 
 ASKED = "_page_asked_for"
 LEFT = "_parts_registered_before"
@@ -108,10 +116,26 @@ def awaiting_drawing(create: Callable[..., None]) -> Callable[..., None]:
     return awaited
 
 
+def hearing_out(give_way: Callable[..., None]) -> Callable[..., None]:
+    """``give_way`` (of a runner, to what is asked for meanwhile), but only once what this run was asked for is heard,
+    and what it does is done: behind that, before anything is drawn, is time enough."""
+
+    @wraps(give_way)
+    def behind(runner: Any) -> None:
+        run = get_script_run_ctx(suppress_warning=True)
+        if run is None or run.has_script_started:
+            give_way(runner)
+
+    return behind
+
+
 def heed_pages() -> None:
     """Have every session of this server heed them; once is enough."""
     if not hasattr(AppSession.request_rerun, "__wrapped__"):
         AppSession.request_rerun = heeding_pages(AppSession.request_rerun)  # type: ignore[method-assign]
         AppSession._create_scriptrunner = awaiting_drawing(  # type: ignore[method-assign]
             AppSession._create_scriptrunner
+        )
+        ScriptRunner._maybe_handle_execution_control_request = hearing_out(  # type: ignore[method-assign]
+            ScriptRunner._maybe_handle_execution_control_request
         )

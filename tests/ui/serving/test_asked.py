@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 from streamlit.proto.ClientState_pb2 import ClientState
 
-from robomill.ui.serving.asked import awaiting_drawing, heeding_pages
+from robomill.ui.serving.asked import awaiting_drawing, hearing_out, heeding_pages
 
 
 def said(page: str, boxes: int = 2, part: str = "", tick: bool = False) -> ClientState:
@@ -190,3 +190,21 @@ def test_the_whole_page_waits_for_nobody():
     page = SimpleNamespace(fragment_id=None)
     awaiting_drawing(lambda _, wanted: made.append(wanted))(SimpleNamespace(_scriptrunner=Runner(ended=True)), page)
     assert made == [page]
+
+
+@pytest.mark.parametrize(("started", "given"), [(False, []), (True, ["way"])], ids=["not heard yet", "heard"])
+def test_a_run_gives_way_only_once_what_was_typed_or_clicked_is_heard(
+    started: bool, given: list[str], monkeypatch: pytest.MonkeyPatch
+):
+    run = SimpleNamespace(has_script_started=started)
+    monkeypatch.setattr("robomill.ui.serving.asked.get_script_run_ctx", lambda suppress_warning: run)
+    ways: list[str] = []
+    hearing_out(ways.append)("way")
+    assert ways == given
+
+
+def test_a_runner_that_has_no_run_yet_gives_way(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("robomill.ui.serving.asked.get_script_run_ctx", lambda suppress_warning: None)
+    ways: list[str] = []
+    hearing_out(ways.append)("way")
+    assert ways == ["way"]
