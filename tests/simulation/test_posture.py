@@ -38,3 +38,20 @@ def test_a_tool_frame_that_points_away_from_the_flange_is_named(turn, said):
     assert ("tool-turned" in [each.code for each in result.notes]) == said
     far = rm.simulate(setup.replace(T_MW=translation([19.0, 0.0, 0.9])))
     assert "tool-turned" not in [each.code for each in far.notes]
+
+
+def test_a_spin_at_which_nothing_is_reached_is_named_and_not_the_tool_frame():
+    """The Fanuc's drill stands across its flange: of 24 spins, each tried by itself, some reach the cut and some do
+    not, so its tool frame is right."""
+    setup = rm.load_setup(samples_dir() / "paper_flute" / "setup.toml").replace(
+        robot=rm.load_robot("fanuc_r2000ic"), T_MW=translation([1.6, 0.1, 0.5]), engagement=False, step_mm=20.0
+    )
+    spins = np.radians(np.arange(0.0, 360.0, 15.0))
+    reached = [bool(rm.simulate(setup.replace(spin=float(spin))).reached.all()) for spin in spins]
+    assert 0 < sum(reached) < len(spins)
+    result = rm.simulate(setup.replace(spin=float(spins[reached.index(False)])))
+    codes = [each.code for each in result.notes]
+    assert not result.reached.any()
+    assert "other-spin" in codes
+    assert "tool-turned" not in codes
+    assert result.verdict.sentence.startswith("No point of the cut can be reached at this spin")

@@ -6,9 +6,9 @@ taken as drawn with variance
     D cov D^T + k^2 (floor^2 + per_newton^2 |F|^2 + share^2 |delta|^2),
 
 parts that grow with the displacement, with the force (an elastic arm that is not the model's errs by its load) and a
-part that does not (the gauge's noise, play); tests under one load cannot tell the last two apart, and count as the
-second. The parts are fitted to the squared errors; k is then the smallest number with which the 95 % bands hold 95 % of
-the errors left out (split conformal prediction: no normal distribution is asked for).
+part that does not (the gauge's noise, play); tests under one load (within ``ALIKE``) cannot tell the last two apart,
+and count as the second. The parts are fitted to the squared errors; k is then the smallest number with which the 95 %
+bands hold 95 % of the errors left out (split conformal prediction: no normal distribution is asked for).
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from robomill.units import format_si
 ROUNDS = 8
 CLIP = 9.0  # squared errors beyond this many variances count as this many: a gross row is no measure of the model
 MOST = 5000  # errors that are looked at, evenly spread over more
+ALIKE = 0.1  # of the largest: loads that differ by less are one, and do not tell what grows with them from what stays
 FEWEST = 4  # poses from which errors on poses left out can be judged
 
 
@@ -78,7 +79,9 @@ def model_error(errors: Errors, dof: int) -> ModelError | None:
         return None
     t = quantile(dof)
     e2, v = errors.error**2, errors.variance
-    parts = _spread(e2, v, np.stack([errors.size**2, errors.load**2, np.ones_like(e2)], axis=1))
+    one_load = errors.load.min() > (1.0 - ALIKE) * errors.load.max()
+    stays = np.zeros_like(e2) if one_load else np.ones_like(e2)
+    parts = _spread(e2, v, np.stack([errors.size**2, errors.load**2, stays], axis=1))
     beyond = ModelError(*np.sqrt(parts)).variance(errors.size, errors.load)
     if not (beyond > 0).all():
         return ModelError(0.0, 0.0, 0.0)

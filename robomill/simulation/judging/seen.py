@@ -173,7 +173,7 @@ class Run(Tabled):
 
     @cached_property
     def turned(self) -> tuple[Finding, ...]:
-        """Whether the cut, of which nothing is reached, would be with the tool's axis turned round."""
+        """Why the cut, of which nothing is reached, is not: its spin, or a tool frame that is turned round."""
         at_feed = np.flatnonzero(self.path.cutting)
         if self.reached[at_feed].any():
             return ()

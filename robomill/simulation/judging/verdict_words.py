@@ -11,6 +11,7 @@ from robomill.arguments import made_by
 from robomill.arrays import with_article
 from robomill.provenance import named
 from robomill.simulation.judging.seen import WHOLE, Run
+from robomill.simulation.posture import OTHER_SPIN, TURNED
 from robomill.units import format_beside, format_count, format_percent, format_share
 from robomill.values import Value
 
@@ -34,6 +35,10 @@ TITLES: dict[Level, str] = {
 NOTHING: dict[Level, str] = {
     "missed": "The path never touches the stock: move the stock or the path.",
     "unreached": "No point of the cut can be reached: move the part zero.",
+}
+UNREACHED = {
+    OTHER_SPIN: "No point of the cut can be reached at this spin: choose another, or that of least motion.",
+    TURNED: "No point of the cut can be reached: turn the tool frame, whose z_T points into the part.",
 }
 RAPID = "a rapid runs through material that no cut removes"
 
@@ -190,9 +195,8 @@ def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
     if result.worst < 0:
         if level == "unreached" and result.reached[result.path.cutting].any():
             return "No point of the cut lies inside the measured map.", beside
-        if level == "unreached" and result.turned:
-            return "No point of the cut can be reached: turn the tool frame, whose z_T points into the part.", beside
-        return NOTHING.get(level, ""), beside
+        why = next((UNREACHED[each.code] for each in result.turned), "") if level == "unreached" else ""
+        return why or NOTHING.get(level, ""), beside
     if level == "unjudged" and result.not_judged.any() and not verdict.decides:
         return "", beside
     judged = _measured(result, verdict, unit)

@@ -46,6 +46,26 @@ def test_under_one_load_what_is_left_grows_with_the_load():
     errors = drawn(6, share=0.0)
     one = model_error(replace(errors, load=np.full(20000, 250.0)), 10000)
     assert (one.floor, one.per_newton) == (0.0, pytest.approx(5e-6 / 250, rel=0.06))
+    about = 800.0 + np.random.default_rng(3).uniform(-4.0, 4.0, 20000)  # one weight, hung up anew each time
+    again = model_error(replace(errors, load=about), 10000)
+    assert (again.floor, again.per_newton) == (0.0, pytest.approx(5e-6 / 800, rel=0.06))
+
+
+def test_a_band_from_tests_under_one_load_holds_under_any():
+    """An arm that gives by 0.05 um/N more or less than any model at every pose, errs by its load: a band from tests at
+    about 800 N holds as much at 80 N and at 3200 N."""
+    rng = np.random.default_rng(5)
+    theta = rng.uniform(ROBOT.limits[:, 0] * 0.5, ROBOT.limits[:, 1] * 0.5, (60, 5))
+    theta, F = three_directions(theta, 1.0)
+    F = F * rng.uniform(792.0, 808.0, (len(F), 1))
+    every = simulated_tests(ROBOT, theta, F, noise=40e-6, seed=4)
+    known, fresh = Knowledge.of(rm.identify(ROBOT, every.select(slice(0, 120))), ROBOT), every.select(slice(120, 180))
+    held = []
+    for times in (0.1, 1.0, 4.0):
+        sure = uncertain_deflection(ROBOT, fresh.theta, times * fresh.wrench[:, :3], known)
+        held.append(np.mean(np.abs(sure.delta - times * fresh.displacement[:, :3]) <= sure.half_width()))
+    assert held == pytest.approx([held[1]] * 3)
+    assert held[1] >= 0.9
 
 
 @pytest.mark.parametrize("heavy", [False, True])
