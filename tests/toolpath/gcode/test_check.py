@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
 
 from robomill.errors import GCodeError
@@ -77,14 +75,6 @@ def test_letters_that_a_line_uses(line):
         block.motion = block.g.get(modal.MOTION, -1)
         unused = [name for name, _ in check_words(block)]
         assert unused == ([] if letter in LINES[line] else [letter]), letter
-
-
-def test_an_arc_turns_ten_thousand_times_at_most():
-    """Each turn is 2 pi: P counts the one that is begun."""
-    text = "G21 G90 F100\nG3 I1 P{}\nM2\n"
-    assert abs(interpret(text.format(10000)).sweep[0]) == pytest.approx(1e4 * 2.0 * math.pi)
-    with pytest.raises(GCodeError, match=r"^Line 2: G3 has P10001; at most 10000 turns are made\.$"):
-        interpret(text.format(10001))
 
 
 def test_a_dwell_cannot_be_negative():
