@@ -64,6 +64,8 @@ def test_apt_files_are_told_from_programs() -> None:
         ("FEDRAT/-5\n", "Line 1: FEDRAT"),
         ("PARTNO/X\nFINI\n", "fewer than two"),
         ("GODLTA/1,1,1\n", "Line 1: GODLTA"),
+        ("GOTO/0,0,0\nGODLTA/1,1\n", "Line 2: GODLTA needs three steps, or one along the tool"),
+        ("GOTO/0,0,0\nGODLTA/1,1,1,1\n", "Line 2: GODLTA needs three steps, or one along the tool"),
     ],
 )
 def test_refusals(text: str, says: str) -> None:

@@ -270,6 +270,7 @@ def test_the_tool_turns_by_the_least_angle_into_a_plane_however_far_that_lies(de
         ("G68.2 X1. Y2.\n", "Line 5: G68.2 is read with Euler's angles"),
         ("G53.1\n", "Line 5: G53.1 is not known"),
         ("G68 X0 Y0 R5.\nG68.2 I0 J30. K0\nG53.1\n", "Line 7: G68.2 while coordinates are turned"),
+        ("G16\nG68.2 I0 J30. K0\nG53.1\n", "Line 7: G68.2 while coordinates are turned"),
         ("G92 C9.\nG0 A30.\nG68.2 I0 J30. K0\nG53.1\n", "Line 8: G68.2 while A, B or C stand elsewhere than at 0"),
         ("G10 L2 P1 B9.\nG0 A30.\nG68.2 I0 J30. K0\nG53.1\n", "Line 8: G68.2 while A, B or C stand elsewhere"),
         ("G68.2 I0 J30. K0\nG53.1\nG69\nG0 X1. Y1. Z9.\nG1 Z0 F9.\n", "Line 9: the end of the plane leaves the tool"),

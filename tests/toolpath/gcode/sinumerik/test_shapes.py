@@ -198,6 +198,7 @@ def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
         ('MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,2,2,,,,,"2,3")\n', "CYCLE801 leaves holes out"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE802(112,111,1,2,3,4,5,6)\n", "CYCLE802 counts some of its places as steps"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE802(11,11,1,2,3)\n", "CYCLE802 needs X and Y of every place"),
+        ("MCALL CYCLE81(20,0,2,-10)\nCYCLE802(1,1)\n", "CYCLE802 needs X and Y of every place"),
         (
             "POCKET3(50,0,1,-5,40,30,8,60,40,0,5,,,500,200,,2)\n",
             r"POCKET3 .Sinumerik. mills a rectangular pocket in passes that",
