@@ -126,6 +126,14 @@ def test_no_corner_is_where_a_cut_and_an_arc_go_on_tangentially() -> None:
             "G1 X20 ,R2 F100\nG3 X30 Y-10 Z-1 I10\n",
             "Line 4: a corner beside an arc is rounded in the plane of that arc",
         ),
+        (
+            "G3 X10 Y10 I0 J10 ,R2 F100\nG18 G3 X20 Z0 I5 K0\n",
+            "Line 4: a corner beside an arc is rounded in the plane of that arc",
+        ),
+        (
+            "G3 X10 Y10 I0 J10 ,C2 F100\nG1 X50\n",
+            "Line 4: a corner is rounded at the end of a cut (G1, G2, G3), or chamfered at that of a G1 alone",
+        ),
         ("M8 ,C5\n", "Line 4: a corner is rounded at the end of a cut"),
         ("G68 X0 Y0\n", "Line 4: G68 is read in G17 and G90, with R"),
         ("G18 G68 X0 Z0 R90.\nG1 X5 F100\n", "Line 4: G68 is read in G17 and G90"),
