@@ -189,6 +189,8 @@ def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
         ("MCALL CYCLE81(20,0,2,-10)\nHOLES2(0,0,-5,0,0,3)\n", "HOLES2 has 3 holes"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,101,100)\n", "CYCLE801 has 101 by 100 holes"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,3,3,2)\n", "CYCLE801 has a slanting grid"),
+        ("MIRROR X0 RPL=5\n", "MIRROR X0 RPL=5 is not read"),
+        ("SCALE X2 3\n", "SCALE X2 3 is not read"),
         ("SCALE X1001\n", "SCALE X1001 is not read"),
         ("SCALE Z2\n", "SCALE Z2 is not read"),
         ("AMIRROR\n", "AMIRROR  is not read"),
