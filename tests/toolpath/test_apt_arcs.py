@@ -145,6 +145,10 @@ def test_an_arc_of_catia_may_stand_upright() -> None:
                 ("0,0,0,-10", "0,0,0,0,10,0"),
             )
         ),
+        (
+            "INDIRV/0,0,0\nTLON,GOFWD/ (CIRCLE/0,0,0,10),ON,(LINE/0,0,0,0,10,0)",
+            "Line 4: the direction of INDIRV i,j,k is 0",
+        ),
         # from its own centre no tangent leads along a circle
         ("INDIRV/0,1,0\nTLON,GOFWD/ (CIRCLE/10,0,0,10),ON,(LINE/10,0,0,10,10,0)", "INDIRV is not along the circle"),
         ("INDIRV/0,1,0\nTLON,GOFWD/ (CIRCLE/6,0,0,10),ON,(LINE/6,0,0,6,10,0)", "INDIRV is not along the circle"),
