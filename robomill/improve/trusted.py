@@ -57,9 +57,10 @@ def check_found(found: Correction, wanted: SimulationResult) -> None:
         if found.settled
         else f": after {found.iterations} runs it still changes by {format_si(found.change[-1], 'mm')}"
     )
+    cure = "couple the force" if wanted.coupling is None else "make the arm stiffer"
     raise CompensationError(
         f"The path is not corrected: the correction does not settle ({path.block_name} {named(at.tolist())}){left}. "
-        "The force changes faster with the tool's place than the arm gives way; cut less at once, or couple the force."
+        f"The force changes faster with the tool's place than the arm gives way; cut less at once, or {cure}."
     )
 
 

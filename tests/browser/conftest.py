@@ -4,8 +4,8 @@ has a running event loop, and other folders start their own)."""
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from collections.abc import Callable, Generator, Iterator
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -16,6 +16,7 @@ from screenshots import ARGUMENTS, CHROMIUM, served
 from robomill.compiled import prepare
 
 WIDE = {"width": 1440, "height": 1000}
+MOST_SHOWN = 3000  # letters
 KEPT = "cookies,local_storage,indexeddb,cache_storage"
 
 
@@ -76,6 +77,18 @@ def browser(started: Callable[[str], Any], language: str) -> Iterator[Any]:
     for origin in {f"{at.scheme}://{at.netloc}" for at in seen if at.netloc}:
         forgets.send("Storage.clearDataForOrigin", {"origin": origin, "storageTypes": KEPT})
     context.clear_cookies()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, Any]:
+    """What its page showed stands beneath a test that fails: another run may show something else."""
+    report = yield
+    page = getattr(item, "funcargs", {}).get("page")
+    if report.failed and report.when == "call" and page is not None and not page.is_closed():
+        with suppress(Exception):  # the browser itself may be gone
+            state = page.get_attribute('[data-testid="stApp"]', "data-test-script-state", timeout=1000)
+            report.sections.append(("the page", f"{page.url}, {state}\n{page.inner_text('body')[:MOST_SHOWN]}"))
+    return report
 
 
 @pytest.fixture

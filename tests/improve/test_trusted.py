@@ -27,6 +27,15 @@ def test_no_more_than_a_twentieth_of_the_cut_is_without_a_correction_that_settle
         check_found(found, RUN)
 
 
+@pytest.mark.parametrize(("coupled", "cure"), [(False, "couple the force"), (True, "make the arm stiffer")])
+def test_nobody_is_told_to_couple_a_force_that_is_coupled(coupled: bool, cure: str) -> None:
+    setup = rm.load_setup("paper_flute/setup_process").replace(coupling=coupled, step_mm=10, cell_mm=0.4)
+    wanted = rm.simulate(setup)
+    restless = Correction(wanted, np.zeros_like(wanted.path.p), wanted, (1e-3,), np.zeros(len(wanted.path), dtype=bool))
+    with pytest.raises(CompensationError, match=f"cut less at once, or {cure}"):
+        check_found(restless, wanted)
+
+
 @pytest.mark.parametrize("joint", range(RUN.setup.robot.n))
 @pytest.mark.parametrize(("degrees", "stands"), [(4.9, True), (-4.9, True), (5.1, False), (-90.0, False)])
 def test_no_joint_stands_elsewhere_on_the_corrected_path(joint: int, degrees: float, stands: bool) -> None:

@@ -22,9 +22,11 @@ runs change one session at a time.)
 
 import asyncio
 from collections.abc import Callable
+from dataclasses import replace
 from functools import wraps
 from typing import Any
 
+from streamlit.proto.WidgetStates_pb2 import WidgetStates
 from streamlit.runtime.app_session import AppSession
 from streamlit.runtime.scriptrunner import get_script_run_ctx
 from streamlit.runtime.scriptrunner.script_runner import ScriptRunner
@@ -33,6 +35,12 @@ ASKED = "_page_asked_for"
 LEFT = "_parts_registered_before"
 LAST_WORDS_S = 0.002
 CLICKS = ("trigger_value", "string_trigger_value", "chat_input_value", "json_trigger_value")
+
+
+def _is_elsewhere(session: Any, page: str) -> bool:
+    """Whether ``page`` is not the one that the browser asked for last; one without a name is."""
+    asked = getattr(session, ASKED, "")
+    return bool(asked) and page not in ("", asked)
 
 
 def _was_left(session: Any, part: str) -> bool:
@@ -59,16 +67,21 @@ def _without_clicks(said: Any) -> None:
         said.widget_states.widgets.extend(boxes)
 
 
+def _of_clicks(wanted: Any) -> Any:
+    """What is ``wanted`` of a run, with nothing said of its boxes but what was clicked."""
+    clicks = WidgetStates(widgets=[box for box in wanted.widget_states.widgets if box.WhichOneof("value") in CLICKS])
+    return replace(wanted, widget_states=clicks)
+
+
 def _is_run(session: Any, said: Any) -> bool:
     """Whether what a browser says is to be run; ``said`` becomes what it asks for."""
     if not said.fragment_id and not said.widget_states.widgets:  # only a way to another page comes without both
         setattr(session, ASKED, said.page_script_hash)
         setattr(session, LEFT, session._fragment_storage.registration_sequence())
-    asked = getattr(session, ASKED, "")
-    elsewhere = asked and said.page_script_hash not in ("", asked)
+    elsewhere = _is_elsewhere(session, said.page_script_hash)
     if not said.fragment_id:
         if elsewhere:
-            said.page_script_hash = asked
+            said.page_script_hash = getattr(session, ASKED)
         return True
     if elsewhere or _was_left(session, said.fragment_id):
         return False
@@ -95,7 +108,8 @@ def heeding_pages(request: Callable[..., None]) -> Callable[..., None]:
 
 def awaiting_drawing(create: Callable[..., None]) -> Callable[..., None]:
     """``create`` (of a session, for a run that needs a runner of its own), but that a part waits for the last words of
-    a run that has ended: they come through the same event loop, and the session lets go of that run behind them."""
+    a run that has ended: they come through the same event loop, and the session lets go of that run behind them. Where
+    another run was asked for meanwhile, what stands in its boxes is the newer, and its page the one that is run."""
 
     @wraps(create)
     def awaited(session: Any, wanted: Any) -> None:
@@ -108,7 +122,9 @@ def awaiting_drawing(create: Callable[..., None]) -> Callable[..., None]:
             now = session._scriptrunner
             if now is ended:
                 asyncio.get_running_loop().call_later(LAST_WORDS_S, later)
-            elif session.has_fragment(wanted.fragment_id) and (now is None or not now.request_rerun(wanted)):
+            elif _is_elsewhere(session, wanted.page_script_hash) or not session.has_fragment(wanted.fragment_id):
+                return
+            elif now is None or not now.request_rerun(_of_clicks(wanted)):
                 awaited(session, wanted)
 
         later()

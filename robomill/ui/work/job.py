@@ -20,6 +20,7 @@ from robomill.ui.serving.asked import heed_pages
 from robomill.ui.work.turns import Turn
 
 EVERY_S = 0.4
+GIVE_WAY_S = 0.02
 TOLD = "bar.tells"  # the place of the work that the bar of this page speaks of
 ABANDONED_S = 90.0  # work whose page has not looked at it for so long is given up
 
@@ -108,13 +109,16 @@ def give_up(key: str) -> None:
 
 def finished(key: str, wait_s: float = 0.0) -> Job | None:
     """The job kept under ``key`` where it has ended, or ends within ``wait_s``; its bug, if it met one, is raised here.
-    One that nobody had looked at for long is forgotten."""
+    One that nobody had looked at for long is forgotten. A page that waits gives way to what is asked for meanwhile."""
     job: Job | None = session.kept(key)
     if job is None:
         return None
     job.seen = time.monotonic()
-    if not job.done.wait(wait_s):
-        return None
+    while not job.done.wait(min(wait_s, GIVE_WAY_S)):
+        wait_s -= GIVE_WAY_S
+        if wait_s <= 0.0:
+            return None
+        session.store()  # a look into the session is where a run gives way
     if job.stop.is_set():
         session.drop(key)
         return None

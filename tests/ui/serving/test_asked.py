@@ -5,8 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 from streamlit.proto.ClientState_pb2 import ClientState
+from streamlit.runtime.scriptrunner_utils.script_requests import RerunData
 
-from robomill.ui.serving.asked import awaiting_drawing, hearing_out, heeding_pages
+from robomill.ui.serving.asked import ASKED, awaiting_drawing, hearing_out, heeding_pages
 
 
 def said(page: str, boxes: int = 2, part: str = "", tick: bool = False) -> ClientState:
@@ -156,20 +157,23 @@ class Runner:
 
     def __init__(self, ended: bool) -> None:
         self.ended = ended
-        self.taken: list[object] = []
+        self.taken: list[RerunData] = []
 
-    def request_rerun(self, wanted: object) -> bool:
+    def request_rerun(self, wanted: RerunData) -> bool:
         if not self.ended:
             self.taken.append(wanted)
         return not self.ended
 
 
-@pytest.mark.parametrize("then", ["nothing", "another run", "a page without it"])
+@pytest.mark.parametrize("then", ["nothing", "another run", "a page without it", "another page"])
 def test_a_part_waits_for_the_last_words_of_the_run_before_it(then: str):
-    """Its own runner would have them dropped."""
-    part = SimpleNamespace(fragment_id="map")
-    made: list[object] = []
+    """Its own runner would have them dropped. Of what was said before another run, its clicks are news alone."""
+    boxes = said("start").widget_states
+    boxes.widgets.add(id="button", trigger_value=True)
+    part = RerunData(fragment_id="map", page_script_hash="start", widget_states=boxes)
+    made: list[RerunData] = []
     session = SimpleNamespace(_scriptrunner=Runner(ended=True), has_fragment=lambda _: then != "a page without it")
+    setattr(session, ASKED, "start")
     create = awaiting_drawing(lambda _, wanted: made.append(wanted))
     other = Runner(ended=False)
 
@@ -177,12 +181,16 @@ def test_a_part_waits_for_the_last_words_of_the_run_before_it(then: str):
         create(session, part)
         await asyncio.sleep(0.05)
         assert made == [], "the last words are still on their way"
-        session._scriptrunner = other if then == "another run" else None
+        session._scriptrunner = other if then.startswith("another") else None
+        if then == "another page":
+            setattr(session, ASKED, "robot")
         await asyncio.sleep(0.05)
 
     asyncio.run(story())
     assert made == ([part] if then == "nothing" else [])
-    assert other.taken == ([part] if then == "another run" else [])
+    assert [(run.fragment_id, [box.id for box in run.widget_states.widgets]) for run in other.taken] == (
+        [("map", ["button"])] if then == "another run" else []
+    )
 
 
 def test_the_whole_page_waits_for_nobody():
