@@ -305,3 +305,11 @@ def test_cuts_with_a_spindle_that_was_stopped_are_told() -> None:
 )
 def test_files_of_apt_are_told_by_their_statements(text: str, apt: bool) -> None:
     assert is_apt(text.encode()) == apt
+
+
+@pytest.mark.parametrize(("said", "shift"), [("10", (10, 0, 0)), ("10,-5", (10, -5, 0)), ("10,-5,2", (10, -5, 2))])
+def test_a_shift_has_up_to_three_numbers(said: str, shift: tuple[float, ...]) -> None:
+    path = read_apt(f"{HEAD}FROM/0,0,9\nTRANS/{said}\nGOTO/1,2,3\nFINI\n")
+    np.testing.assert_allclose(path.p[-1] * 1e3, np.add([1, 2, 3], shift), atol=1e-9)
+    with pytest.raises(GCodeError, match="TRANS has 4 numbers"):
+        read_apt(f"{HEAD}FROM/0,0,9\nTRANS/10,-5,2,1\nGOTO/1,2,3\nFINI\n")

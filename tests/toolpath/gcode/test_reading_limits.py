@@ -68,3 +68,11 @@ def test_so_many_holes_are_repeated_and_no_more(monkeypatch: pytest.MonkeyPatch,
         else:
             drilled = interpret(text).end[:, 2] < -4e-3
             assert drilled.sum() == count * (6 // fits)
+
+
+@pytest.mark.parametrize("word", ["X{}", "Y-{}", "Z{}"])
+def test_places_reach_ten_kilometres_from_part_zero(word: str) -> None:
+    text = f"G21 G90\nG0 X1\nG0 {word}\nG0 X2\nM2\n"
+    assert len(interpret(text.format(1e7))) > 1
+    with pytest.raises(GCodeError, match="^Line 3: a point lies 10.010 m from part zero, expected at most 10.000 m"):
+        interpret(text.format(1.001e7))
