@@ -217,7 +217,7 @@ def _tangent(values: list[str], line: int) -> FloatArray:
     numbers = numbers_of(values, line, "INDIRV")
     if len(numbers) != 3:
         raise GCodeError.at(line, f"INDIRV has {len(numbers)} numbers; expected a direction i,j,k.")
-    return np.array(_direction(numbers, line))
+    return np.array(_direction(numbers, line, "the direction of INDIRV"))
 
 
 def _along_circle(state: _State, text: str, line: int) -> None:
@@ -293,10 +293,10 @@ def _frame(state: _State, findings: Findings, word: str, values: list[str], line
         findings.add("frame", "warning", line, f"{word}/ is another one: its points are taken into the first {word}/")
 
 
-def _direction(numbers: list[float], line: int) -> tuple[float, float, float]:
+def _direction(numbers: list[float], line: int, what: str = "the tool axis") -> tuple[float, float, float]:
     size = math.sqrt(sum(v * v for v in numbers))
     if size < 1e-9:
-        raise GCodeError.at(line, "the tool axis i,j,k is 0; expected a direction.")
+        raise GCodeError.at(line, f"{what} i,j,k is 0; expected a direction.")
     return numbers[0] / size, numbers[1] / size, numbers[2] / size
 
 

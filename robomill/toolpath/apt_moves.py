@@ -148,7 +148,7 @@ def tangent_arc(text: str, tangent: FloatArray, start: FloatArray, unit: str, li
     axis = np.cross(start - centre, tangent)
     size, radius = float(np.linalg.norm(axis)), to_si(circle[3], unit)
     straight = float(np.linalg.norm(tangent)) * radius
-    if straight <= 0.0 or abs((start - centre) @ tangent) > 0.02 * straight or size < 0.5 * straight:
+    if abs((start - centre) @ tangent) > 0.02 * straight or size < 0.5 * straight:
         raise GCodeError.at(line, "INDIRV is not along the circle where the tool stands; expected its tangent there.")
     return Arc(centre, axis / size, radius, None, 1), ray[3:]
 
@@ -258,7 +258,7 @@ def frame_of(values: list[str], word: str, unit: str, line: int) -> FloatArray:
         T[:3] = np.reshape(numbers, (3, 4))
     elif word == "MSYS" and len(numbers) >= 9:
         T[:3, 0], T[:3, 1], T[:3, 3] = numbers[3:6], numbers[6:9], numbers[:3]
-        T[:3, 2] = np.cross(T[:3, 0], T[:3, 1])
+        T[:3, 2] = np.cross(*np.clip(T[:3, :2].T, -2.0, 2.0))  # what is larger is refused, and would overflow
     else:
         text = f"{word} has {len(numbers)} numbers; expected 12 (CSYS) or an origin and two axes (MSYS)."
         raise GCodeError.at(line, text)

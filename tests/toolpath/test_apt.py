@@ -64,6 +64,8 @@ def test_apt_files_are_told_from_programs() -> None:
         ("FEDRAT/-5\n", "Line 1: FEDRAT"),
         ("PARTNO/X\nFINI\n", "fewer than two"),
         ("GODLTA/1,1,1\n", "Line 1: GODLTA"),
+        ("GOTO/0,0,0\nGODLTA/1,1\n", "Line 2: GODLTA needs three steps, or one along the tool"),
+        ("GOTO/0,0,0\nGODLTA/1,1,1,1\n", "Line 2: GODLTA needs three steps, or one along the tool"),
     ],
 )
 def test_refusals(text: str, says: str) -> None:
@@ -236,11 +238,13 @@ def test_tools_modes_and_homes() -> None:
         ("TLAXIS/0,1", "TLAXIS has 2 numbers"),
         ("CSYS/1,2", "CSYS has 2 numbers"),
         ("MSYS/0,0,0,1,0,0,1,0,0", "the axes of MSYS are not at right angles"),
+        ("MSYS/0,0,0,1e200,0,0,0,1e200,0", "the axes of MSYS are not at right angles"),
+        ("CSYS/1e200,0,0,0,0,1e200,0,0,0,0,1e200,0", "the axes of CSYS are not at right angles"),
         ("RETRCT", "RETRCT moves the tool in a way that is not read"),
     ],
 )
 def test_what_is_not_read_is_refused_by_name(lines: str, says: str) -> None:
-    with pytest.raises(GCodeError) as caught:
+    with pytest.raises(GCodeError) as caught, np.errstate(all="raise"):
         read_apt(f"{HEAD}FROM/10,0,0\n{lines}\nGOTO/1,0,0\nFINI\n")
     assert says in str(caught.value)
 
@@ -301,3 +305,11 @@ def test_cuts_with_a_spindle_that_was_stopped_are_told() -> None:
 )
 def test_files_of_apt_are_told_by_their_statements(text: str, apt: bool) -> None:
     assert is_apt(text.encode()) == apt
+
+
+@pytest.mark.parametrize(("said", "shift"), [("10", (10, 0, 0)), ("10,-5", (10, -5, 0)), ("10,-5,2", (10, -5, 2))])
+def test_a_shift_has_up_to_three_numbers(said: str, shift: tuple[float, ...]) -> None:
+    path = read_apt(f"{HEAD}FROM/0,0,9\nTRANS/{said}\nGOTO/1,2,3\nFINI\n")
+    np.testing.assert_allclose(path.p[-1] * 1e3, np.add([1, 2, 3], shift), atol=1e-9)
+    with pytest.raises(GCodeError, match="TRANS has 4 numbers"):
+        read_apt(f"{HEAD}FROM/0,0,9\nTRANS/10,-5,2,1\nGOTO/1,2,3\nFINI\n")

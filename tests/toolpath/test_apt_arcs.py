@@ -134,6 +134,25 @@ def test_an_arc_of_catia_may_stand_upright() -> None:
         ("INDIRV/0,1,0\nTLON,GOFWD/ (CYLNDR/0,0,0,0,0,1,10),ON,(LINE/0,0,0,0,10,0)", "TLON,GOFWD has '(CYLNDR"),
         ("INDIRV/1,0,0\nTLON,GOFWD/ (CIRCLE/0,0,0,10),ON,(LINE/0,0,0,0,10,0)", "INDIRV is not along the circle"),
         ("INDIRV/0,1,0\nTLON,GOFWD/ (CIRCLE/0,0,0,10),ON,(LINE/0,0,0,0,11,0)", "the arc's ends lie 10.0000 mm and 11"),
+        *(
+            (f"INDIRV/0,1,0\nTLON,GOFWD/ (CIRCLE/{circle}),ON,(LINE/{ray})", "an arc of TLON needs CIRCLE/x,y,z,r")
+            for circle, ray in (
+                ("0,0,0", "0,0,0,0,10,0"),
+                ("0,0,0,10,1", "0,0,0,0,10,0"),
+                ("0,0,0,10", "0,0,0,0,10"),
+                ("0,0,0,10", "0,0,0,0,10,0,1"),
+                ("0,0,0,0", "0,0,0,0,10,0"),
+                ("0,0,0,-10", "0,0,0,0,10,0"),
+            )
+        ),
+        (
+            "INDIRV/0,0,0\nTLON,GOFWD/ (CIRCLE/0,0,0,10),ON,(LINE/0,0,0,0,10,0)",
+            "Line 4: the direction of INDIRV i,j,k is 0",
+        ),
+        # from its own centre no tangent leads along a circle
+        ("INDIRV/0,1,0\nTLON,GOFWD/ (CIRCLE/10,0,0,10),ON,(LINE/10,0,0,10,10,0)", "INDIRV is not along the circle"),
+        ("INDIRV/0,1,0\nTLON,GOFWD/ (CIRCLE/6,0,0,10),ON,(LINE/6,0,0,6,10,0)", "INDIRV is not along the circle"),
+        ("INDIRV/0,1,0\nTLON,GOFWD/ (CIRCLE/4,0,0,10),ON,(LINE/4,0,0,4,10,0)", "the arc's ends lie 6.0000 mm and 10"),
         ("TLLFT,GOLFT/L1", "TLLFT,GOLFT moves the tool"),
     ],
 )

@@ -89,3 +89,15 @@ def test_a_path_in_mm_is_not_as_small_as_a_tenth_wherever_it_lies(away: float, s
     else:
         with pytest.raises(ToolpathError, match=r"Points: the whole path lies within 0\.09 mm: p_mm is in mm"):
             rm.Toolpath.from_points(p_mm=points, **given)
+
+
+def test_every_point_has_an_axis_of_some_length() -> None:
+    """However short: a direction is all that is asked."""
+    axes = np.tile([0, 3e-9, 4e-9], (4, 1))
+    path = rm.Toolpath.from_points(p_mm=P, feed_mm_min=600, k=axes)
+    np.testing.assert_allclose(path.k, np.tile([0, 0.6, 0.8], (4, 1)), atol=1e-12)
+    for row in range(4):
+        short = axes.copy()
+        short[row] = 0.0
+        with pytest.raises(ToolpathError, match=r"^Tool axis: found one without length"):
+            rm.Toolpath.from_points(p_mm=P, feed_mm_min=600, k=short)

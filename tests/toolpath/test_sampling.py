@@ -57,10 +57,15 @@ def test_the_step_that_a_refusal_names_fits(monkeypatch: pytest.MonkeyPatch) -> 
     assert 50 < len(resample(two_lines(), 1.01 * step)) <= 100
 
 
-@pytest.mark.parametrize("step", [0.0, -1.0, float("nan")])
+@pytest.mark.parametrize("step", [0.0, -1.0, float("nan"), float("inf")])
 def test_a_step_must_be_a_length(step: float) -> None:
-    with pytest.raises(ToolpathError, match="expected a length above 0"):
-        resample(two_lines(), step)
+    path = two_lines()
+    of_moves = np.full(len(path), 0.01)
+    assert len(resample(path, of_moves)) == len(resample(path, 0.01))
+    of_moves[-1] = step
+    for each in (step, of_moves):
+        with pytest.raises(ToolpathError, match="expected a length above 0"):
+            resample(path, each)
 
 
 def test_too_fine_a_step_is_refused_with_one_that_fits() -> None:

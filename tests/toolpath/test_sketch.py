@@ -38,6 +38,8 @@ def test_a_slot_is_rapids_plunge_cut_and_retract():
     ("shape", "points", "length"),
     [
         ("rectangle", [[0, 0], [0.06, 0.04]], 0.2),
+        ("rectangle", [[-0.03, -0.02], [0.03, 0.02]], 0.2),
+        ("rectangle", [[-0.03, 0.02], [0.03, -0.02]], 0.2),
         ("polygon", [[0, 0], [0.03, 0], [0, 0.04]], 0.12),
         ("polyline", [[0, 0], [0.03, 0], [0, 0.04]], 0.08),
         ("circle", [[0.01, 0.02], [0.03, 0.02]], 2 * math.pi * 0.02),
@@ -115,6 +117,7 @@ def test_shapes_apart_are_joined_by_rapids_at_clearance():
         ("polygon", [[0, 0], [1, 0], [1, 1], [0, 0]], 1e-3, 0.1, "it closes by itself"),
         ("rectangle", [[0, 0], [0, 1]], 1e-3, 0.1, "on one line"),
         ("rectangle", [[0, 0], [1, 0]], 1e-3, 0.1, "on one line"),
+        ("rectangle", [[3, 1], [3, 2]], 1e-3, 0.1, "on one line"),
         ("arc", [[0, 0], [1, 1], [0, 0]], 1e-3, 0.1, "ends where it begins; draw a circle"),
         ("line", [[0, 0], [1, np.nan]], 1e-3, 0.1, "finite"),
         ("line", [[0, 0], [1e4, 0]], 1e-3, 0.1, "found 10000 m"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robomill.errors import ToolpathError
+from robomill.errors import GCodeError, ToolpathError
 from robomill.toolpath.corrected import Mark, key_of, marked
 from robomill.toolpath.gcode import Tool
 from robomill.toolpath.path import Toolpath
@@ -36,6 +36,17 @@ def test_a_program_is_read_once_for_each_table_of_tools() -> None:
     other = source.read(tools)
     assert other is not first
     assert source.read(tools) is other
+
+
+def test_a_refused_program_stays_refused() -> None:
+    """In the same words, each time as a refusal of its own, to which its reader may add where it was."""
+    source, refusals = GCodeSource(TEXT.replace("X10", "G2 X10")), []
+    for _ in range(3):
+        with pytest.raises(GCodeError, match=r"^Line 6: ") as refused:
+            source.read()
+        refusals.append(refused.value)
+    assert len({str(each) for each in refusals}) == 1
+    assert len({id(each) for each in refusals}) == 3
 
 
 def test_the_last_few_programs_are_kept() -> None:

@@ -11,7 +11,7 @@ import robomill as rm
 from robomill.errors import GCodeError
 from robomill.files import FileKind
 from robomill.toolpath import text as texts
-from robomill.toolpath.text import as_plain_bytes, read_source, split_lines
+from robomill.toolpath.text import as_plain_bytes, check_program_name, read_source, split_lines
 
 
 @pytest.mark.parametrize(
@@ -45,6 +45,16 @@ def test_what_exists_is_a_file_whatever_its_name(tmp_path: Path, monkeypatch: py
     assert read_source(bytearray(b"O1234")) == (b"O1234", "program")
     with pytest.raises(GCodeError, match="expected text, bytes or a path, found int"):
         read_source(5)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "name", ["setup.toml", "robot.URDF", "points.csv", "a.dxf", "b.SVG", "report.html", "part.stl"]
+)
+def test_no_program_is_written_under_the_name_of_another_file(name: str) -> None:
+    with pytest.raises(GCodeError, match=rf"{name}: a program is written there; give a name that ends in \.nc\.$"):
+        check_program_name(Path("out") / name)
+    for own in ("part.nc", "O1234", "part.MPF", f"{name}.nc", "part.h"):
+        check_program_name(Path("out") / own)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "utf-32"])

@@ -152,7 +152,7 @@ class Compensation:
 
     def off(self, machine: Machine, block: Block) -> None:
         """G40: record what is held and go on from the programmed point."""
-        if self.radius > 0 and self.programmed is not None:
+        if self.programmed is not None:
             self.finish(machine, block)
             machine.p = self.programmed_point(machine)
             machine.p[self.axes[2]] = self.programmed[2]

@@ -96,7 +96,10 @@ _TOLD = (
     ("OSAI's language", r"(?:N\d+[ \t]*)?\((?:U[TA]O|RPT|DIS|TMR),|(?:N\d+[ \t]*)?\(ERP\)[ \t]*$"),
     ("HPGL (a plotter's language)", r"(?:IN|PU|PD|SP\d?);"),
     ("Gerber (a circuit board's layer)", r"%FS[LT][AI]X\d"),
-    ("Excellon (a circuit board's holes)", r"M48[ \t]*$"),
+    (  # M48 alone is an M word of G-code, too
+        "Excellon (a circuit board's holes)",
+        r"M48[ \t\r]*\n(?:[^\n]*\n){0,9}?(?:INCH\b|METRIC\b|FMAT\b|VER,|ICI\b|T\d+(?:[FS]\d+)*C\d*\.\d)",
+    ),
     ("ShopBot's language", r"(?:SA|SR)[ \t]*$|(?:VD|MS|JS|M[23XYZ]|J[23XYZ])[ \t]*,[ \t]*[-.\d]"),
     ("a page of the web (HTML)", r"[ \t]*<(?:!DOCTYPE[ \t]+html|html)\b"),
     ("a pointer of Git LFS, in place of the file", r"version https://git-lfs"),

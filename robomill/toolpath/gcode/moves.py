@@ -198,6 +198,8 @@ def in_step(machine: Machine, block: Block) -> None:
     if machine.spindle == 0:
         raise block.refuse("G33 needs a turning spindle; start it with M3 or M4.")
     pitch_speed = abs(block.words["k"]) * machine.factor * rules.spindle_speed(machine)
+    if pitch_speed == 0.0:
+        raise block.refuse("G33 needs S and K above 0: they say how fast it cuts.")
     machine.go(TAP if block.motion == 331 else FEED, block.line, end, pitch_speed)
     if block.motion == 330:
         machine.p = end

@@ -106,6 +106,22 @@ def test_an_entry_by_an_arc_ends_tangentially_beside_the_end_of_the_programmed_o
     assert program.end[2, :2] @ [1e3, 1e3j] == pytest.approx(beside + (beyond - end), abs=1e-8)
 
 
+@pytest.mark.parametrize(("code", "turn"), [("G41.1", 3), ("G42.1", 2)])
+@pytest.mark.parametrize("course", [1, 1j, -1, -1j])
+@pytest.mark.parametrize("by_radius", [False, True])
+def test_an_entry_around_the_tool_is_wider_than_the_cutter(code, turn, course, by_radius):
+    """A half circle as wide as the cutter leaves no centre beside it, whichever way it leads; a wider one does."""
+    for wide in (R, 1.125 * R):
+        how = f"R{wide}" if by_radius else f"I{(wide * course).real} J{(wide * course).imag}"
+        text = f"G21 G90 G17 F600\nG0 X0 Y0\n{code} D{2 * R}\nG{turn} {xy(2 * wide * course)} {how}\nG40\nG1 X99\nM2\n"
+        if wide > R:
+            begun = interpret(text).end[1, :2] @ [1e3, 1e3j]
+            assert begun == pytest.approx((2 * wide - R) * course, abs=1e-9)
+            continue
+        with pytest.raises(GCodeError, match="^Line 4: the arc is not larger than the cutter"):
+            interpret(text)
+
+
 @pytest.mark.parametrize("code", ["G41.1", "G42.1"])
 @pytest.mark.parametrize("course", [0.3, 2.0, -2.5])
 @pytest.mark.parametrize("first", ["G1", "G2"])

@@ -107,6 +107,17 @@ def test_a_corner_beside_an_arc_in_closed_form() -> None:
         assert program.clockwise[-4:].tolist() == [False, True, False, False]
 
 
+def test_a_corner_behind_an_arc_is_that_before_it_gone_the_other_way() -> None:
+    u = 30 - np.sqrt(12**2 - 2**2)
+    arc = "L X50 Y-10 Z0 FMAX\nL X30 F100\nCC X30 Y0\nC X20 Y0 DR-\n"
+    program = interpret(f"BEGIN PGM A MM\n{arc}RND R2\nL X0\nEND PGM A MM\n", dialect="heidenhain")
+    joins = [30 + (u - 30) * 10 / 12, -2 * 10 / 12]
+    np.testing.assert_allclose(program.end[-3:, :2] * 1e3, [joins, [u, 0], [0, 0]], atol=1e-9)
+    np.testing.assert_allclose(program.centre[-2, :2] * 1e3, [u, -2], atol=1e-9)
+    with pytest.raises(GCodeError, match="CHF is read between two straight cuts"):
+        interpret(f"BEGIN PGM A MM\n{arc}CHF 2\nL X0\nEND PGM A MM\n", dialect="heidenhain")
+
+
 def test_no_corner_is_where_a_cut_and_an_arc_go_on_tangentially() -> None:
     assert ends("G1 X20 ,R2 F100\nG3 X30 Y10 I0 J10 ,R2\nG1 Y20\n") == [[20, 0], [30, 10], [30, 20]]
 
@@ -125,6 +136,14 @@ def test_no_corner_is_where_a_cut_and_an_arc_go_on_tangentially() -> None:
         (
             "G1 X20 ,R2 F100\nG3 X30 Y-10 Z-1 I10\n",
             "Line 4: a corner beside an arc is rounded in the plane of that arc",
+        ),
+        (
+            "G3 X10 Y10 I0 J10 ,R2 F100\nG18 G3 X20 Z0 I5 K0\n",
+            "Line 4: a corner beside an arc is rounded in the plane of that arc",
+        ),
+        (
+            "G3 X10 Y10 I0 J10 ,C2 F100\nG1 X50\n",
+            "Line 4: a corner is rounded at the end of a cut (G1, G2, G3), or chamfered at that of a G1 alone",
         ),
         ("M8 ,C5\n", "Line 4: a corner is rounded at the end of a cut"),
         ("G68 X0 Y0\n", "Line 4: G68 is read in G17 and G90, with R"),

@@ -61,3 +61,27 @@ def test_two_tools_beside_m6_are_the_one_to_load_and_the_next() -> None:
     for wrong, dialect in (("T1 T2", "auto"), ("T1 T2 T9 M6", "auto"), ("T1 T2 M6", "linuxcnc")):
         with pytest.raises(GCodeError, match=r"^Line 2: T is given twice"):
             interpret(f"G21\n{wrong}\nG0 X1\n", dialect=dialect)
+
+
+@pytest.mark.parametrize(
+    ("words", "read"),
+    [
+        ('T="MILL"\nM6', True),
+        ("T1\nM6", True),
+        ('T="FOO"\nM6', False),
+        ('T="FOO"\nM6\nT1\nM6', True),
+        ('T="FOO"\nM6\nT="MILL"\nM6', True),
+        ('T1\nM6\nT="FOO"', True),  # asked for, while tool 1 is in the spindle
+        ('T1\nM6\nT="FOO"\nM6', False),
+    ],
+)
+def test_the_tool_in_the_spindle_needs_a_size_whatever_was_called_before(words: str, read: bool) -> None:
+    """Left of x = 0 by its radius of 2 mm."""
+    text = f"G17 G90 G71 G54\n{words}\nG0 X0 Y-20 Z0\nG41 G1 X0 Y0 F9\nY50\nG40 X-30\nM30\n"
+    tools = {1: Tool(1, 4e-3, name="Mill")}
+    if read:
+        assert interpret(text, dialect="sinumerik", tools=tools).end[-2, :2] * 1e3 == pytest.approx([-2, 50])
+        return
+    line = 4 + words.count("\n")
+    with pytest.raises(GCodeError, match=f'^Line {line}: tool "FOO" is not in the tool table; add it under that name'):
+        interpret(text, dialect="sinumerik", tools=tools)

@@ -96,7 +96,8 @@ def test_a_system_other_than_the_first_is_said_to_be_at_part_zero(said: str, fou
         ("G21 G90\nG1 X-25000 Y-10000 F9\nM30\n", "no-points", "suspicious"),
         ("G21 G90\nG1 X50 Y20 F9\nM30\n", "no-points", "info"),
         ("G21 G90\nG1 X10000 Y5.5 F9\nM30\n", "no-point", "suspicious"),
-        ("G21 G90\nG1 X100 Y5.5 F9\nM30\n", "", ""),
+        ("G21 G90\nG1 X1000 Y5.5 F9\nM30\n", "no-point", "suspicious"),  # a millimetre, in thousandths
+        ("G21 G90\nG1 X999 Y5.5 F9\nM30\n", "", ""),
         ("G21 G90\nG1 X50. Y20. F9\nM30\n", "", ""),
     ],
 )

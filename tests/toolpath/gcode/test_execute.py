@@ -86,3 +86,15 @@ def test_where_a_probe_ended_is_kept_in_the_program_s_units() -> None:
     program = interpret(f"{probe}G0 X#5061 Y#5062 Z#5063 A#5064 B#5065 C[#5066 + #5070]\nM2\n")
     assert program.end[-1].tolist() == pytest.approx([0.0254 * v for v in (4 + 1, 5 + 2, 5.5 + 3)])
     assert program.rotary[-1].tolist() == pytest.approx([math.radians(v) for v in (7, 8, 9)])
+
+
+@pytest.mark.parametrize(("code", "must_meet"), [("G38.2", True), ("G38.3", False), ("G38.4", True), ("G38.5", False)])
+def test_a_probe_that_must_meet_something_has_a_way_to_go(code: str, must_meet: bool) -> None:
+    """LinuxCNC: G38.2 and G38.4 report a probe that met nothing; G38.3 and G38.5 are content with that."""
+    text = f"G21 G90 F100\nG0 X1 Y2 Z50\n{code} X1 Y2 Z{{}}\nG1 X5\nM2\n"
+    assert (interpret(text.format(49.9)).end[-1] * 1e3).tolist() == pytest.approx([5, 2, 49.9])
+    if must_meet:
+        with pytest.raises(GCodeError, match=f"^Line 3: {code} starts where it should end; move away first"):
+            interpret(text.format(50))
+    else:
+        assert (interpret(text.format(50)).end[-1] * 1e3).tolist() == pytest.approx([5, 2, 50])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
@@ -69,6 +70,8 @@ def test_a_word_of_another_language_is_named(line: str, word: str, language: str
         ("solid part\nfacet normal 0 0 1\n", 1, "an STL surface"),
         ("G04 board*\n%FSLAX24Y24*%\n%MOMM*%\n", 2, "Gerber"),
         ("M48\nMETRIC,TZ\nT1C0.8\n", 1, "Excellon"),
+        ("M48\n;DRILL file\n;FORMAT={3:3}\nFMAT,2\nINCH\nT1C0.8\n", 1, "Excellon"),
+        ("M48\nT01F00S00C0.8000\n%\nT01\nX5Y5\n", 1, "Excellon"),
         ("'part\nMS,1.0,0.5\nJZ,5\n", 2, "ShopBot's language"),
         ("\n<!DOCTYPE html>\n<html>\n", 2, "a page of the web"),
         ("version https://git-lfs.github.com/spec/v1\noid sha256:0\n", 1, "a pointer of Git LFS"),
@@ -80,6 +83,20 @@ def test_a_file_of_another_language_is_named_by_it_on_its_first_line(text: str, 
         interpret(text)
     assert str(caught.value).startswith(f"Line {line}: this is {name}")
     assert "expected G-code, Heidenhain's dialogue or APT" in str(caught.value)
+
+
+@pytest.mark.parametrize("preamble", ["M48\nG21 G90\n", "G21 G90\nM48\nT1 M6\n", "%\nO1\nM48\nG21 G90\nG0 C0.5\n"])
+def test_overrides_that_m48_allows_are_no_file_of_holes(preamble: str) -> None:
+    """M48, on a line of its own, turns the overrides of feed and spindle on: LinuxCNC, Fanuc and others."""
+    program = interpret(f"{preamble}G0 X1\nG1 Z-1 F9\nM30\n")
+    np.testing.assert_allclose(program.end[-1] * 1e3, [1, 0, -1], atol=1e-9)
+
+
+def test_a_stated_control_is_believed_before_a_language_that_a_comment_looks_like() -> None:
+    text = "G21 G90\n(CALL 100)\n(DIS, READY)\nG0 X1\nM30\n"
+    assert len(interpret(text, dialect="fanuc")) == 1
+    with pytest.raises(GCodeError, match="^Line 2: this is Fagor's language"):
+        interpret(text)
 
 
 @pytest.mark.parametrize("dialect", ["auto", "fanuc", "linuxcnc"])

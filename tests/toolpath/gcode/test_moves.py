@@ -142,3 +142,26 @@ def test_a_cycle_that_waits_at_the_bottom_waits_for_p_and_needs_it_on_linuxcnc(c
     if dialect == "linuxcnc":
         with pytest.raises(GCodeError, match=f"Line 3: G{code} needs P, its dwell in seconds"):
             interpret(text.format(""), dialect=dialect)
+
+
+@pytest.mark.parametrize("dialect", ["linuxcnc", "sinumerik"])
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ("S60 M3\nG33 Z-9 K2", ""),
+        ("S60 M3\nG33 Z-9 K-2", ""),
+        ("S60 M3\nG33 Z-9 K0", "Line 5: G33 needs S and K above 0"),
+        ("M3\nG33 Z-9 K2", "Line 5: G33 needs S and K above 0"),
+        ("S60\nG33 Z-9 K2", "Line 5: G33 needs a turning spindle"),
+        ("S60 M3\nG33 Z-9", "Line 5: G33 needs K"),
+    ],
+)
+def test_a_thread_has_a_pitch_and_a_speed(words: str, says: str, dialect: str) -> None:
+    """One turn a second of 2 mm."""
+    text = f"G21 G90 G17 F900\nG1 X0 Y0\nZ1\n{words}\nM2\n"
+    if not says:
+        program = interpret(text, dialect=dialect)
+        assert (program.end[-1, 2] * 1e3, program.v_f[-1] * 1e3) == pytest.approx((-9, 2))
+        return
+    with pytest.raises(GCodeError, match=f"^{says}"):
+        interpret(text, dialect=dialect)

@@ -361,3 +361,16 @@ def test_a_fanuc_variable_of_a_tool_is_left_out_as_g10_is():
         said[line] = [f.message.split(" ", 1 + (line[0] == "G"))[-1] for f in found.findings if f.code == "tool-set"]
     assert said["#2001=5."] == said["G10 L10 P1 R5."]
     assert said["#2001=5."] == ["sets a tool of the control, which is left out: the tool table holds"]
+
+
+@pytest.mark.parametrize("kind", ["L2", "L20"])
+@pytest.mark.parametrize(("system", "read"), [(0, False), (1, False), (2, True), (9, True)])
+def test_under_compensation_other_systems_alone_are_placed(kind: str, system: int, read: bool) -> None:
+    """G54 is in force, by its number or as P0: the cutter's contour would break where that moved."""
+    text = "G21 G90 G17 G54 F100\nG0 X0 Y0\nG41.1 D2\nG1 X10\nX20\n{}X30\nG40\nG1 X40 Y9\nM2\n"
+    if read:
+        plain, found = (interpret(text.format(word)).end for word in ("", f"G10 {kind} P{system} X5\n"))
+        np.testing.assert_array_equal(found, plain)
+        return
+    with pytest.raises(GCodeError, match=f"^Line 6: G10 {kind} cannot move the current coordinate system"):
+        interpret(text.format(f"G10 {kind} P{system} X5\n"))

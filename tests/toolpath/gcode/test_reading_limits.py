@@ -36,6 +36,26 @@ def test_so_much_is_read_and_no_more(dialect, most, body):
         interpret(HEADS[dialect].format(body(most + 1)), dialect=dialect)
 
 
+@pytest.mark.parametrize(
+    ("line", "most", "more", "says"),
+    [
+        ("G0 A{}", 100_000 * 360, 90, "an axis turns more than 100 000 times"),
+        ("G0 B-{}", 100_000 * 360, 90, "an axis turns more than 100 000 times"),
+        ("G2 I{}", 1e12, 500, "the centre of an arc lies more than 1 000 000 km from part zero"),
+        ("G3 J-{}", 1e12, 500, "the centre of an arc lies more than 1 000 000 km from part zero"),
+        ("G1 X1 F{}", 60_000_000, 60, "a feed is above 60 000 000 mm/min"),
+        ("G1 X1 M3 S{}", 6_000_000, 60, "a spindle turns faster than 6 000 000 1/min"),
+        ("G82 Z-1 R1 P{}", 1e8, 1, "a dwell takes more than three years"),
+    ],
+)
+def test_numbers_that_no_machine_has_are_refused_at_their_line(line: str, most: float, more: float, says: str) -> None:
+    """As much is read, but for what units may round off."""
+    text = f"G21 G90 G17 F100\nG0 X0 Y0 Z0\n{line}\nG0 X0\nM2\n"
+    assert len(interpret(text.format(f"{most * (1.0 - 1e-9):.6f}"))) > 1
+    with pytest.raises(GCodeError, match=f"^Line 3: {says}; mend the number"):
+        interpret(text.format(f"{most + more:.6f}"))
+
+
 @pytest.mark.parametrize(("cycle", "fits"), [("220 Q241={}", 6), ("221 Q242={} Q243=2", 3), ("221 Q242=2 Q243={}", 3)])
 def test_so_many_holes_are_repeated_and_no_more(monkeypatch: pytest.MonkeyPatch, cycle: str, fits: int) -> None:
     monkeypatch.setattr("robomill.toolpath.gcode.klartext.patterns.MOST_HOLES", 6)
@@ -48,3 +68,11 @@ def test_so_many_holes_are_repeated_and_no_more(monkeypatch: pytest.MonkeyPatch,
         else:
             drilled = interpret(text).end[:, 2] < -4e-3
             assert drilled.sum() == count * (6 // fits)
+
+
+@pytest.mark.parametrize("word", ["X{}", "Y-{}", "Z{}"])
+def test_places_reach_ten_kilometres_from_part_zero(word: str) -> None:
+    text = f"G21 G90\nG0 X1\nG0 {word}\nG0 X2\nM2\n"
+    assert len(interpret(text.format(1e7))) > 1
+    with pytest.raises(GCodeError, match="^Line 3: a point lies 10.010 m from part zero, expected at most 10.000 m"):
+        interpret(text.format(1.001e7))

@@ -112,3 +112,23 @@ def test_a_curve_begins_where_the_tool_stands_whatever_weight_is_said_there():
     more = "X7 Y5 P1\nX9 Y-3 P2\nX12 Y0 P1\nG5.3"
     plain, none = read(f"G5.2 P1 L3\n{more}"), read(f"G5.2 P0 L3\n{more}")
     np.testing.assert_allclose(np.concatenate(none), np.concatenate(plain), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ("I5 J5 P-5 Q5", ""),
+        ("P-5 Q5", ""),
+        ("I5 J5 P-5", "G5 needs P and Q, its second control point"),
+        ("I5 J5 Q5", "G5 needs P and Q, its second control point"),
+        ("I5 P-5 Q5", "G5 needs both I and J, or neither"),
+        ("J5 P-5 Q5", "G5 needs both I and J, or neither"),
+    ],
+)
+def test_a_cubic_spline_has_its_control_points_whole(words: str, says: str) -> None:
+    text = f"G21 G90 G17 F100\nG0 X0 Y0\nG5 X10 Y0 {words}\nM2\n"
+    if not says:
+        np.testing.assert_allclose(interpret(text).end[-1] * 1e3, [10, 0, 0], atol=1e-9)
+        return
+    with pytest.raises(GCodeError, match=f"^Line 3: {says}"):
+        interpret(text)

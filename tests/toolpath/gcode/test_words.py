@@ -74,6 +74,15 @@ def test_what_is_no_word_is_refused_with_its_line(line: str, says: str) -> None:
     assert says in str(refused.value)
 
 
+def test_a_line_changes_to_one_tool_and_readies_one_more() -> None:
+    """Fanuc: T1 M6 T2 has tool 1 in the spindle and 2 ready; a third T, or a second without M6, is a slip."""
+    cuts = interpret("G21\nT1 M6 T2\nG1 X1 F9\nM6\nX2\nM30\n", dialect="fanuc")
+    assert cuts.tool[cuts.kind == 1].tolist() == [1, 2]
+    for line in ("T1 M6 T2 T3", "T1 T2 T3 M6", "T1 T2"):
+        with pytest.raises(GCodeError, match=r"^Line 2: T is given twice"):
+            interpret(f"G21\n{line}\nG1 X1 F9\nM30\n", dialect="fanuc")
+
+
 def test_a_number_is_whole_within_a_ten_thousandth_and_a_code_within_a_hundredth() -> None:
     assert interpret("G21\nT3.00009\nG0 X#<_selected_tool>\nM2\n").end[-1, 0] * 1e3 == pytest.approx(3)
     with pytest.raises(GCodeError, match="expected a whole number"):

@@ -86,7 +86,8 @@ class MacroB(Subprograms):
     def _then(self, reader: Reader) -> None:
         rest = with_brackets(reader.text[reader.at :])
         block = read_words(Reader(rest, reader.line, reader.store))
-        if block.words or block.g or block.m or not block.settings:
+        more = block.words or block.g or block.m or block.unknown_g or block.unknown_m
+        if more or not block.settings:
             raise reader.refuse("THEN sets variables, as in THEN #1=2; put moves on a line of their own behind a GOTO.")
         apply_settings(block, reader.store)
         place_by_numbers(self.machine, block)

@@ -256,7 +256,8 @@ class KlartextCycles(KlartextValues):
         bottom, clear = surface + depth, surface + safety
         pecks = pecks_of(number, self.q, (surface, bottom, clear), line) if number in (200, 203, 205) else ()
         top = surface + max(safety, self.q(204))
-        wait, taps = max(self.q(211), 0.0), number == 206
+        wait = 0.0 if number in (207, 209) else max(self.q(211), 0.0)  # in step with the spindle none has a dwell
+        taps = number == 206
         above = max(self.q(210), 0.0) if number in (200, 203) else 0.0
         return Hole(top, clear, bottom, wait, down, out, pecks, pitch, taps, above=above)
 

@@ -103,8 +103,8 @@ class KlartextIso(KlartextPlanes):
             else:
                 step = letter in "XYZABCIJKH" or (letter == "R" and self._is_polar(codes))
                 words[letter] = f"I{value}" if self.iso_steps and step else value
-        alone = [each for each in codes if each in _ALONE]
-        return self._of_alone(alone, words, stops, line) if alone else self._of_move(codes, words, stops, line)
+        of_block = self._of_move if _ALONE.keys().isdisjoint(codes) else self._of_alone
+        return of_block(codes, words, stops, line)
 
     def _take_code(self, value: str, codes: list[int], line: int) -> None:
         code = int(value) if value.isdigit() else -1
@@ -120,10 +120,11 @@ class KlartextIso(KlartextPlanes):
         return motion is not None and motion >= 10
 
     def _of_alone(self, codes: list[int], words: dict[str, str], stops: list[str], line: int) -> list[str]:
-        """Blocks whose G code says all of them."""
+        """Blocks whose G code says all of them, but for the axis of the tool that G17 says once more."""
         said = [_stepped(letter, value) for letter, value in words.items() if letter in "XYZABC"]
-        kind, more = codes[0], " ".join(stops)
-        if len(codes) > 1 or (stops and kind not in (38, 79)) or not words.keys() <= set(_ALONE[kind]):
+        kind, more = next(each for each in codes if each in _ALONE), " ".join(stops)
+        beside = sum(each != 17 for each in codes) > 1 or (stops and kind not in (38, 79))
+        if beside or not words.keys() <= set(_ALONE[kind]):
             raise GCodeError.at(line, f"G{kind} stands beside other words; {_LET}.")
         if kind == 79:
             feed = f" F{words['F']}" if "F" in words else ""
@@ -158,16 +159,19 @@ class KlartextIso(KlartextPlanes):
         polar = self._is_polar([])
         if polar:
             places += [_stepped(f"P{'RA'['RH'.index(letter)]}", words[letter]) for letter in "RH" if letter in words]
-        side = next((_SIDES[each] for each in codes if each in _SIDES), "")
+        sides = [_SIDES[each] for each in codes if each in _SIDES]
+        side = sides[-1] if sides else ""
         used = {*"TSFXYZABCIJK", *("RH" if polar and places else "R" if places else "")}
         if left := sorted(words.keys() - used):
             raise GCodeError.at(line, f"{left[0]}{words[left[0]]} has no use in its block of DIN/ISO; {_LET}.")
+        if len(sides) > 1 or len(motions) > 1:
+            raise GCodeError.at(line, f"a block of DIN/ISO has one of G00 to G16 and one of G40 to G42; {_LET}.")
         turns_round = bool(motions) and motions[-1] in (2, 3)
         if not places and not (turns_round and pole):
             rest = [side, f"F{words['F']}" if "F" in words else "", *stops]
             return [*out, " ".join(["L", *filter(None, rest)])] if any(rest) else out
         motion = self.iso_motion
-        if motion is None or len(motions) > 1 or ("R" in words and not polar and (motion not in (2, 3) or pole)):
+        if motion is None or ("R" in words and not polar and (motion not in (2, 3) or pole)):
             raise GCodeError.at(line, f"a block of DIN/ISO needs one G00 to G16, and R or I and J on an arc; {_LET}.")
         kind = "CR" if "R" in words and motion in (2, 3) else _MOVES[motion]
         form = [f"R{words['R']}"] if kind == "CR" else []

@@ -133,7 +133,7 @@ class KlartextPlanes(KlartextApproach):
         return words
 
     def _before(self, line: int) -> None:
-        if self.machine.tilted is None and frame_of(self.machine)[1] != 0.0:
+        if frame_of(self.machine)[1] != 0.0:
             raise GCodeError.at(line, "PLANE inside of a rotation (CYCL DEF 10) is not read; end that before.")
 
     def _end_plane(self, stays: bool, name: str, line: int) -> None:

@@ -24,7 +24,7 @@ _CLOSES = {"ENDIF": "IF", "ENDWHILE": "WHILE", "ENDFOR": "FOR", "UNTIL": "REPEAT
 _COUNTS = re.compile(r"[ \t]*(R\d+|[A-Z_]\w*)[ \t]*=(.+?)\bTO\b(.+)")
 _DEF = re.compile(r"DEF[ \t]+(REAL|INT|BOOL)[ \t]+(.+)")
 _NAME = re.compile(r"([A-Z_]{1,2}\w+)[ \t]*(?:=[ \t]*(.+))?")
-_SETS = re.compile(r"[ \t]*([A-Z_]{2}\w*)[ \t]*=(?!=)")
+_SETS = re.compile(r"[ \t]*([A-Z_]\w+)[ \t]*=(?!=)")
 _MODAL = re.compile(r"MCALL[ \t]+(L\d{1,7}|[A-Z_]{2}\w*)[ \t]*(?:\([ \t]*\))?")
 
 

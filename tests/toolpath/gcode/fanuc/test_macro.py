@@ -59,6 +59,10 @@ def test_a_control_cuts_to_the_whole_number_nearer_to_zero_or_farther_from_it(va
         ("GOTO 7\n", "Line 4: GOTO 7 leads nowhere: no line has the number N7"),
         ("IF [1 EQ 1] X5\n", "Line 4: found 'x5' after the condition of IF; expected GOTO or THEN"),
         ("IF [1 EQ 1] THEN X5\n", "Line 4: THEN sets variables"),
+        *(
+            (f"IF [1 EQ 1] THEN #2=3 {word}\n", "Line 4: THEN sets variables")
+            for word in ("X5", "M8", "G91", "M77", "G333")
+        ),
         ("WHILE [1 EQ 1] DO1\nX5\n", "Line 4: WHILE ... DO and END do not match here"),
         ("#1=1\nWHILE [#1 GT 0] DO1 #1=#1-1\nX1\nEND1\n", "Line 5: found '#1=#1-1' behind GOTO, DO or END"),
         ("WHILE [0 EQ 1] DO1 X5\nEND1\n", "Line 4: found 'x5' behind GOTO, DO or END"),
@@ -76,6 +80,11 @@ def test_what_leads_nowhere_is_refused(body: str, says: str) -> None:
     with pytest.raises(GCodeError) as caught:
         xs(body)
     assert says in str(caught.value)
+
+
+def test_then_sets_several_variables_or_none() -> None:
+    assert xs("IF [1 EQ 1] THEN #2=3 #4=5\nX[#2+#4]\n") == xs("X8\n")
+    assert xs("#2=1\nIF [1 EQ 2] THEN #2=3 M77\nX#2\n") == xs("X1\n")
 
 
 def test_stated_as_linuxcnc_s_there_is_no_macro_b() -> None:

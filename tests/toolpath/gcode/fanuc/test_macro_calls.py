@@ -94,6 +94,10 @@ def test_a_variable_that_nobody_has_set_is_said() -> None:
     [
         ("G65 P77 X1", "G65 calls O77, but there is no O77 in the program"),
         ("G65 X1", "a macro is called by P"),
+        ("G65 P9.5", "a macro is called by P"),
+        ("G65 P-9", "a macro is called by P"),
+        ("G65 P9 L10000", "a macro is called by P"),
+        ("G65 P9 L-1", "a macro is called by P"),
         ("G66 P9 L0.5", "a macro is called by P"),
         ("G65 P9 G1", "found 'G' among the values of a macro"),
     ],

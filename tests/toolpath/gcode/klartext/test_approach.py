@@ -263,6 +263,25 @@ def test_what_cannot_be_read_is_refused(body: str, says: str) -> None:
         read(body)
 
 
+@pytest.mark.parametrize("form", ["CT", "LCT"])
+def test_arcs_of_half_a_millimetre_and_half_a_degree_are_read(form: str) -> None:
+    """The smallest of what is above 0: the arc ends at the contour, as wide and as long as it is said."""
+    program = read(f"APPR {form} X+10 Y+20 {'CCA0.5 ' * (form == 'CT')}R0.5 R0\nL Y+50\n")
+    (arc,) = np.flatnonzero(program.kind == 2)
+    np.testing.assert_allclose(program.end[arc, :2] * 1e3, [10, 20], atol=1e-9)
+    assert np.hypot(*(program.end - program.centre)[arc, :2]) * 1e3 == pytest.approx(0.5)
+    if form == "CT":
+        assert abs(np.degrees(program.sweep[arc])) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(("side", "diameter"), [("RL", 0.0), ("R0", 4e-3)])
+def test_a_cutter_of_no_width_leaves_the_contour_where_it_stands(side: str, diameter: float) -> None:
+    """As without compensation: up along X10, across to X30 and on from there, whatever led to the contour."""
+    body = f"APPR LT X+10 Y+20 LEN15 {side}\nL Y+50\nL X+30\nL R0\nL Y+70\n"
+    places = [(x, y) for _, x, y, _ in moves(read(body, {1: Tool(1, diameter)}))]
+    assert places == [(10, 5), (10, 20), (10, 50), (30, 50), (30, 70)]
+
+
 def test_a_cutter_without_a_radius_is_asked_for() -> None:
     with pytest.raises(GCodeError, match="Line 4: RL needs the diameter of tool 1; give a tool table"):
         read("APPR LT X+10 Y+20 LEN15 RL\nL Y+50\n", tools=None)

@@ -132,10 +132,26 @@ def test_cycles_move_as_the_manual_says(name: str, unit: str) -> None:
     assert (program.kind[1:] == [int(v != RAPID) for _, v in expected]).all()
     assert program.thread[1:].tolist() == [thread and v > 0 for _, v in expected]
     waits = [0.0] * len(expected)
-    waits[-2 if out else -1] = 0.5
+    waits[-2 if out else -1] = 0.0 if number in ("207", "209") else 0.5  # these have no Q211
     for k in back if number in ("200", "203") else ():
         waits[k] = 0.25
     assert program.dwell[1:].tolist() == waits
+
+
+@pytest.mark.parametrize(
+    ("number", "waits"), [("207 Q239=1", 0.0), ("209 Q239=1", 0.0), ("206", 2.0), ("240 Q343=0", 2.0)]
+)
+def test_a_dwell_of_an_earlier_cycle_is_that_of_a_later_one_that_has_it(number: str, waits: float) -> None:
+    """Q parameters stay; but tapping in step with the spindle (207, 209) knows no Q211: the drilling alone waits."""
+    first = "CYCL DEF 200 Q200=2 Q201=-4 Q206=150 Q202=9 Q210=0 Q203=0 Q204=5 Q211=2\nL X+1 FMAX M99\n"
+    program = read(f"{first}CYCL DEF {number} Q200=2 Q201=-4 Q206=150 Q203=0 Q204=5\nL X+2 FMAX M99\n")
+    assert program.dwell_time == pytest.approx(2.0 + waits)
+
+
+def test_a_centring_by_its_diameter_is_not_asked_of_the_cycle_behind_it() -> None:
+    first = "CYCL DEF 240 Q200=2 Q201=-3 Q343=1 Q206=100 Q203=0 Q204=5\n"
+    program = read(f"{first}CYCL DEF 200 Q200=2 Q201=-4 Q206=150 Q202=9 Q210=0 Q203=0 Q204=5 Q211=0\nL X+1 FMAX M99\n")
+    assert program.end[:, 2].min() * 1e3 == pytest.approx(-4.0)
 
 
 def test_a_retraction_feed_of_an_earlier_cycle_is_not_that_of_a_later_one_without() -> None:

@@ -72,6 +72,7 @@ def test_between_holes_the_tool_is_at_q204_or_as_high_as_it_was(z: float, betwee
         "PATTERN DEF ROW1 (X+1 Y+1 D+8 NUM0)",
         "PATTERN DEF ROW1 (X+1 Y+1 D+8 NUM2.5)",
         "PATTERN DEF PAT1 (X+1 Y+2 DX+10 DY+5 NUMX2 NUMY2 ROTX+5)",
+        "PATTERN DEF PAT1 (X+1 Y+2 DX+10 DY+5 NUMX2 NUMY2 ROTY-5)",
         "PATTERN DEF PAT1 (X+1 Y+2 DX+10 DY+5 NUMX200 NUMY200)",
         "PATTERN DEF " + "ROW1 (X+1 Y+1 D+8 NUM9000) " * 2,
     ],

@@ -44,6 +44,7 @@ L X+9 FMAX
         (-12, 5, [2, -5, 2, -4.4, -10, 2, -9.4, -12, 2]),
         (-5, 5, [2, -5, 2]),
         (-5, 0, [2, -5, 2]),
+        (-0.5, 5, [2, -0.5, 2]),
         (-40, -20, [2, -20, 2, -19.2, -40, 2]),
         (-400, 250, [2, -250, 2, -243, -400, 2]),
     ],
@@ -54,7 +55,7 @@ def test_pecking_of_old_begins_and_ends_where_the_tool_stands(depth: float, peck
     x, z = moved(program)[:-1, ::2].T
     np.testing.assert_allclose(z, heights, atol=1e-9)
     np.testing.assert_allclose(x, 5.0)
-    cuts = [level in (-5, -10, -12, -20, -40, -250, -400) for level in heights]
+    cuts = [level in (-0.5, -5, -10, -12, -20, -40, -250, -400) for level in heights]
     np.testing.assert_allclose(feeds(program)[:-1], np.where(cuts, 150.0, 0.0))
     assert sum(program.dwell) == pytest.approx(0.5)
 
@@ -72,6 +73,8 @@ def test_tapping_of_old_goes_out_at_its_feed() -> None:
     ("body", "says"),
     [
         (OLD.format(5, 5), "CYCL DEF 1 needs its DEPTH below 0"),
+        (OLD.format(0, 5), "CYCL DEF 1 needs its DEPTH below 0"),
+        (OLD.format(-5, 5).replace("F150", "F0"), "CYCL DEF 1 needs its DEPTH below 0 and its F above"),
         (OLD.format(-5, 5).replace("1.5 F150", "1.5 FMAX"), "CYCL DEF 1.5 FMAX is not read"),
         (OLD.format(-5, 5).replace("CYCL DEF 1.3 PECKG 5\n", ""), "CYCL DEF 1 has no PECKG"),
         (OLD.format(-5, 5).replace("1.4 DWELL 0.5", "1.7 X 0.5"), "CYCL DEF 1.7 X 0.5 is not read"),

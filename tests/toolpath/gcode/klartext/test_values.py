@@ -34,6 +34,7 @@ def ends(body: str) -> list[list[float]]:
         ("FN 6: Q1 = +30\nFN 7: Q2 = +60\nQ3 = Q1 + Q2\nL X+Q3\n", 1),
         ("FN 5: Q1 = SQRT +16\nL X+Q1\n", 4),
         ("FN5:Q1=SQRT 16\nL X+Q1\n", 4),
+        ("QL5 = 16\nFN 5: Q1 = SQRT QL5\nL X+Q1\n", 4),
         ("FN 6: Q1 = SIN+30\nL X+Q1\n", 0.5),
         ("QL1 = 30\nFN 6: Q1 = SIN -QL1\nL X+Q1\n", -0.5),
         ("FN 7: Q1 = COS +60\nL X+Q1\n", 0.5),

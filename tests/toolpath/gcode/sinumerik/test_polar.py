@@ -59,6 +59,7 @@ def test_arcs_by_their_angle_beside_end_or_centre() -> None:
         ("G111 X0 Y0\nG91 G1 AP=0 RP=1\n", "Line 4: AP and RP in G91 are not read"),
         ("G111 X0 Y0\nG1 AP=0\n", "Line 4: a polar place needs its angle AP and radius RP"),
         ("G111 X0 Y0\nG1 AP=IC(5) RP=1\n", r"Line 4: a polar place needs .* AP=IC\( \) needs an AP before it"),
+        ("G1 X5\nCT X10 Y5\nAP=30 RP=5\n", "Line 5: AP is read in G17, from a known place and beside G0 to G3 alone"),
         ("G18\nG111 X0 Y0\n", "Line 4: G111 is read in G17"),
         ("G1 X5 AR=90\n", "Line 3: AR is the angle of G2 or G3"),
         ("G2 X5 I2 AR=90\n", "Line 3: AR is the angle of G2 or G3"),

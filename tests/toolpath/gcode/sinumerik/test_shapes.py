@@ -189,6 +189,8 @@ def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
         ("MCALL CYCLE81(20,0,2,-10)\nHOLES2(0,0,-5,0,0,3)\n", "HOLES2 has 3 holes"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,101,100)\n", "CYCLE801 has 101 by 100 holes"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,3,3,2)\n", "CYCLE801 has a slanting grid"),
+        ("MIRROR X0 RPL=5\n", "MIRROR X0 RPL=5 is not read"),
+        ("SCALE X2 3\n", "SCALE X2 3 is not read"),
         ("SCALE X1001\n", "SCALE X1001 is not read"),
         ("SCALE Z2\n", "SCALE Z2 is not read"),
         ("AMIRROR\n", "AMIRROR  is not read"),
@@ -198,6 +200,7 @@ def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
         ('MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,2,2,,,,,"2,3")\n', "CYCLE801 leaves holes out"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE802(112,111,1,2,3,4,5,6)\n", "CYCLE802 counts some of its places as steps"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE802(11,11,1,2,3)\n", "CYCLE802 needs X and Y of every place"),
+        ("MCALL CYCLE81(20,0,2,-10)\nCYCLE802(1,1)\n", "CYCLE802 needs X and Y of every place"),
         (
             "POCKET3(50,0,1,-5,40,30,8,60,40,0,5,,,500,200,,2)\n",
             r"POCKET3 .Sinumerik. mills a rectangular pocket in passes that",

@@ -151,8 +151,9 @@ def test_g331_taps_in_step_with_the_spindle_that_it_turns() -> None:
         assert program.n_s[-3:-1] == pytest.approx([10, 10])
         assert program.ccw[-3:-1].tolist() == [counter, counter]
         assert program.thread[-3:-1].all()
-    with pytest.raises(GCodeError, match="Line 3: G331 and G332 need K"):
-        interpret("G90 G71 S600\nG0 Z2\nG331 Z-10 S600\n", dialect="sinumerik")
+    for pitch in ("", " K0", " K=0.0", " I1"):
+        with pytest.raises(GCodeError, match="Line 3: G331 and G332 need K"):
+            interpret(f"G90 G71 S600\nG0 Z2\nG331 Z-10{pitch} S600\n", dialect="sinumerik")
 
 
 def test_a_cycle_that_mcall_holds_is_made_behind_every_line_that_moves() -> None:
