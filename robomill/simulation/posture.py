@@ -29,7 +29,7 @@ def posture_notes(robot: Robot, T_MT: FloatArray, F: FloatArray) -> tuple[Findin
     return (Finding("info", text, code="posture"),)
 
 
-def turned_notes(robot: Robot, T_MT: FloatArray) -> tuple[Finding, ...]:
+def unreached_notes(robot: Robot, T_MT: FloatArray) -> tuple[Finding, ...]:
     """Why a pose (4, 4) is not reached: at another spin it would be, or with the tool turned round. {T} of a robot
     description often points away from the flange, z_T of a cut to the spindle."""
     if inverse_kinematics(robot, T_MT).reached:  # at some spin: the tool frame is as it should be

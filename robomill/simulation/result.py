@@ -113,7 +113,7 @@ class SimulationResult(Run):
         found += self.steadiness
         if self.worst >= 0:
             found += posture_notes(self.setup.robot, self.ik.T_MT[self.worst], self.F[self.worst])
-        return self._placed([*found, *self.turned])
+        return self._placed([*found, *self.why_unreached])
 
     @cached_property
     def uncoupled(self) -> tuple[Finding, ...]:

@@ -49,10 +49,13 @@ def other() -> None:
         st.caption(f"other {number}")
 
 
-def _clicks() -> int:
-    """A button, and how often what it does was done."""
+def _clicks(looks: int = 0) -> int:
+    """A button, and how often what it does was done; that looks into the session so often, and takes 5 ms for each."""
 
     def more() -> None:
+        for _ in range(looks):
+            time.sleep(0.005)
+            st.session_state["looks"] = st.session_state.get("looks", 0) + 1
         st.session_state["count"] = st.session_state.get("count", 0) + 1
 
     st.button("more", on_click=more)
@@ -82,15 +85,7 @@ def ticking() -> None:
 def slow() -> None:
     """A page that speaks as a whole on each click, beside a button whose work takes its time."""
     echo(key="echo", on_said_change=lambda: None)
-
-    def more() -> None:
-        for _ in range(20):
-            time.sleep(0.005)
-            st.session_state["looks"] = st.session_state.get("looks", 0) + 1
-        st.session_state["count"] = st.session_state.get("count", 0) + 1
-
-    st.button("more", on_click=more)
-    st.caption(f"done {st.session_state.get('count', 0)} times")
+    st.caption(f"done {_clicks(looks=20)} times")
 
 
 def typed() -> None:

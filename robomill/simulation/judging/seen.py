@@ -21,7 +21,7 @@ from robomill.lazy import cached_property
 from robomill.provenance import Finding
 from robomill.simulation.coupling import Coupling
 from robomill.simulation.cut import moved_points, over_stock
-from robomill.simulation.posture import turned_notes
+from robomill.simulation.posture import unreached_notes
 from robomill.simulation.rapids import Crashes, crashes
 from robomill.simulation.setup import SimulationSetup
 from robomill.simulation.tools import tooling
@@ -172,12 +172,12 @@ class Run(Tabled):
         return moved_points(self.setup.T_MW, self.path, self.answered, self.delta)
 
     @cached_property
-    def turned(self) -> tuple[Finding, ...]:
+    def why_unreached(self) -> tuple[Finding, ...]:
         """Why the cut, of which nothing is reached, is not: its spin, or a tool frame that is turned round."""
         at_feed = np.flatnonzero(self.path.cutting)
         if self.reached[at_feed].any():
             return ()
-        return turned_notes(self.setup.robot, self.ik.T_MT[at_feed[len(at_feed) // 2]])
+        return unreached_notes(self.setup.robot, self.ik.T_MT[at_feed[len(at_feed) // 2]])
 
     @cached_property
     def removes(self) -> BoolArray:

@@ -195,7 +195,7 @@ def said(result: Run, verdict: Verdict, unit: str = "mm") -> tuple[str, str]:
     if result.worst < 0:
         if level == "unreached" and result.reached[result.path.cutting].any():
             return "No point of the cut lies inside the measured map.", beside
-        why = next((UNREACHED[each.code] for each in result.turned), "") if level == "unreached" else ""
+        why = next((UNREACHED[each.code] for each in result.why_unreached), "") if level == "unreached" else ""
         return why or NOTHING.get(level, ""), beside
     if level == "unjudged" and result.not_judged.any() and not verdict.decides:
         return "", beside

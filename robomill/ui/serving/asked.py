@@ -43,6 +43,11 @@ def _is_elsewhere(session: Any, page: str) -> bool:
     return bool(asked) and page not in ("", asked)
 
 
+def _is_click(box: Any) -> bool:
+    """Whether it is said of a box that it was clicked, and not what stands in it."""
+    return box.WhichOneof("value") in CLICKS
+
+
 def _was_left(session: Any, part: str) -> bool:
     """Whether a part was there before the last way to another page, and that page has no such part so far."""
     return session.has_fragment(part) and part not in session._fragment_storage.ids_registered_after(
@@ -54,14 +59,14 @@ def _clicked_beside(session: Any, said: Any) -> bool:
     """Whether a message of a part holds a click on what stands elsewhere on the page."""
     known = session._session_state._new_widget_state.widget_metadata
     return any(
-        box.WhichOneof("value") in CLICKS and box.id in known and known[box.id].fragment_id != said.fragment_id
+        _is_click(box) and box.id in known and known[box.id].fragment_id != said.fragment_id
         for box in said.widget_states.widgets
     )
 
 
 def _without_clicks(said: Any) -> None:
     """Take out of the message of a tick what was clicked: its own message is on its way."""
-    boxes = [box for box in said.widget_states.widgets if box.WhichOneof("value") not in CLICKS]
+    boxes = [box for box in said.widget_states.widgets if not _is_click(box)]
     if len(boxes) < len(said.widget_states.widgets):
         del said.widget_states.widgets[:]
         said.widget_states.widgets.extend(boxes)
@@ -69,7 +74,7 @@ def _without_clicks(said: Any) -> None:
 
 def _of_clicks(wanted: Any) -> Any:
     """What is ``wanted`` of a run, with nothing said of its boxes but what was clicked."""
-    clicks = WidgetStates(widgets=[box for box in wanted.widget_states.widgets if box.WhichOneof("value") in CLICKS])
+    clicks = WidgetStates(widgets=[box for box in wanted.widget_states.widgets if _is_click(box)])
     return replace(wanted, widget_states=clicks)
 
 

@@ -20,7 +20,7 @@ from robomill.ui.serving.asked import heed_pages
 from robomill.ui.work.turns import Turn
 
 EVERY_S = 0.4
-GIVE_WAY_S = 0.02
+GIVE_WAY_S = 0.02  # a page that waits looks so often whether something else is asked for
 TOLD = "bar.tells"  # the place of the work that the bar of this page speaks of
 ABANDONED_S = 90.0  # work whose page has not looked at it for so long is given up
 
