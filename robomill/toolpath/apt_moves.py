@@ -20,7 +20,7 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import GCodeError
-from robomill.toolpath.arcs import CHORD_ERROR, chord_counts
+from robomill.toolpath.arcs import CHORD_ERROR, chord_ends, turn_counts
 from robomill.units import format_si, to_si
 
 NUMBER = re.compile(r"[-+]?(?:\d++\.?+\d*+|\.\d++)(?:[eE][-+]?\d++)?+$")  # of any length at once: it never goes back
@@ -84,11 +84,12 @@ class Arc:
         if sweep < 1e-8 or 2.0 * math.pi - sweep < 1e-8:
             sweep = 2.0 * math.pi
         sweep = self._turned(sweep + 2.0 * math.pi * (self.turns - 1), line)
-        counts = chord_counts(np.array([sweep]), np.array([radius]), CHORD_ERROR)
-        t = np.linspace(0.0, 1.0, int(counts[0]) + 1)[1:, None]
-        angle = t * sweep
-        first = out[0] / sizes[0]
+        first = np.cross(self.axis, np.eye(3)[np.argmin(np.abs(self.axis))])
+        first /= np.linalg.norm(first)
         across = np.cross(self.axis, first)
+        begin, turn = math.atan2(float(out[0] @ across), float(out[0] @ first)), np.array([sweep])
+        t = chord_ends(np.array([begin]), turn, turn_counts(turn, np.array([radius]), CHORD_ERROR))[:, None]
+        angle = begin + t * sweep
         size = sizes[0] + t * (sizes[1] - sizes[0])
         level = along[0] + t * (along[1] - along[0])
         points = self.centre + size * (np.cos(angle) * first + np.sin(angle) * across) + level * self.axis

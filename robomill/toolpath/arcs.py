@@ -19,7 +19,10 @@ CHORD_ERROR = 1e-6
 """m: no chord lies farther than this from its arc, unless the caller asks for another figure."""
 
 MAX_POINTS = 5_000_000
-MAX_STEP = math.radians(30.0)
+_LEAST = 12.0
+"""Chords of a whole turn: none turns by more than 30 degrees."""
+_SAME_END = 1e-3
+"""So near to the end of a chord, as a share of it, an arc begins or ends there: written centres are rounded."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +105,22 @@ class Arcs:
                 upper[rows, axis] = np.maximum(upper[rows, axis], side)
         return lower, upper
 
-    def chords(self, counts: IntArray) -> FloatArray:
-        """End points (sum of counts, 3) of ``counts`` (m,) chords of each arc; the last one is its end, exactly."""
-        owner, step = steps(counts)
-        points = self.at(owner, step / counts[owner])
+    def whole(self, chord_error: float) -> FloatArray:
+        """(m,) chords of a whole turn that keep within ``chord_error`` (m), a multiple of four (see `turn_counts`)."""
+        return turn_counts(self.sweep, self.bend, chord_error)
+
+    def counts(self, whole: FloatArray) -> IntArray:
+        """(m,) chords of each arc, of which ``whole`` (m,) make a turn."""
+        return chord_counts(self._polar[0], self.sweep, whole)
+
+    def fractions(self, whole: FloatArray) -> FloatArray:
+        """(sum of `counts`,) which part of its arc's sweep has been made where each chord ends."""
+        return chord_ends(self._polar[0], self.sweep, whole)
+
+    def chords(self, whole: FloatArray) -> FloatArray:
+        """End points (sum of `counts`, 3) m of the chords of each arc; the last one is its end, exactly."""
+        counts = self.counts(whole)
+        points = self.at(np.repeat(np.arange(len(self)), counts), self.fractions(whole))
         points[np.cumsum(counts) - 1] = self.end
         return points
 
@@ -141,21 +156,58 @@ def steps(counts: IntArray) -> tuple[IntArray, IntArray]:
     return owner, np.arange(len(owner)) - (np.cumsum(counts) - counts)[owner] + 1
 
 
-def chord_counts(sweep: FloatArray, radius: FloatArray, chord_error: float) -> IntArray:
-    """Chords (m,) that keep within ``chord_error`` (m) of arcs: the sagitta is r (1 - cos(step / 2)), r their ``bend``.
+def turn_counts(sweep: FloatArray, radius: FloatArray, chord_error: float) -> FloatArray:
+    """Chords (m,) of a whole turn that keep within ``chord_error`` (m) of arcs of a ``radius`` or ``bend`` (m,) m.
 
-    Raises GCodeError if the chord error is not positive or would need more than ``MAX_POINTS`` points.
+    It is a multiple of four, so that a circle's farthest points in its plane end chords. Raises GCodeError if the chord
+    error is not positive or would need more than ``MAX_POINTS`` points for the ``sweep`` (m,) rad of the arcs.
     """
     if not (math.isfinite(chord_error) and chord_error > 0):
         raise GCodeError(f"Chord error: found {chord_error} m; expected a length above 0.")
-    ratio = np.minimum(chord_error / np.maximum(radius, 1e-300), 2.0)
-    step = np.minimum(4.0 * np.arcsin(np.sqrt(ratio / 2.0)), MAX_STEP)
-    counts = np.maximum(np.ceil(np.abs(sweep) / step - 1e-9), 1.0)
-    total = float(counts.sum())
+    whole, turns = _whole(radius, chord_error), np.abs(sweep) / (2.0 * math.pi)
+    total = float(turns @ whole)
     if total > MAX_POINTS:
         fits = chord_error * (total / MAX_POINTS) ** 2
+        while turns @ _whole(radius, fits) > MAX_POINTS >= turns.sum() * _LEAST:
+            fits *= 1.02
         raise GCodeError(
             f"Arcs: a chord error of {from_si(chord_error, 'mm'):.3g} mm would need {total:.3g} points; "
             f"at most {MAX_POINTS} fit, so use {from_si(fits, 'mm'):.2g} mm or more, or fewer turns."
         )
-    return counts.astype(np.int64)
+    return whole
+
+
+def _whole(radius: FloatArray, chord_error: float) -> FloatArray:
+    """(m,) chords of whole turns: the sagitta is r (1 - cos(step / 2))."""
+    ratio = np.minimum(chord_error / np.maximum(radius, 1e-300), 2.0)
+    step = 4.0 * np.arcsin(np.sqrt(ratio / 2.0)) / (1.0 + 2.0 * _SAME_END)
+    return np.maximum(4.0 * np.ceil(0.5 * math.pi / step - 1e-9), _LEAST)
+
+
+def chord_counts(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> IntArray:
+    """Chords (m,) of arcs from ``angle`` (m,) through ``sweep`` (m,) rad, of which ``whole`` (m,) make a turn.
+
+    They end at whole multiples of their step from angle 0, wherever the arc begins, and at its own end: two laps of
+    one circle share their corners, so that the second finds nothing which chords of the first have left standing.
+    """
+    before, last, _ = _numbered(angle, sweep, whole)
+    return np.maximum(last - before, 1.0).astype(np.int64)
+
+
+def chord_ends(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> FloatArray:
+    """(sum of `chord_counts`,) which part of its arc's sweep has been made where each chord ends."""
+    counts = chord_counts(angle, sweep, whole)
+    before, _, begin = _numbered(angle, sweep, whole)
+    owner, number = steps(counts)
+    fraction = (before[owner] + number - begin[owner]) * (2.0 * math.pi / whole / np.abs(sweep))[owner]
+    fraction[np.cumsum(counts) - 1] = 1.0
+    return fraction
+
+
+def _numbered(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Steps counted along the turn from angle 0, each (m,): the last at or before the arc's begin, the first at or
+    beyond its end, and its begin. What lies within ``_SAME_END`` of a step stands on it."""
+    step = 2.0 * math.pi / whole
+    begin = np.sign(sweep) * angle / step
+    end = begin + np.abs(sweep) / step
+    return np.floor(begin + _SAME_END), np.ceil(end - _SAME_END), begin

@@ -277,5 +277,4 @@ def _chords(start: FloatArray, end: FloatArray, centre: FloatArray, *, clockwise
 
     sweep = swept(start, end, centre, -1 if clockwise else 1)
     arc = arcs.Arcs(lifted(start), lifted(end), lifted(centre), np.array([17]), np.array([sweep]))
-    counts = arcs.chord_counts(arc.sweep, arc.bend, arcs.CHORD_ERROR)
-    return np.vstack([lifted(start), arc.chords(counts)])[:, :2]
+    return np.vstack([lifted(start), arc.chords(arc.whole(arcs.CHORD_ERROR))])[:, :2]

@@ -90,3 +90,17 @@ def test_its_own_slot_again_is_air() -> None:
     again = run.path.cutting & (run.path.block == run.path.block[run.path.cutting].max())
     assert again.sum() > 30
     assert not run.F[again].any()
+
+
+@pytest.mark.parametrize("radius", [0.5, 2.0, 12.0])
+def test_a_lap_of_one_circle_begun_elsewhere_is_air(radius: float) -> None:
+    """But for its seam, where it stands on the circle and the chords of the lap before do not."""
+    q = (radius * math.cos(0.65), radius * math.sin(0.65))
+    begin, centre = (0.0, -radius), (0.0, 0.0)
+    first = (Line(centre, begin), Arc(begin, begin, centre))
+    run = rm.simulate(LevelCut("laps", (first, (Arc(begin, q, centre), Arc(q, q, centre)))).setup(1.0))
+    again = run.path.cutting & (run.path.block == run.path.block[run.path.cutting].max())
+    force = np.linalg.norm(run.F, axis=1)
+    assert again.sum() > 50
+    assert (force[again] > 0.0).sum() <= 4
+    assert force[again].max() < 0.02 * force[run.path.cutting].max()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robomill.errors import GCodeError
-from robomill.toolpath.arcs import Arcs, chord_counts
+from robomill.toolpath.arcs import Arcs, chord_counts, turn_counts
 from robomill.toolpath.gcode import interpret, read_gcode
 from robomill.toolpath.gcode.chords import to_toolpath
 
@@ -95,7 +95,7 @@ def test_ends_are_exact() -> None:
 @pytest.mark.parametrize("chord_error", [0.0, -1.0, math.nan, math.inf])
 def test_chord_error_must_be_a_length(chord_error: float) -> None:
     with pytest.raises(GCodeError, match="Chord error"):
-        chord_counts(np.ones(1), np.ones(1), chord_error)
+        turn_counts(np.ones(1), np.ones(1), chord_error)
 
 
 def test_too_many_turns_are_refused_with_what_would_fit() -> None:
@@ -116,11 +116,12 @@ def test_the_chord_error_that_a_refusal_names_is_one_that_fits(turns: float, mon
     monkeypatch.setattr("robomill.toolpath.arcs.MAX_POINTS", 100_000)
     sweep, radius = np.array([2 * math.pi * turns, 1.0]), np.array([0.05, 2.0])
     with pytest.raises(GCodeError, match="at most 100000 fit") as refused:
-        chord_counts(sweep, radius, 1e-14)
+        turn_counts(sweep, radius, 1e-14)
     named = float(str(refused.value).split("use ")[1].split(" mm")[0]) * 1e-3
-    assert chord_counts(sweep, radius, 1.06 * named).sum() <= 100_000  # it is named to two digits
+    whole = turn_counts(sweep, radius, 1.06 * named)  # it is named to two digits
+    assert chord_counts(np.zeros(2), sweep, whole).sum() <= 100_000
     with pytest.raises(GCodeError, match="at most 100000 fit"):
-        chord_counts(sweep, radius, 0.9 * named)
+        turn_counts(sweep, radius, 0.9 * named)
 
 
 def sampled(program, row: int, count: int = 200_001) -> np.ndarray:
@@ -248,3 +249,20 @@ def test_a_programs_extents_are_those_of_its_points(seed: int) -> None:
     lower, upper = program.extents
     np.testing.assert_allclose(lower, points.min(axis=0), atol=1e-9)
     np.testing.assert_allclose(upper, points.max(axis=0), atol=1e-9)
+
+
+@pytest.mark.parametrize(("code", "second"), [("G2", "G2"), ("G2", "G3"), ("G3", "G3")])
+@pytest.mark.parametrize("begun", [37.0, 170.0, 301.3])
+def test_a_lap_begun_elsewhere_leaves_nothing_outside_the_lap_before(code: str, second: str, begun: float) -> None:
+    """The distance of its corners from the polygon of the first lap: at its own end alone it is a sagitta."""
+    x, y = 7.0 * math.cos(math.radians(begun)), 7.0 * math.sin(math.radians(begun))
+    laps = f"{code} X7 Y0 Z-1 I-7 J0\n{code} X{x:.3f} Y{y:.3f} I-7 J0\n{second} I{-x:.3f} J{-y:.3f}\nM2\n"
+    path = read_gcode(f"G21 F100\nG0 X7\n{laps}")
+    first, again = (path.p[path.block == line][:, :2] for line in (3, 5))
+    corners = np.vstack([[7e-3, 0.0], first])
+    a, way = corners[:-1], np.diff(corners, axis=0)
+    share = np.clip(np.einsum("nsi,si->ns", again[:, None] - a, way) / (way**2).sum(axis=1), 0.0, 1.0)
+    off = np.linalg.norm(again[:, None] - a - share[:, :, None] * way, axis=2).min(axis=1)
+    assert off[-1] < 1.6e-6  # the written end of an arc is rounded by half a micrometre
+    assert off[:-1].max() < 0.6e-6
+    assert len(again) in (len(first), len(first) + 1)

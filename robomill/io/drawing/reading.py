@@ -10,7 +10,7 @@ import numpy as np
 from robomill.arrays import FARTHEST, FloatArray
 from robomill.errors import ToolpathError
 from robomill.progress import checkpoint
-from robomill.toolpath.arcs import CHORD_ERROR, chord_counts
+from robomill.toolpath.arcs import CHORD_ERROR, turn_counts
 from robomill.toolpath.chaining import SHORTEST
 from robomill.toolpath.contour import Contour
 from robomill.toolpath.sketch import MAX_POINTS, Shape, centre_of
@@ -98,4 +98,5 @@ def chords_of(shape: Shape, points: FloatArray) -> int:
         sweep = min(longest / radius, math.tau)
     else:
         return len(points)
-    return int(chord_counts(np.array([sweep]), np.array([radius]), CHORD_ERROR)[0])
+    whole = float(turn_counts(np.array([sweep]), np.array([radius]), CHORD_ERROR)[0])
+    return math.ceil(whole * sweep / math.tau) + 2

@@ -36,7 +36,7 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR, table: 
     if len(program) == 0:
         raise GCodeError("Program: found no motion; expected at least one G0, G1, G2 or G3 move.")
     is_arc, is_tap = program.is_kind("arc") & ~program.unplaced, program.is_kind("tap")
-    counts = point_counts(program, chord_error, table)
+    counts, whole = _pieces(program, chord_error, table)
     first = np.cumsum(counts) - counts + 1
     p = np.empty((int(counts.sum()) + 1, 3))
     start, end = _ends(program)
@@ -45,18 +45,17 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR, table: 
     p[first[single]] = end[single]
     p[first[is_tap]], p[first[is_tap] + 1] = end[is_tap], start[is_tap]
     for rows in _blocks(np.flatnonzero((counts > 1) & ~is_tap), counts):
-        owner, step = arcs.steps(counts[rows])
-        fraction = (step / counts[rows][owner])[:, None]
-        points = start[rows][owner] + fraction * (end[rows] - start[rows])[owner]
+        owner, fraction = _fractions(program, rows, counts, whole)
+        points = start[rows][owner] + fraction[:, None] * (end[rows] - start[rows])[owner]
         turning = is_arc[rows]
         if turning.any():
-            points[turning[owner]] = program.arcs_of(rows[turning]).chords(counts[rows[turning]])
+            points[turning[owner]] = program.arcs_of(rows[turning]).chords(whole[rows[turning]])
         points[np.cumsum(counts[rows]) - 1] = end[rows]
         p[np.repeat(first[rows] - np.cumsum(counts[rows]) + counts[rows], counts[rows]) + np.arange(len(owner))] = (
             points
         )
     block = _spread(program.line, counts, program.line[0])
-    k = _axes(program, counts)
+    k = _axes(program, counts, whole)
     if program.planes:
         p, k = tilted.stand(program.planes, p, k, first)
     if far := far_off(p, block):
@@ -65,7 +64,7 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR, table: 
     if table and program.planes:
         raise GCodeError("Program: it tilts its plane, and a rotary table is stated; take that back.")
     if table and (program.rotary.any() or program.rotary0.any()):
-        p, k, v_f = on_table(program, counts, p, v_f, table)
+        p, k, v_f = on_table(program, (counts, whole), p, v_f, table)
     return Toolpath(
         p=p,
         k=k,
@@ -103,10 +102,19 @@ def _ends(program: Program) -> tuple[FloatArray, FloatArray]:
     return start, known[1:]
 
 
-def point_counts(program: Program, chord_error: float = arcs.CHORD_ERROR, table: str = "") -> IntArray:
+def point_counts(program: Program) -> IntArray:
     """(m,) how many points each move has on the toolpath: none for first ones that stand where it begins anyway."""
+    return _pieces(program, arcs.CHORD_ERROR)[0]
+
+
+def _pieces(program: Program, chord_error: float, table: str = "") -> tuple[IntArray, FloatArray]:
+    """Straight pieces of each move (m,), and how many would make a whole turn of those that are arcs (m,), else 0."""
     rows = np.flatnonzero(program.is_kind("arc") & ~program.unplaced)
-    counts = _pieces(program, rows, chord_error, TABLE_STEP if table else MAX_TILT_STEP)
+    rows = rows[rows >= program.still]
+    turns, fit = program.arcs_of(rows), most_points(program.lines)
+    whole = np.zeros(len(program))
+    whole[rows] = turns.whole(chord_error)
+    counts = _tilts(program, TABLE_STEP if table else MAX_TILT_STEP, fit)
     counts[program.is_kind("tap")] = 2
     for number, (row, _) in enumerate(program.planes):
         if row < len(program):
@@ -114,24 +122,33 @@ def point_counts(program: Program, chord_error: float = arcs.CHORD_ERROR, table:
                 program.planes, number, *(tool_axis(q[row]) for q in (program.rotary0, program.rotary))
             )
             counts[row] = max(counts[row], math.ceil(turn / MAX_TILT_STEP - 1e-4))
-    if program.still < len(program):
-        counts[: program.still] = 0
-    return counts
-
-
-def _pieces(program: Program, rows: IntArray, chord_error: float, most: float) -> IntArray:
-    """Straight pieces of each move; ``rows`` are the arcs, ``most`` (rad) is how far an axis turns in one."""
-    counts, fit = np.ones(len(program), dtype=np.int64), most_points(program.lines)
-    turns = program.arcs_of(rows)
-    counts[rows] = arcs.chord_counts(turns.sweep, turns.bend, chord_error)
-    if program.rotary.any() or program.rotary0.any():
-        tilt = np.ceil(np.abs(program.rotary - program.rotary0).max(axis=1) / most - 1e-4)
-        if tilt.sum() > fit:
-            raise GCodeError(f"Program: the turning axes would need more than {fit} points.")
-        counts = np.maximum(counts, tilt.astype(np.int64))
+    asked = 4.0 * np.ceil(counts[rows] * 0.5 * math.pi / np.abs(turns.sweep))
+    whole[rows] = np.where(counts[rows] > 1, np.maximum(whole[rows], asked), whole[rows])
+    counts[rows] = turns.counts(whole[rows])
+    counts[: program.still] = 0
     if counts.sum() > fit:
         raise GCodeError(f"Program: the path would need {counts.sum()} points; at most {fit} fit. Split the program.")
-    return counts
+    return counts, whole
+
+
+def _tilts(program: Program, most: float, fit: int) -> IntArray:
+    """(m,) pieces in which no axis turns by more than ``most`` (rad); more than ``fit`` are refused."""
+    if not (program.rotary.any() or program.rotary0.any()):
+        return np.ones(len(program), dtype=np.int64)
+    tilt = np.ceil(np.abs(program.rotary - program.rotary0).max(axis=1) / most - 1e-4)
+    if tilt.sum() > fit:
+        raise GCodeError(f"Program: the turning axes would need more than {fit} points.")
+    return np.maximum(tilt, 1.0).astype(np.int64)
+
+
+def _fractions(program: Program, rows: IntArray, counts: IntArray, whole: FloatArray) -> tuple[IntArray, FloatArray]:
+    """For each piece of the moves ``rows``: which of them it belongs to, and what part of the move it ends."""
+    owner, step = arcs.steps(counts[rows])
+    fraction = step / counts[rows][owner]
+    turning = whole[rows] > 0.0
+    if turning.any():
+        fraction[turning[owner]] = program.arcs_of(rows[turning]).fractions(whole[rows[turning]])
+    return owner, fraction
 
 
 def _blocks(rows: IntArray, counts: IntArray) -> list[IntArray]:
@@ -161,28 +178,29 @@ def _at_first(values: FloatArray, first: IntArray, count: int) -> FloatArray:
     return out
 
 
-def _axes(program: Program, counts: IntArray) -> FloatArray:
+def _axes(program: Program, counts: IntArray, whole: FloatArray) -> FloatArray:
     if not (program.rotary.any() or program.rotary0.any()):
         return np.array([0.0, 0.0, 1.0])
-    return tool_axis(_angles(program, counts))
+    return tool_axis(_angles(program, counts, whole))
 
 
-def _angles(program: Program, counts: IntArray) -> FloatArray:
+def _angles(program: Program, counts: IntArray, whole: FloatArray) -> FloatArray:
     """A, B, C (n, 3) rad at each point."""
-    owner, step = arcs.steps(counts)
-    angles = program.rotary0[owner] + (step / counts[owner])[:, None] * (program.rotary - program.rotary0)[owner]
+    owner, fraction = _fractions(program, np.arange(len(program)), counts, whole)
+    angles = program.rotary0[owner] + fraction[:, None] * (program.rotary - program.rotary0)[owner]
     return np.concatenate([program.rotary0[:1], angles])
 
 
 def on_table(
-    program: Program, counts: IntArray, p: FloatArray, v_f: FloatArray, table: str
+    program: Program, pieces: tuple[IntArray, FloatArray], p: FloatArray, v_f: FloatArray, table: str
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Points p (n, 3) m, axes k and feeds v_f in the part that a ``table`` turns, from those beside the machine.
 
     ISO 841: a rotary axis counts as if the tool turned about the part, so p and k turn by it about part zero (by its
     negative for "-A"). A move takes the time that its feed gives to its lengths beside the machine.
     """
-    angles = _angles(program, counts)
+    counts = pieces[0]
+    angles = _angles(program, *pieces)
     axis, sense = "ABC".index(table[-1]), -1.0 if table[0] == "-" else 1.0
     turn = sense * angles[:, axis]
     angles[:, axis] = 0.0

@@ -170,7 +170,7 @@ class Program:
         for plane, begin, end in zip([None, *(plane for _, plane in self.planes)], bounds, bounds[1:]):
             rows = begin + np.flatnonzero(self.at_feed[begin:end])
             turns = self.arcs_of(rows[self.kind[rows] == ARC])
-            chords = turns.chords(arcs.chord_counts(turns.sweep, turns.bend, arcs.CHORD_ERROR))
+            chords = turns.chords(turns.whole(arcs.CHORD_ERROR))
             points = np.vstack([*(q[rows] + self.lift[rows] for q in (self.start, self.end)), chords])
             found.append(points if plane is None else plane.in_part(points))
         every = np.vstack(found)

@@ -89,8 +89,9 @@ def halves(program: Program, j: int, shift: np.ndarray, pieces: int) -> Iterator
             yield Piece(n / pieces, f, end + program.lift[j] + shift)
             continue
         centre = program.centre[j] + program.lift[j] + shift
-        chords = program.arcs_of(np.array([j])).chords(np.array([pieces]))
-        yield Piece(n / pieces, f, chords[n] + shift, centre, program.sweep[j] / pieces)
+        end = program.arcs_of(np.array([j])).at(np.zeros(1, dtype=int), np.array([f]))[0]
+        end = end if n + 1 < pieces else program.end[j] + program.lift[j]
+        yield Piece(n / pieces, f, end + shift, centre, program.sweep[j] / pieces)
 
 
 def rewritten(text: str, dialect: str, shift: np.ndarray, pieces: int = 1) -> tuple[Rewritten, Program]:
