@@ -139,7 +139,7 @@ class Moves:
         for j in range(1, len(self.end)):  # behind one
             if rapid[j] and not led[j].any() and self._along_tool(j, past, k):
                 before = led[j - 1] if rapid[j - 1] else c[past[j - 1] - 1]
-                led[j] = _aside(before, k[past[j] - 1])
+                led[j] = _aside(before, k[past[j] - 1]) if past[j] > first[j] else before  # what goes nowhere stays
         return led
 
     def _along_tool(self, j: int, past: list[int], k: FloatArray) -> bool:

@@ -8,6 +8,8 @@ import pytest
 
 import robomill as rm
 from robomill.improve.program import Moves
+from robomill.improve.written import writing
+from robomill.io.gcode_out import toolpath_to_gcode
 from robomill.io.samples import samples_dir
 from robomill.toolpath.gcode.reading import interpret
 
@@ -149,3 +151,24 @@ def test_a_move_that_goes_nowhere_ends_where_the_one_before_it_was_sent() -> Non
         assert (f0, f1) == (0.0, 1.0)
         np.testing.assert_array_equal(end, ends[j])
     assert len(pieces[5]) == 1
+
+
+@pytest.mark.parametrize(
+    ("still", "lines"),
+    [
+        ("G0 X0", ("G0 Z-2", "G0 X0", "G1 X20 F600", "G0 Z5")),
+        ("G0 X20", ("G0 Z-2", "G1 X20 F600", "G0 X20", "G0 Z5")),
+    ],
+)
+def test_a_rapid_that_goes_nowhere_goes_nowhere_in_the_corrected_program(still: str, lines: tuple[str, ...]) -> None:
+    """Told once more where the tool is, before a cut or behind it: it stays as deep as the cut is corrected to."""
+    text = "\n".join(["G21 G90 S12000 M3", "G0 X0 Y0 Z5", *lines, "G0 X30", "M2", ""])
+    back = writing(SLOT.replace(source=rm.GCodeSource(text, "x.nc")), toolpath_to_gcode)
+    c, wanted = np.zeros_like(back.moves.wanted.p), back.moves.wanted
+    c[wanted.cutting | np.append(wanted.cutting[1:], False)] = [0.01e-3, 0.1e-3, -0.05e-3]
+    made = interpret(back.write(c, 2e-6).text.encode())
+    step = np.linalg.norm(np.diff(made.end, axis=0), axis=1)
+    assert np.flatnonzero(step < 1e-9).tolist() == [lines.index(still)]
+    low = made.end[made.end[:, 2] < 0.0]
+    np.testing.assert_allclose(low[:, 1:], np.tile([0.1e-3, -2.05e-3], (len(low), 1)), atol=1e-9)
+    assert len(low) == 3

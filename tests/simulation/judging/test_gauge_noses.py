@@ -154,3 +154,32 @@ def test_a_ball_is_read_alike_however_it_leans(lean: str, to: tuple[float, float
     assert min(len(each) for each in found[0]) > 10
     for leans, upright in zip(*found, strict=True):
         np.testing.assert_allclose(leans, upright, atol=1e-8)
+
+
+@pytest.mark.parametrize("kind", ["bull", "chamfer"])
+@pytest.mark.parametrize(("left", "up"), [(0.0, 0.05e-3), (0.05e-3, 0.0), (-0.04e-3, 0.06e-3)])
+def test_along_the_edge_of_the_stock_what_is_beyond_the_flat_end_is_read_up_to_most_of_the_side(
+    kind: str, left: float, up: float
+) -> None:
+    """The flat end runs outside; what stands over the edge is read in steps of a tenth at most, and is as far off as
+    what the moved side leaves is from where each place was told to be, normal to its arc or line."""
+    bull = kind == "bull"
+    flat, angle = (
+        (2.5e-3, {"corner_radius": 1.5e-3}) if bull else (1e-3, {"tip_angle": np.pi / 2, "tip_diameter": 2e-3})
+    )
+    y, depth = -20e-3 - flat + 1e-5, 2.8e-3
+    cutter = Cutter(kind, 2 * R, **angle)
+    result = run(f"G0 X-40 Y{1e3 * y:.5f} Z5", f"G0 Z{-1e3 * depth}", "G1 X40 F1800", cutter=cutter)
+    read = pushed(result, left=left, up=up).gauge.floors
+    assert len(read.error) > 100
+    off, over = read.place[:, 1] - y, read.place[:, 2] + depth
+    rho, aside = R - flat, off - flat
+    np.testing.assert_allclose(np.hypot(aside, over - rho) if bull else over, rho if bull else aside, atol=1e-8)
+    normal = (
+        np.array([-aside, rho - over]) / rho if bull else np.array([-np.ones(len(off)), np.ones(len(off))]) / np.sqrt(2)
+    )
+    np.testing.assert_allclose(read.out, np.column_stack([np.zeros(len(off)), *-normal]), atol=0.015)
+    np.testing.assert_allclose(read.error, [left, up] @ normal, atol=3e-6)
+    share = (off[read.sample == np.median(read.sample)] - flat) / rho
+    assert np.diff([0.0, *np.sort(share)]).max() < 0.1 + 1e-9
+    assert share.max() > 0.7 - 1e-9
