@@ -31,7 +31,7 @@ from robomill.spelled import Replaceable, in_units
 from robomill.surface.stock import Stock, stock_grid
 from robomill.toolpath.path import Toolpath
 from robomill.toolpath.sketch import Sketch
-from robomill.toolpath.source import PathSource, meant_by, wanted_of
+from robomill.toolpath.source import PathSource, finely, meant_by, wanted_of
 from robomill.units import format_limit, format_many, to_si
 from robomill.values import Value
 
@@ -260,7 +260,7 @@ class SimulationSetup(Replaceable, Value):
     def wanted_path(self) -> Toolpath | None:
         """Of a corrected program the path that was meant, in {W}, where it is told; else None."""
         wanted = wanted_of(self.source)
-        return None if wanted is None else wanted.read(self.tools)
+        return None if wanted is None else finely(wanted, self.tools)
 
     @cached_property
     def stock_block(self) -> Stock:

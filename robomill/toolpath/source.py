@@ -21,6 +21,7 @@ from robomill.errors import GCodeError, ToolpathError
 from robomill.provenance import Finding
 from robomill.quantities import again, quantity, settle
 from robomill.spelled import in_units
+from robomill.toolpath.arcs import CHORD_ERROR
 from robomill.toolpath.corrected import Mark, key_of, mark_of
 from robomill.toolpath.path import (
     FEED,
@@ -39,6 +40,10 @@ from robomill.units import format_count, format_si, format_significant, from_si
 from robomill.values import Said, Value
 
 MAX_KEPT = 4
+TOLD = 0.3 * CHORD_ERROR
+"""m: a corrected program is told to within a hundredth of what it was: chords of 1 um would be a third of the rest."""
+VERY_LONG = 200_000
+"""Points of a path that is not read more finely."""
 LEANS = "tool"
 """What a program's ``table`` says where its rotary axes lean the tool, however far."""
 
@@ -117,15 +122,15 @@ class GCodeSource(Said):
         """Its lines, as every reader counts them."""
         return split_lines(self.text)
 
-    def read(self, tools: Tools | None = None) -> Toolpath:
-        """The path; raises GCodeError naming the line that cannot be read.
+    def read(self, tools: Tools | None = None, chord_error: float = CHORD_ERROR) -> Toolpath:
+        """The path, arcs within ``chord_error`` (m); raises GCodeError naming the line that cannot be read.
 
         ``tools`` is the table that its T, H and D words mean; none or an empty one accepts every tool, of unknown size.
         The last few programs are kept, so that a set-up that is changed elsewhere does not read its program again, and
         what one was refused with: that may take as long.
         """
         tools = tools or None
-        key = (self, digest(tools))
+        key = (self, digest((tools, chord_error)))
         with _LOCK:
             if key in _KEPT:
                 _KEPT.move_to_end(key)
@@ -134,21 +139,25 @@ class GCodeSource(Said):
                     raise copy(found)
                 return found
         try:
-            path = self._read(tools) if self.n_s == 0.0 else _turning(replace(self, n_s=0.0).read(tools), self.n_s)
+            if self.n_s == 0.0:
+                path = self._read(tools, chord_error)
+            else:
+                path = _turning(replace(self, n_s=0.0).read(tools, chord_error), self.n_s)
         except GCodeError as exc:
             _keep(key, copy(exc))
             raise
         _keep(key, path)
         return path
 
-    def _read(self, tools: Tools | None) -> Toolpath:
+    def _read(self, tools: Tools | None, chord_error: float) -> Toolpath:
         from robomill.toolpath.apt import read_apt  # the readers load only where a program is read
         from robomill.toolpath.gcode import read_gcode
 
         data = self.text.encode()
         if is_apt(data):
             return read_apt(data)
-        path = read_gcode(data, dialect=self.dialect, tools=tools, table=self.table.removeprefix(LEANS))
+        table = self.table.removeprefix(LEANS)
+        path = read_gcode(data, chord_error=chord_error, dialect=self.dialect, tools=tools, table=table)
         if self.table != LEANS:
             return path
         return replace(path, findings=tuple(each for each in path.findings if each.code != ROTARY_ASKED))
@@ -309,6 +318,12 @@ PathSource = GCodeSource | LinesSource | SketchSource | PointsSource
 def wanted_of(source: PathSource) -> PathSource | None:
     """The source of the path that was meant, of a corrected program that says it; None of any other."""
     return source.wanted if isinstance(source, GCodeSource) else None
+
+
+def finely(source: PathSource, tools: Tools) -> Toolpath:
+    """The path of a ``source`` from which errors are told: a program's arcs within ``TOLD``, unless it is very long."""
+    path = source.read(tools)
+    return source.read(tools, TOLD) if isinstance(source, GCodeSource) and len(path) < VERY_LONG else path
 
 
 def meant_by(corrected: PathSource, known: PathSource) -> PathSource:
