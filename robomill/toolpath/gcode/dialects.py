@@ -32,6 +32,8 @@ LONGEST = 300
 
 _OUT, _READ, _CHOOSE = "let the CAM system write its moves out", "which is read for", "choose that dialect"
 
+_POLAR = "G112 alone on its line begins polar interpolation, which is not read; for Haas's older G112 write G154 P3."
+
 HARMLESS: dict[str, frozenset[int]] = {
     "linuxcnc": frozenset(),
     "fanuc": frozenset({90, 150, 220, 230, 401, 501, 500, 600, 620, 630, 670, 690, 1870}),
@@ -296,6 +298,8 @@ def _selects(machine: Machine, block: Block, code: int) -> bool:
         if "p" not in block.words:
             raise block.refuse(f"{g_name(code)} needs P, the number of its coordinate system.")
         select_extended(machine, block, block.words.pop("p"))
+    elif code == 1120 and not block.words:
+        raise block.refuse(_POLAR)
     elif 1100 <= code <= 1290 and code % 10 == 0:
         select_extended(machine, block, code / 10 - 109)
     else:

@@ -80,14 +80,18 @@ def select_extended(machine: Machine, block: Block, number: float) -> None:
 
 
 def turn_about(machine: Machine, block: Block) -> None:
-    """G68: coordinates are turned by R degrees about X, Y (where they are not given: about where the tool is)."""
+    """G68: coordinates are turned by R degrees about X, Y (where they are not given: about where the tool is).
+
+    The centre is a place in G91, too (Fanuc, Mitsubishi); whether R is one there is a setting of the control.
+    """
     machine.need_compensation_off(block, "G68")
     words = block.words
     if machine.scale is not None:
         raise block.refuse("G68 while coordinates are scaled (G51) is not read; end that first (G50).")
-    plane, distance = block.g.get(modal.PLANE, 10 * machine.plane), block.g.get(modal.DISTANCE)
-    if plane != 170 or "r" not in words or not (machine.absolute or distance == 900):
-        raise block.refuse("G68 is read in G17 and G90, with R, its angle; write the moves out.")
+    if block.g.get(modal.PLANE, 10 * machine.plane) != 170 or "r" not in words:
+        raise block.refuse("G68 is read in G17, with R, its angle; write the moves out.")
+    if machine.before_turn is not None and not machine.is_absolute(block):
+        raise block.refuse("G68 in G91 inside of G68 turns to R or by R, as the control is set; write it in G90.")
     if words.keys() & set("zijk"):
         raise block.refuse("G68 with Z, I, J or K turns coordinates in space, which is not read; write the moves out.")
     turn_back(machine)

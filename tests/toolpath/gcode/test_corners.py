@@ -146,9 +146,10 @@ def test_no_corner_is_where_a_cut_and_an_arc_go_on_tangentially() -> None:
             "Line 4: a corner is rounded at the end of a cut (G1, G2, G3), or chamfered at that of a G1 alone",
         ),
         ("M8 ,C5\n", "Line 4: a corner is rounded at the end of a cut"),
-        ("G68 X0 Y0\n", "Line 4: G68 is read in G17 and G90, with R"),
-        ("G18 G68 X0 Z0 R90.\nG1 X5 F100\n", "Line 4: G68 is read in G17 and G90"),
-        ("G91 G68 X0 Y0 R90.\nG91\nG68 R5.\n", "Line 6: G68 is read in G17 and G90"),
+        ("G68 X0 Y0\n", "Line 4: G68 is read in G17, with R"),
+        ("G18 G68 X0 Z0 R90.\nG1 X5 F100\n", "Line 4: G68 is read in G17, with R"),
+        ("G91 G68 X0 Y0 R90.\nG91\nG68 R5.\n", "Line 6: G68 in G91 inside of G68 turns to R or by R"),
+        ("G68 X0 Y0 R30.\nG91 G68 R30.\n", "Line 5: G68 in G91 inside of G68 turns to R or by R"),
         ("G68 X0 Y0 Z0 I1 J0 K0 R90.\n", "Line 4: G68 with Z, I, J or K turns coordinates in space"),
         ("G18 G16\nZ5 F100\n", "Line 5: G16 is read in G17 alone"),
         ("G18 G16 X5 Z90\n", "Line 4: G16 is read in G17 alone"),
@@ -173,6 +174,18 @@ def test_g68_turns_what_follows_about_its_centre_until_g69() -> None:
     assert ends("G18\nG91\nG90 G17 G68 X0 Y0 R90\nG1 X5 Y1 F9\n") == [[-1, 5]]
     arc = interpret(f"{HEAD}G68 X0 Y0 R90\nG2 X10 Y0 I5 J0 F9\nM30\n%\n", dialect="fanuc")
     np.testing.assert_allclose(arc.centre[-1, :2] * 1e3, [0, 5], atol=1e-9)
+
+
+def test_g68_in_g91_has_its_centre_at_a_place() -> None:
+    """Mitsubishi's manual, G68.1: the centre is "not handled as an incremental value"; from 0, by R is to R.
+
+    From (10, 0) about (5, 0): a step of (3, 1) turned by 90 degrees is (-1, 3), and (20, 0) goes to (5, 15).
+    """
+    for said in ("G91 G68 X5 Y0 R90\n", "G91\nG68 X5 Y0 R90\n"):
+        assert ends(f"G1 X10 Y0 F9\n{said}X3 Y1\nG90 X20 Y0\nG69\n") == [[10, 0], [9, 3], [5, 15]]
+    # without a centre about where the tool is; in G90 inside of G68 it turns to R
+    assert ends("G1 X3 Y4 F9\nG91 G68 R180\nX1\nG90 X3 Y5\n") == [[3, 4], [2, 4], [3, 3]]
+    assert ends("G91 G68 X0 Y0 R30\nG90 G68 X0 Y0 R90\nG1 X5 Y0 F9\n") == [[0, 5]]
 
 
 def test_g68_of_mach3_calls_its_centre_a_and_b() -> None:

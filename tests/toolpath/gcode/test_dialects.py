@@ -229,6 +229,15 @@ def test_seconds_of_a_dwell_stand_behind_x_u_or_p(dialect: str, word: str) -> No
     assert (program.end[:, 0] * 1e3).tolist() == [1, 2]
 
 
+@pytest.mark.parametrize("start", ["G112", "N10 G112 (polar)", "G94 G112"])
+def test_polar_interpolation_is_not_read_as_the_place_of_a_part(start: str) -> None:
+    """G112 to G113, with C as a length (Fanuc); a place of the part (Haas's G154 P3) stands beside its first move."""
+    with pytest.raises(GCodeError, match=r"Line 2: G112 alone on its line begins polar interpolation"):
+        interpret(f"G21 F9\n{start}\nG1 X5. C3.\nG113\nM30\n", dialect="fanuc")
+    beside = interpret("G10 L20 P3 X7. Y0 Z0\nG21 G0 G90 G112 X1. Y2.\nM30\n", dialect="fanuc")
+    assert (beside.end * 1e3).tolist() == [[8, 2, 0]]
+
+
 @pytest.mark.parametrize("code", ["G110", "G111", "G112"])
 def test_poles_of_a_sinumerik_are_named(code: str) -> None:
     with pytest.raises(GCodeError, match=f"Line 2: {code} sets a pole, which is read for Sinumerik controls alone"):
