@@ -89,11 +89,7 @@ _TOLD = (
     ("URScript or VAL3", r"def[ \t]+\w+\([^\n]*\):|[ \t]*(?:movel|movej|movep|set_tcp)[ \t]*\("),
     ("Okuma's OSP", r"\$[\w-]+\.(?:MIN|SSB|SUB|LIB)\b|[^(;\n]*\bG15[ \t]*H[ \t]*\d"),
     ("a 3D printer's G-code", r"[ \t]*(?:N\d+[ \t]*)?(?:G92[ \t]*E[ \t]*-?[\d.]|M1(?:04|09)[ \t]+S\d)"),
-    (
-        "Fagor's language",
-        r"%[^\n,]*,M[XYZ]*,|(?:N\d+[ \t]*)?\((?:RPT|GOTO)[ \t]*N\d|(?:N\d+[ \t]*)?\(CALL[ \t]*\d+\)[ \t]*$",
-    ),
-    ("OSAI's language", r"(?:N\d+[ \t]*)?\((?:U[TA]O|RPT|DIS|TMR),|(?:N\d+[ \t]*)?\(ERP\)[ \t]*$"),
+    ("Fagor's language", r"%[^\n,]*,M[XYZ]*,"),
     ("HPGL (a plotter's language)", r"(?:IN|PU|PD|SP\d?);"),
     ("Gerber (a circuit board's layer)", r"%FS[LT][AI]X\d"),
     (  # M48 alone is an M word of G-code, too
@@ -107,13 +103,19 @@ _TOLD = (
     ("an STL surface", r"solid[ \t]*\w*[^\n]*\n[ \t]*facet\b"),
     ("STEP", r"ISO-10303-21;"),
 )
+_BRACKETED = (
+    ("Fagor's language", r"(?:N\d+[ \t]*)?\((?:(?:RPT|GOTO)[ \t]*N\d|CALL[ \t]*\d+\)[ \t]*$)"),
+    ("OSAI's language", r"(?:N\d+[ \t]*)?\((?:(?:U[TA]O|RPT|DIS|TMR),|ERP\)[ \t]*$)"),
+)
+"""Languages whose statements stand in brackets, which are comments to a control whose programs have a number O."""
+_NUMBERED = re.compile(r"^[ \t]*O\d+", re.MULTILINE | re.IGNORECASE)
 _REMEDY = "expected G-code, Heidenhain's dialogue or APT; let the CAM system write one of them."
 
 
 def language_of(text: str) -> tuple[int, str] | None:
     """Line (1-based) and refusal of a file whose first lines are another language's; None for what may be G-code."""
     head = "\n".join(text.split("\n")[:FIRST_LINES])
-    for name, pattern in _TOLD:
+    for name, pattern in _TOLD if _NUMBERED.search(head) else (*_TOLD, *_BRACKETED):
         found = re.search(rf"^(?:{pattern})", head, re.MULTILINE | re.IGNORECASE)
         if found is not None:
             return head.count("\n", 0, found.start()) + 1, f"this is {name}, which is not read; {_REMEDY}"

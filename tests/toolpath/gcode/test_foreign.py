@@ -154,3 +154,13 @@ def test_a_spiral_is_no_arc_with_a_word_too_many(word: str) -> None:
 def test_lengths_along_the_tool_move_it_to_the_tip_s_place(code: str) -> None:
     found = interpret(f"O1\nG21 G90 F9\nG0 Z50.\n{code} H1 Z20.\nG1 Z-1.\nM30\n", dialect="fanuc")
     assert (found.end[:, 2] * 1e3).round(9).tolist() == [50, 20, -1]
+
+
+@pytest.mark.parametrize(
+    "comment", ["DIS,SLOT", "CALL 200", "RPT,3", "GOTO N5 IF TOOL BROKEN", "UTO,1", "TMR,5", "ERP", "call 5551234"]
+)
+@pytest.mark.parametrize("number", ["O1000", "%\nO0012 (PLATE)", "o5"])
+def test_what_stands_in_brackets_is_a_comment_behind_a_number_o(comment: str, number: str) -> None:
+    """Fagor's and OSAI's programs have no such number; a control that has one never acts on brackets."""
+    program = interpret(f"{number}\n({comment})\nG21 G90 G0 X0 Y0 S900 M3\nN5 G1 X5 F100\nM30\n")
+    np.testing.assert_allclose(program.end[-1], [5e-3, 0.0, 0.0])
