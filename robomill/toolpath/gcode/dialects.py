@@ -14,6 +14,7 @@ from robomill.toolpath.gcode.fanuc.cycles import FANUC_WORDS
 from robomill.toolpath.gcode.foreign import meant_elsewhere
 from robomill.toolpath.gcode.grbl import for_controller
 from robomill.toolpath.gcode.machine import UNITS, Machine
+from robomill.toolpath.gcode.not_read import not_read
 from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
 from robomill.toolpath.gcode.rules.motion_rules import LINE, is_arc
 from robomill.toolpath.gcode.scan import COMMENT
@@ -30,8 +31,6 @@ SAMPLE = 200_000
 LONGEST = 300
 """Characters of a line that are looked at for signs of a dialect."""
 
-_OUT, _READ, _CHOOSE = "let the CAM system write its moves out", "which is read for", "choose that dialect"
-
 _POLAR = "G112 alone on its line begins polar interpolation, which is not read; for Haas's older G112 write G154 P3."
 
 HARMLESS: dict[str, frozenset[int]] = {
@@ -42,21 +41,6 @@ HARMLESS: dict[str, frozenset[int]] = {
     "sinumerik": frozenset({90, 600, 4600, 601, 602, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450}),
 }
 """G words that move nothing, by dialect; they are counted as ignored."""
-
-NAMED = {
-    **{code: f"G{code // 10} mills a circular pocket (Haas), which is not read; {_OUT}." for code in (120, 130)},
-    62: f"G6.2 makes a NURBS curve (Fanuc), which is not read; {_OUT}.",
-    1500: f"G150 mills a pocket (Haas), which is not read; {_OUT}.",
-    **{n: f"G{n // 10} is not known; a lathe's cycle is not read: {_OUT}." for n in (700, 710, 720)},
-    470: f"G47 engraves text (Haas), which is not read; {_OUT}.",
-    510: f"G51 scales coordinates, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
-    511: f"G51.1 mirrors coordinates, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
-    682: f"G68.2 tilts the working plane, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
-    **{n: f"G{n // 10} sets a pole, {_READ} Sinumerik controls alone; {_CHOOSE}." for n in (1100, 1110, 1120)},
-    650: f"G65 calls a macro with values, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
-    660: f"G66 calls a macro at every point, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
-}
-"""What is said of G words that are known and not read."""
 
 _VERBATIM_OR_CODE = re.compile(r"\([^()\n]*\)?|;.*|<[^>]*>?|\"[^\"]*\"?|[^(;<\"]+")
 
@@ -232,6 +216,8 @@ class Dialect:
             if self.name == "sinumerik" and code in (4500, 4510):
                 machine.sharp = code == 4510
                 continue
+            if code == 600 and self._is_fanuc_like and not block.words.keys().isdisjoint("xyzabc"):
+                raise block.refuse("G60 with axis words goes there at rapid, from one side; write G0.")
             if code == 500 and not block.words.keys().isdisjoint("xyzabc"):
                 raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")
             if code in harmless:
@@ -239,9 +225,7 @@ class Dialect:
                     block.words.pop(letter, None)
                 machine.note("harmless-g", "ignored", f"{g_name(code)} is left out: it moves nothing")
             else:
-                raise block.refuse(
-                    NAMED.get(code, f"{g_name(code)} is not known; it may move the machine, so reading stops here.")
-                )
+                raise block.refuse(not_read(code))
         for code in block.unknown_m:
             machine.note("unknown-m", "ignored", f"M{code} is not known and is left out")
 

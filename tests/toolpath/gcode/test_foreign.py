@@ -105,8 +105,14 @@ def test_a_stated_control_is_believed_before_a_language_that_a_comment_looks_lik
     [
         ("G0 X0 Y0 E1", "E chooses a fixture .Fadal. or feeds filament"),
         ("L100", "L100 alone begins or calls a subprogram .Fadal, Sinumerik."),
-        ("G71 P46 Q55 U0.005 W0 D0.025 F0.01", "G71 is not known; a lathe's cycle"),
-        ("G72 P1 Q2 U1 W0 D1", "G72 is not known; a lathe's cycle"),
+        ("G71 P46 Q55 U0.005 W0 D0.025 F0.01", "G71 makes holes on an arc .Haas. or is a lathe's cycle"),
+        ("G31 Z-5. F50", "G31 goes until a probe or another signal stops it"),
+        ("G37 Z-1 H1", "G37 measures a tool"),
+        ("G7.1 B10", "G7.1 wraps a path about a cylinder"),
+        ("G12.1", "G12.1 is of polar interpolation"),
+        ("G254", "G254 lets the part's place follow the rotary table"),
+        ("G10 L50", "G10 needs L1, L2, L10, L11 or L20; L50 to L52 write into the control"),
+        ("G72 P1 Q2 U1 W0 D1", "G72 makes holes on a line .Haas. or is a lathe's cycle"),
     ],
 )
 def test_words_that_must_not_be_left_out_are_named(line: str, says: str, dialect: str) -> None:
@@ -164,3 +170,12 @@ def test_what_stands_in_brackets_is_a_comment_behind_a_number_o(comment: str, nu
     """Fagor's and OSAI's programs have no such number; a control that has one never acts on brackets."""
     program = interpret(f"{number}\n({comment})\nG21 G90 G0 X0 Y0 S900 M3\nN5 G1 X5 F100\nM30\n")
     np.testing.assert_allclose(program.end[-1], [5e-3, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("dialect", ["auto", "fanuc"])
+def test_g60_with_a_place_is_a_rapid_of_its_own_and_alone_it_is_nothing(dialect: str) -> None:
+    """Fanuc's and Haas's positioning from one side: behind G1 it was read as a cut."""
+    text = "O1000\nG21 G90 S9 M3\nG1 X1. F100\nG60{}\nG1 X9.\nM30\n"
+    assert interpret(text.format(""), dialect=dialect).at_feed.all()
+    with pytest.raises(GCodeError, match="Line 4: G60 with axis words goes there at rapid, from one side; write G0"):
+        interpret(text.format(" X5."), dialect=dialect)
