@@ -189,7 +189,7 @@ def set_data(machine: Machine, block: Block) -> None:
         _leave_tool(machine, f"G10 L{kind}")
         return
     if kind not in (1, 2, 10, 11, 20):
-        raise block.refuse("G10 needs L1, L2, L10, L11 or L20; L50 to L52 write into the control: remove them to G11.")
+        raise block.refuse("G10 needs L1, L2, L10, L11 or L20.")
     p = block.words.get("p")
     if p is None or abs(p - round(p)) > 1e-4:
         raise block.refuse("G10 needs P, a whole number.")

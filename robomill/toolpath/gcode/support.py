@@ -128,7 +128,7 @@ SUPPORT: tuple[Support, ...] = (
     Support("M62 to M68", "inputs and outputs", "ignored", "M64 P1\nG0 X1", (1, 0, 0), 1),
     Support("M100 to M199", "M codes that users of a machine make", "ignored", "M101\nG0 X1", (1, 0, 0), 1),
     Support("other M codes", "counted", "ignored", "M36\nG0 X1", (1, 0, 0), 1),
-    Support("other G codes", "they may move the machine", "refused", "G12.1 X1"),
+    Support("other G codes", "they may move the machine", "refused", "G130 X1"),
     Support("G70 to G72", "lathe roughing", "refused", "G71 Q100 X5 Z5 D1"),
     Support("U V W, G17.1", "axes that the machine lacks", "refused", "G0 U1"),
     _row("G68 G69", "rotation in the plane G17", "G68 X0 Y0 R90\nG0 X5\nG69", (0, 5, 0), 1, dialect="fanuc"),

@@ -304,7 +304,7 @@ def test_mach3_says_its_units_as_others_rough_on_a_lathe(word: str, units: str, 
         program = interpret(f"N10G0X0Y0\nN20{gap}{word}{gap}G91.1\nN30 G1 X5 F100\nM30\n")
         assert (program.units, program.dialect) == (units, "linuxcnc")
         assert program.end[-1, 0] * 1e3 == pytest.approx(size)
-    with pytest.raises(GCodeError, match=f"Line 2: {word} is not known"):
+    with pytest.raises(GCodeError, match=f"Line 2: {word} makes holes on an? .* or is a lathe's cycle"):
         interpret(f"G0 X0\n{word} P10 Q20 U1 W1\nG1 X3 F9\n")
 
 

@@ -111,7 +111,6 @@ def test_a_stated_control_is_believed_before_a_language_that_a_comment_looks_lik
         ("G7.1 B10", "G7.1 wraps a path about a cylinder"),
         ("G12.1", "G12.1 is of polar interpolation"),
         ("G254", "G254 lets the part's place follow the rotary table"),
-        ("G10 L50", "G10 needs L1, L2, L10, L11 or L20; L50 to L52 write into the control"),
         ("G72 P1 Q2 U1 W0 D1", "G72 makes holes on a line .Haas. or is a lathe's cycle"),
     ],
 )

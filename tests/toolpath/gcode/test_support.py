@@ -15,7 +15,7 @@ SAYS = {
     "M100 to M199": "M101",
     "other M codes": "M36",
     "other G codes": "may move",
-    "G70 to G72": "a lathe.s cycle is not read",
+    "G70 to G72": "a lathe.s cycle, which is not read",
     "U V W, G17.1": "no U axis",
     "POCKET SLOT LONGHOLE CYCLE60 to 79, 90, 840": "mills a circular pocket in passes that the control plans",
     "FL, other PLANE, other cycles": "FL X.1 LEN5 is of Heidenhain's",

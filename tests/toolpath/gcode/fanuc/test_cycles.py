@@ -141,7 +141,7 @@ def test_holes_on_a_circle_about_where_the_tool_is_or_the_line_says() -> None:
     for line, says in (("G91 G70 I1 J0 L2", "G70 is read in G17 and G90"), ("G70 I1 J0 L0", "for 1 to 10000 holes")):
         with pytest.raises(GCodeError, match=f"Line 4: .*{says}"):
             read(f"G99 G81 Z-5 R2 L0\n{line}\n")
-    with pytest.raises(GCodeError, match="Line 3: G70 is not known"):
+    with pytest.raises(GCodeError, match="Line 3: G70 makes holes on a circle .Haas. or is a lathe"):
         read("G70 I1 J0 L2\n")
 
 
