@@ -17,6 +17,7 @@ from robomill.toolpath.source import (
     LinesSource,
     PointsSource,
     SketchSource,
+    finely,
     meant_by,
     wanted_of,
 )
@@ -182,3 +183,19 @@ def test_sources_say_what_they_are() -> None:
     assert repr(GCodeSource(TEXT, "a.nc")) == "<GCodeSource a.nc, 8 lines>"
     assert repr(LinesSource([[0, 0, 0]], [[0.01, 0, 0]], [0.01])) == "<LinesSource table of lines, 1 row>"
     assert repr(SketchSource(Sketch())) == "<SketchSource sketch, 0 shapes>"
+
+
+def test_arcs_that_errors_are_told_from_are_finer_than_those_that_are_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The middle of a chord is a sagitta nearer to the centre of a circle of 9 mm."""
+    source = GCodeSource("G21 G90 S600 M3\nG0 X9\nG2 X9 Y0 I-9 J0 F600\nM2\n")
+
+    def sagitta(path: Toolpath) -> float:
+        p = path.p[path.block == 3]
+        return float(9e-3 - np.linalg.norm((p[1:] + p[:-1]) / 2, axis=1).min())
+
+    assert 0.6e-6 < sagitta(source.read()) < 1e-6
+    assert 0.2e-6 < sagitta(finely(source, {})) < 0.3e-6
+    points = PointsSource(source.read())
+    assert finely(points, {}) is points.path
+    monkeypatch.setattr("robomill.toolpath.source.VERY_LONG", 100)
+    assert finely(source, {}) is source.read()
