@@ -109,8 +109,9 @@ def point_counts(program: Program) -> IntArray:
 
 def _pieces(program: Program, chord_error: float, table: str = "") -> tuple[IntArray, FloatArray]:
     """Straight pieces of each move (m,), and how many would make a whole turn of those that are arcs (m,), else 0."""
+    still = program.still if program.still < len(program) else 0
     rows = np.flatnonzero(program.is_kind("arc") & ~program.unplaced)
-    rows = rows[rows >= program.still]
+    rows = rows[rows >= still]
     turns, fit = program.arcs_of(rows), most_points(program.lines)
     whole = np.zeros(len(program))
     whole[rows] = turns.whole(chord_error)
@@ -125,7 +126,7 @@ def _pieces(program: Program, chord_error: float, table: str = "") -> tuple[IntA
     asked = 4.0 * np.ceil(counts[rows] * 0.5 * math.pi / np.abs(turns.sweep))
     whole[rows] = np.where(counts[rows] > 1, np.maximum(whole[rows], asked), whole[rows])
     counts[rows] = turns.counts(whole[rows])
-    counts[: program.still] = 0
+    counts[:still] = 0
     if counts.sum() > fit:
         raise GCodeError(f"Program: the path would need {counts.sum()} points; at most {fit} fit. Split the program.")
     return counts, whole

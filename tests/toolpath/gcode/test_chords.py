@@ -126,3 +126,8 @@ def test_too_many_points_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         to_toolpath(interpret("G21 F60\nG1 A42\nM2\n"))
     with pytest.raises(GCodeError, match="found no motion"):
         to_toolpath(interpret("G21\nM2\n"))
+
+
+def test_a_program_that_stands_still_to_its_end_is_a_path_of_its_moves() -> None:
+    assert len(to_toolpath(interpret("G21\nG0 X0 Y0\nM2\n"))) == 2
+    assert len(to_toolpath(interpret("G21\nG0 X0 Y0\nG0 X0\nG0 X5\nM2\n"))) == 2
