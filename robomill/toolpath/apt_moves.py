@@ -88,7 +88,7 @@ class Arc:
         first /= np.linalg.norm(first)
         across = np.cross(self.axis, first)
         begin, turn = math.atan2(float(out[0] @ across), float(out[0] @ first)), np.array([sweep])
-        t = chord_ends(np.array([begin]), turn, turn_counts(turn, np.array([radius]), CHORD_ERROR))[:, None]
+        t = chord_ends(np.array([begin]), turn, turn_counts(turn, np.array([radius]), CHORD_ERROR))[1][:, None]
         angle = begin + t * sweep
         size = sizes[0] + t * (sizes[1] - sizes[0])
         level = along[0] + t * (along[1] - along[0])

@@ -113,15 +113,15 @@ class Arcs:
         """(m,) chords of each arc, of which ``whole`` (m,) make a turn."""
         return chord_counts(self._polar[0], self.sweep, whole)
 
-    def fractions(self, whole: FloatArray) -> FloatArray:
-        """(sum of `counts`,) which part of its arc's sweep has been made where each chord ends."""
+    def ends(self, whole: FloatArray) -> tuple[IntArray, FloatArray]:
+        """For each chord its arc, and which part of the arc's sweep has been made where it ends, (sum of `counts`,)."""
         return chord_ends(self._polar[0], self.sweep, whole)
 
     def chords(self, whole: FloatArray) -> FloatArray:
         """End points (sum of `counts`, 3) m of the chords of each arc; the last one is its end, exactly."""
-        counts = self.counts(whole)
-        points = self.at(np.repeat(np.arange(len(self)), counts), self.fractions(whole))
-        points[np.cumsum(counts) - 1] = self.end
+        owner, fraction = self.ends(whole)
+        points = self.at(owner, fraction)
+        points[fraction == 1.0] = self.end
         return points
 
     def at(self, owner: IntArray, fraction: FloatArray) -> FloatArray:
@@ -194,14 +194,14 @@ def chord_counts(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> Int
     return np.maximum(last - before, 1.0).astype(np.int64)
 
 
-def chord_ends(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> FloatArray:
-    """(sum of `chord_counts`,) which part of its arc's sweep has been made where each chord ends."""
-    counts = chord_counts(angle, sweep, whole)
-    before, _, begin = _numbered(angle, sweep, whole)
+def chord_ends(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> tuple[IntArray, FloatArray]:
+    """For each chord its arc, and which part of the arc's sweep has been made where it ends: 1 at the last alone."""
+    before, last, begin = _numbered(angle, sweep, whole)
+    counts = np.maximum(last - before, 1.0).astype(np.int64)
     owner, number = steps(counts)
     fraction = (before[owner] + number - begin[owner]) * (2.0 * math.pi / whole / np.abs(sweep))[owner]
     fraction[np.cumsum(counts) - 1] = 1.0
-    return fraction
+    return owner, fraction
 
 
 def _numbered(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -49,7 +49,8 @@ def to_toolpath(program: Program, chord_error: float = arcs.CHORD_ERROR, table: 
         points = start[rows][owner] + fraction[:, None] * (end[rows] - start[rows])[owner]
         turning = is_arc[rows]
         if turning.any():
-            points[turning[owner]] = program.arcs_of(rows[turning]).chords(whole[rows[turning]])
+            on = turning[owner]
+            points[on] = program.arcs_of(rows[turning]).at((np.cumsum(turning) - 1)[owner[on]], fraction[on])
         points[np.cumsum(counts[rows]) - 1] = end[rows]
         p[np.repeat(first[rows] - np.cumsum(counts[rows]) + counts[rows], counts[rows]) + np.arange(len(owner))] = (
             points
@@ -148,7 +149,7 @@ def _fractions(program: Program, rows: IntArray, counts: IntArray, whole: FloatA
     fraction = step / counts[rows][owner]
     turning = whole[rows] > 0.0
     if turning.any():
-        fraction[turning[owner]] = program.arcs_of(rows[turning]).fractions(whole[rows[turning]])
+        fraction[turning[owner]] = program.arcs_of(rows[turning]).ends(whole[rows[turning]])[1]
     return owner, fraction
 
 
