@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -36,6 +37,15 @@ HEAVY = 2**20  # bytes of a project whose history is weighed: weighing takes as 
 ONE_GESTURE_S = 1.2  # a slider being dragged sends many values; they are one step back
 
 
+@dataclass(frozen=True)
+class Told:
+    """What was ``put`` into a widget and ``when`` (monotonic), and what it held ``before``, the last first."""
+
+    put: Any
+    before: tuple[Any, ...] = ()
+    when: float = -math.inf
+
+
 @dataclass(eq=False)
 class Store:
     """What lives in the session: the project, its history, and input that was refused but is still shown.
@@ -46,7 +56,8 @@ class Store:
     with its page has lost it. ``older`` are project files of an earlier session, to be gone back to after ``past``.
     ``keeper`` is called after every change. ``returned``: the page was open before this session was (its server had
     forgotten it), and what its widgets hold beside the project is the edit of that moment. ``runs`` counts the
-    runs of pages. ``heavy`` are names of what is kept only while a browser is there.
+    runs of pages. ``heavy`` are names of what is kept only while a browser is there. ``told`` says what was put into
+    widgets over what they held; ``said`` when the browser last said something new of each, None where nobody listens.
     """
 
     project: Project
@@ -66,6 +77,8 @@ class Store:
     older: list[str] = field(default_factory=list)
     keeper: Callable[[Store], None] | None = None
     returned: bool = False
+    told: dict[str, Told] = field(default_factory=dict)
+    said: dict[str, float] | None = None
 
     def let_go(self) -> None:
         """Let go of what is heavy, save for work under way: the browser may come back for it."""
@@ -97,6 +110,7 @@ def enter(page: str) -> None:
         held.returned = held.returned and not held.page
         held.page = page
         held.seeded.clear()
+        held.told.clear()
         held.read_as.clear()
 
 

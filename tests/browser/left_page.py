@@ -6,6 +6,8 @@ import time
 
 import streamlit as st
 
+from robomill.ui import session
+from robomill.ui.entry import inputs
 from robomill.ui.serving.asked import heed_pages
 
 heed_pages()
@@ -101,6 +103,19 @@ def typed() -> None:
     st.caption("taken " + " ".join(st.session_state.get("taken", [])))
 
 
+def put() -> None:
+    """A page that speaks as a whole on each click, beside a box into which a button puts another number. What was typed
+    into it is said."""
+    echo(key="echo", on_said_change=lambda: None)
+    st.button("more", on_click=lambda: session.keep("number", session.kept("number", 0) + 1))
+    number = session.kept("number", 0)
+    inputs.text("box", "box", str(number), lambda text: session.keep("typed", [*session.kept("typed", []), text]))
+    for line in range(6):
+        time.sleep(0.01)
+        st.caption(f"number {number}, line {line}")
+    st.caption("typed: " + " ".join(session.kept("typed", [])))
+
+
 st.navigation(
     [
         st.Page(other, default=True),
@@ -110,5 +125,6 @@ st.navigation(
         st.Page(ticking),
         st.Page(slow),
         st.Page(typed),
+        st.Page(put),
     ]
 ).run()

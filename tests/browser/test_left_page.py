@@ -72,3 +72,20 @@ def test_what_is_typed_is_taken_once_whatever_the_page_says_meanwhile(page: Any,
             page.keyboard.press("Enter")
         page.wait_for_timeout(20 * (value % 5))
     page.get_by_text("taken " + " ".join(map(str, range(30)))).wait_for(timeout=10_000)
+
+
+def test_what_a_button_puts_into_a_box_is_not_taken_back_by_what_the_page_says_meanwhile(page: Any, url: str) -> None:
+    """Until the browser has drawn it, every word of the page says of the box what it was. Without our care that was
+    taken for typed. What is typed then is taken, the number from before as well."""
+    page.goto(f"{url}/put")
+    box, typed = page.get_by_role("textbox", name="box"), page.get_by_text("typed:")
+    for number in range(CLICKS * 3):
+        page.get_by_text(f"number {number}, line 5").wait_for()
+        page.get_by_role("button", name="more").click()
+    page.get_by_text(f"number {CLICKS * 3}, line 5").wait_for()
+    idle(page)
+    assert box.input_value() == str(CLICKS * 3)
+    assert typed.inner_text() == "typed:"
+    box.fill(str(CLICKS * 3 - 1))
+    box.press("Enter")
+    page.get_by_text(f"typed: {CLICKS * 3 - 1}").wait_for()

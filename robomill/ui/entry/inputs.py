@@ -18,7 +18,7 @@ import streamlit as st
 from robomill.errors import ProjectError
 from robomill.ui import session
 from robomill.ui.entry.box import NumberBox, declared
-from robomill.ui.entry.typed import accept, heard, note, refuse, seed, sentence, submit
+from robomill.ui.entry.typed import accept, heard, news, note, refuse, seed, sentence, submit
 from robomill.ui.markup import as_markdown
 from robomill.ui.project import read_field, with_field
 
@@ -99,7 +99,7 @@ def value(name: str, box: NumberBox, current: float | None, write: Callable[[Any
         box.title,
         shown,
         key=key,
-        on_change=take,
+        on_change=news(key, take),
         help=box.hint,
         disabled=box.disabled,
         placeholder=box.placeholder if box.optional else None,
@@ -150,7 +150,7 @@ def choice(
     common: dict[str, Any] = {
         "key": key,
         "format_func": lambda k: options[k] if look.listed else as_markdown(options[k]),
-        "on_change": take,
+        "on_change": news(key, take),
         "help": look.hint,
         "disabled": look.disabled,
         "label_visibility": look.label_visibility,
@@ -195,7 +195,7 @@ def several(
     common: dict[str, Any] = {
         "key": key,
         "format_func": lambda k: options[k] if look.listed else as_markdown(options[k]),
-        "on_change": take,
+        "on_change": news(key, take),
         "label_visibility": look.label_visibility,
         "default": [each for each in shown if each in options],
     }
@@ -213,7 +213,7 @@ def switch(label: str, key: str, current: bool, write: Callable[[bool], None], l
     def take() -> None:
         submit(key, st.session_state[key], lambda: write(bool(st.session_state[key])))
 
-    st.toggle(label, shown, key=key, help=look.hint, disabled=look.disabled, on_change=take)
+    st.toggle(label, shown, key=key, help=look.hint, disabled=look.disabled, on_change=news(key, take))
     heard(key, shown, take)
 
 
@@ -238,7 +238,7 @@ def slider(
         help=look.hint,
         disabled=look.disabled,
         label_visibility=look.label_visibility,
-        on_change=take,
+        on_change=news(key, take),
     )
     heard(key, shown, take)
 
@@ -250,7 +250,7 @@ def stops(label: str, key: str, options: Mapping[Any, str], current: Any, write:
     def take() -> None:
         submit(key, st.session_state[key], lambda: write(st.session_state[key]))
 
-    st.select_slider(label, list(options), shown, key=key, format_func=lambda k: options[k], on_change=take)
+    st.select_slider(label, list(options), shown, key=key, format_func=lambda k: options[k], on_change=news(key, take))
     heard(key, shown, take)
 
 
@@ -262,9 +262,9 @@ def text(label: str, key: str, current: str, write: Callable[[str], None], *, li
         submit(key, st.session_state[key], lambda: write(st.session_state[key]))
 
     if lines == 1:
-        st.text_input(label, begun, key=key, on_change=take, **shown)
+        st.text_input(label, begun, key=key, on_change=news(key, take), **shown)
     else:
-        st.text_area(label, begun, key=key, on_change=take, **shown)
+        st.text_area(label, begun, key=key, on_change=news(key, take), **shown)
     heard(key, begun, take)
 
 

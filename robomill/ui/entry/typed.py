@@ -1,6 +1,11 @@
 """What was typed: how widgets are seeded, refused input that stays with its sentence, how a number was understood,
-edits of a page cut off."""
+edits of a page cut off, and what was not typed at all.
 
+What is put into a widget is with the browser a moment later. Until then whatever the browser says (a tick, another
+click) holds what stood there before, and Streamlit takes that for typed.
+"""
+
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -14,6 +19,9 @@ from robomill.ui import session
 from robomill.ui.markup import as_markdown
 
 _ROW: ContextVar[list[str] | None] = ContextVar("row", default=None)
+BEHIND_S = 5.0  # by then a browser has drawn what it was told
+MOST_BEHIND = 8  # values: a slider says many in that time
+NOTHING = session.Told(None)
 HEARD = "typed.heard"  # kept once an edit was taken that no server had answered
 
 
@@ -25,9 +33,31 @@ def seed(key: str, current: Any) -> Any:
     shown = waiting[0] if waiting is not None else current
     # Written only where it differs: a slider that is being dragged would jump otherwise.
     if not unheard(key) and (not known or st.session_state[key] != shown):
+        if known:
+            _tell(held, key, shown)
         st.session_state[key] = shown
         held.seeded.add(key)
     return shown
+
+
+def _tell(held: session.Store, key: str, shown: Any) -> None:
+    """Note that ``shown`` is put into the widget ``key`` over what it holds."""
+    now, last = time.monotonic(), held.told.get(key, NOTHING)
+    behind = last.before if last.when > now - BEHIND_S else ()
+    held.told[key] = session.Told(shown, (st.session_state[key], *behind)[:MOST_BEHIND], now)
+
+
+def news(key: str, take: Callable[[], None]) -> Callable[[], None]:
+    """``take``, for what was typed into the widget ``key`` and not for what it held before it was given its value."""
+
+    def taken() -> None:
+        held = session.store()
+        told = held.told.get(key, NOTHING)
+        behind = held.said is not None and held.said.get(key, 0.0) < told.when > time.monotonic() - BEHIND_S
+        if not (behind and st.session_state[key] in told.before):
+            take()
+
+    return taken
 
 
 def unheard(key: str) -> bool:

@@ -21,6 +21,7 @@ runs change one session at a time.)
 """
 
 import asyncio
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import wraps
@@ -30,9 +31,13 @@ from streamlit.proto.WidgetStates_pb2 import WidgetStates
 from streamlit.runtime.app_session import AppSession
 from streamlit.runtime.scriptrunner import get_script_run_ctx
 from streamlit.runtime.scriptrunner.script_runner import ScriptRunner
+from streamlit.runtime.state.common import user_key_from_element_id
+
+from robomill.ui import session as sessions
 
 ASKED = "_page_asked_for"
 LEFT = "_parts_registered_before"
+SAID = "_boxes_said_last"
 LAST_WORDS_S = 0.002
 CLICKS = ("trigger_value", "string_trigger_value", "chat_input_value", "json_trigger_value")
 
@@ -78,6 +83,29 @@ def _of_clicks(wanted: Any) -> Any:
     return replace(wanted, widget_states=clicks)
 
 
+def _note_news(session: Any, said: Any) -> None:
+    """Note of which boxes a browser says something new: those that it last said otherwise. Where that is only what they
+    were told, and nothing was clicked, every one of them: one of them is why it speaks."""
+    boxes = {box.id: box for box in said.widget_states.widgets if not _is_click(box)}
+    clicked = len(boxes) < len(said.widget_states.widgets)
+    last = getattr(session, SAID, {})
+    setattr(session, SAID, boxes)
+    if sessions.KEY not in session._session_state:
+        return
+    store, now = session._session_state[sessions.KEY], time.monotonic()
+    keys = {name: str(user_key_from_element_id(name)) for name in boxes}
+    new = {key for name, key in keys.items() if boxes[name] != last.get(name)}
+    told = {key for name, key in keys.items() if _as_told(boxes[name], store.told.get(key))}
+    if new <= told and not (clicked or said.is_auto_rerun):
+        new = set(keys.values())
+    store.said = {**(store.said or {}), **dict.fromkeys(new, now)}
+
+
+def _as_told(box: Any, told: sessions.Told | None) -> bool:
+    """Whether a box holds what was put into it."""
+    return told is not None and getattr(box, box.WhichOneof("value") or "id") == told.put
+
+
 def _is_run(session: Any, said: Any) -> bool:
     """Whether what a browser says is to be run; ``said`` becomes what it asks for."""
     if not said.fragment_id and not said.widget_states.widgets:  # only a way to another page comes without both
@@ -105,6 +133,8 @@ def heeding_pages(request: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(request)
     def heeded(session: Any, said: Any) -> None:
+        if said is not None:
+            _note_news(session, said)
         if said is None or _is_run(session, said):
             request(session, said)
 

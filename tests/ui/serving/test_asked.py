@@ -7,7 +7,9 @@ import pytest
 from streamlit.proto.ClientState_pb2 import ClientState
 from streamlit.runtime.scriptrunner_utils.script_requests import RerunData
 
+from robomill.ui.project import DEFAULT_PRESET, Project, preset_setup
 from robomill.ui.serving.asked import ASKED, awaiting_drawing, hearing_out, heeding_pages
+from robomill.ui.session import KEY, Store, Told
 
 
 def said(page: str, boxes: int = 2, part: str = "", tick: bool = False) -> ClientState:
@@ -23,6 +25,18 @@ def link(page: str) -> ClientState:
     return said(page, boxes=0)
 
 
+class Held(SimpleNamespace):
+    """The state of a session, with a store once it has one."""
+
+    store: Store | None = None
+
+    def __contains__(self, key: str) -> bool:
+        return key == KEY and self.store is not None
+
+    def __getitem__(self, _: str) -> Store | None:
+        return self.store
+
+
 class Session:
     """The runs that a server was asked for, of a page whose parts are all drawn anew as it comes."""
 
@@ -31,7 +45,7 @@ class Session:
         self.gone = gone
         self.left: set[str] = set()
         self._fragment_storage = self
-        self._session_state = SimpleNamespace(_new_widget_state=SimpleNamespace(widget_metadata={}))
+        self._session_state = Held(_new_widget_state=SimpleNamespace(widget_metadata={}))
 
     def registration_sequence(self) -> int:
         return 0
@@ -216,3 +230,59 @@ def test_a_runner_that_has_no_run_yet_gives_way(monkeypatch: pytest.MonkeyPatch)
     ways: list[str] = []
     hearing_out(ways.append)("way")
     assert ways == ["way"]
+
+
+def holding(**boxes: str) -> ClientState:
+    """What a browser says whose boxes hold that."""
+    made = ClientState(page_script_hash="start")
+    for name, text in boxes.items():
+        made.widget_states.widgets.add(id=f"$$ID-0-{name}", string_value=text)
+    return made
+
+
+def clicked(what: ClientState) -> ClientState:
+    what.widget_states.widgets.add(id="$$ID-1-button", trigger_value=True)
+    return what
+
+
+def ticked(what: ClientState) -> ClientState:
+    what.is_auto_rerun = True
+    return what
+
+
+@pytest.mark.parametrize(
+    ("said", "new"),
+    [
+        (holding(feed="3", depth="2"), {"feed"}),
+        (clicked(holding(feed="3", depth="2")), {"feed"}),
+        (ticked(holding(feed="3", depth="2")), {"feed"}),
+        (holding(feed="3", depth="4"), {"feed", "depth"}),
+        (clicked(holding(feed="1", depth="2")), set()),
+        (ticked(holding(feed="1", depth="2")), set()),
+        (holding(feed="1", depth="2"), {"feed", "depth"}),
+        (holding(feed="1", depth="5"), {"feed", "depth"}),
+        (clicked(holding(feed="1", depth="5")), {"depth"}),
+        (ticked(holding(feed="1", depth="5")), {"depth"}),
+        (holding(feed="1", depth="2", speed="7"), {"speed"}),
+    ],
+)
+def test_new_is_what_a_browser_last_said_otherwise_or_else_why_it_speaks(said: ClientState, new: set[str]):
+    """5 was put into the box of the depth, and 2 stood there before. A message with nothing new but that, and without a
+    click, comes for one of its boxes."""
+    one = Session()
+    one.say(holding(feed="1", depth="2"))
+    one._session_state.store = store = Store(Project(preset_setup(DEFAULT_PRESET)))
+    store.told["depth"] = Told("5", ("2",), 0.0)
+    one.say(said)
+    assert set(store.said or {}) == new
+
+
+def test_what_was_new_stays_so_behind_a_tick():
+    """Both may be heard at once."""
+    one = Session()
+    one._session_state.store = store = Store(Project(preset_setup(DEFAULT_PRESET)))
+    one.say(holding(feed="1"))
+    one.say(holding(feed="2"))
+    before = dict(store.said or {})
+    one.say(ticked(holding(feed="2")))
+    assert store.said == before != {}
