@@ -22,7 +22,6 @@ HEIGHT, ASPECT = 285, 1.1  # of the pictures; of the arm's frame: it is whole in
 def start() -> None:
     """What this is, a program to be checked, the reference groove finished before anyone has clicked."""
     project = ui.begin("Start")
-    story.onward()
     setup, unit, dark = project.setup, project.view.length, ui.dark()
     result = ui.attempt(ui.result, setup)
     story.purpose()

@@ -107,6 +107,7 @@ def begin(title: str) -> Project:
     preparing.wait()
     try:
         autosave.take_up()
+        menu.go_on(title)
         session.enter(title)
         arriving.take_up()
         settle()
@@ -181,8 +182,8 @@ def _files(held: session.Store) -> None:
             width="stretch",
         )
     buttons.row(project)
-    if st.button("Keep and compare", key="snapshots", icon=":material/compare:", width="stretch", type="tertiary"):
-        projects.show()
+    inputs.button("Keep and compare", "snapshots", "compare", projects.open_door, width="stretch", type="tertiary")
+    projects.show()
     waiting = held.refused.get("project.file")  # here as well: the open popover lies over the sentence beneath the box
     if waiting:
         error(waiting[1])

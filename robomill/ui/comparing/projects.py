@@ -26,21 +26,32 @@ from robomill.ui.project import (
     project_to_toml,
 )
 
-NAME, CHOSEN, DELETED, CLOSED = (f"snapshots.{word}" for word in ("name", "chosen", "deleted", "closed"))
+NAME, CHOSEN, DELETED, OPEN = (f"snapshots.{word}" for word in ("name", "chosen", "deleted", "open"))
 MOST = 3
 NOTHING = ""
 
 
+def open_door() -> None:
+    """Open the door to kept projects and to B, on this page."""
+    session.keep(OPEN, session.store().page)
+
+
+def _close() -> None:
+    session.drop(OPEN)
+
+
 def show() -> None:
-    """Open the door to kept projects and to B."""
-    session.drop(CLOSED)
-    keep_and_compare()
+    """What is behind the door, while it is open; on another page it is not."""
+    if session.kept(OPEN) == session.store().page:
+        keep_and_compare()
+    else:
+        _close()
 
 
-@st.dialog("Keep and compare", width="large")
+@st.dialog("Keep and compare", width="large", on_dismiss=_close)
 def keep_and_compare() -> None:
     """The projects that this browser keeps, B, and those chosen side by side; closed once a project is taken."""
-    if session.drop(CLOSED):
+    if not session.kept(OPEN):
         st.rerun()
     if why := autosave.trouble():
         st.caption(as_markdown(why))
@@ -134,7 +145,7 @@ def _keep() -> None:
 
 def _open(place: str) -> None:
     autosave.bring_kept(place)
-    session.keep(CLOSED, True)
+    _close()
 
 
 def _delete(place: str) -> None:
@@ -152,16 +163,16 @@ def _put_back() -> None:
 
 def _choose(which: str) -> None:
     other.choose(which)
-    session.keep(CLOSED, True)
+    _close()
 
 
 def _pin() -> None:
     now = session.project()
     other.pin(f"{now.setup.name}, as it was at {autosave.clock(time.time())}", now)
-    session.keep(CLOSED, True)
+    _close()
 
 
 def _take(data: bytes, name: str) -> None:
     new = project_from_file(data, name, session.project())
     other.pin(new.setup.name, new)
-    session.keep(CLOSED, True)
+    _close()

@@ -17,7 +17,7 @@ from robomill.ui.comparing import other
 from robomill.ui.entry import inputs
 from robomill.ui.judged import verdict
 from robomill.ui.pieces import Tile
-from robomill.ui.serving.menu import file_of
+from robomill.ui.serving.menu import head_for
 from robomill.ui.work import job, running
 from robomill.ui.work.job import Underway
 from robomill.units import format_beside, format_limit, format_share, format_si
@@ -78,16 +78,13 @@ def _to_worst(result: SimulationResult) -> None:
     worst = result.decided.sample
     if worst < 0:
         return
-    if st.button(
-        f"Go to worst: line {result.path.block[worst]}",
-        key="bar.worst",
-        icon=":material/my_location:",
-        type="tertiary",
-        width="content",
-        on_click=stand_at,
-        args=(result, worst),
-    ):
-        st.switch_page(file_of("Milling"))
+    label = f"Go to worst: line {result.path.block[worst]}"
+    inputs.button(label, "bar.worst", "my_location", _go_to, result, worst, type="tertiary", width="content")
+
+
+def _go_to(result: SimulationResult, i: int) -> None:
+    stand_at(result, i)
+    head_for("Milling")
 
 
 def stand_at(result: SimulationResult, i: int) -> None:

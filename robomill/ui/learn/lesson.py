@@ -24,7 +24,7 @@ from robomill.ui.posed import fields, push
 from robomill.ui.posed.arm import arm
 from robomill.ui.posed.point import InHand, default_point, in_hand, place
 from robomill.ui.project import Project
-from robomill.ui.serving.menu import file_of
+from robomill.ui.serving.menu import head_for
 from robomill.ui.work import running
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, displacement_scale
@@ -141,13 +141,16 @@ def question(found: InHand) -> None:
         turn = partial(go, revealed=not now.revealed)
         inputs.button(words, "learn.reveal", "visibility", turn, width="stretch", type=tone)
         _answer(found.pose.C, push, now)
-        if now.revealed and st.button(
-            "Measure it in the virtual laboratory", key="learn.laboratory", icon=":material/science:", type="tertiary"
-        ):
-            session.keep("identification.section", "laboratory")
-            st.switch_page(file_of("Identification"))
+        if now.revealed:
+            label = "Measure it in the virtual laboratory"
+            inputs.button(label, "learn.laboratory", "science", _measure, type="tertiary")
     with left, st.container(border=True):
         _push(found.pose, push, now.revealed)
+
+
+def _measure() -> None:
+    session.keep("identification.section", "laboratory")
+    head_for("Identification")
 
 
 def _answer(C: FloatArray, push: AsidePush, now: Lesson) -> None:

@@ -13,7 +13,9 @@ import streamlit as st
 from streamlit.commands import navigation
 from streamlit.navigation.page import StreamlitPage
 
-START = "Start"
+from robomill.ui import session
+
+START, BOUND = "Start", "menu.bound"
 GROUPS = {
     "Result": (START, "Milling"),
     "Set-up": ("Robot", "Toolpath"),
@@ -28,6 +30,19 @@ PAGES = ("Robot", "Workspace", "Compliance", "Identification", "Toolpath", "Mill
 def file_of(title: str) -> str:
     """The file of a page, as links and changes of page want it."""
     return f"pages/{PAGES.index(title) + 1}_{title}.py"
+
+
+def head_for(title: str) -> None:
+    """Another page next: what a button says, and what was clicked is not half done where the page is left meanwhile."""
+    session.keep(BOUND, title)
+
+
+def go_on(title: str) -> None:
+    """From the page ``title`` to where its person is bound."""
+    bound = session.kept(BOUND, title)
+    if bound != title:
+        st.switch_page(file_of(bound))
+    session.drop(BOUND)
 
 
 def grouped(pages: Sequence[StreamlitPage]) -> Mapping[str, list[StreamlitPage]]:

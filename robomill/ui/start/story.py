@@ -3,7 +3,6 @@
 import html
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from robomill.ui.judged.verdict import verdict_sentence
 from robomill.ui.markup import unparted
 from robomill.ui.posed.push import decided
 from robomill.ui.project import Project, View
-from robomill.ui.serving.menu import file_of
+from robomill.ui.serving.menu import file_of, head_for
 from robomill.ui.work import cached
 from robomill.units import format_beside, format_count, format_si, format_times
 from robomill.viz.rendered.picture import SurfacePicture
@@ -33,10 +32,9 @@ from robomill.viz.views import surface_picture
 
 PURPOSE = "robomill predicts how far a milling robot is pushed off its path by the cutting force, and why."
 DOORS = (
-    ("I design robots", "Which joint is worth stiffening?", file_of("Improve"), "Stiffen a joint"),
-    ("I teach", "Why does a robot bend sideways?", file_of("Learn"), "Start the lesson"),
+    ("I design robots", "Which joint is worth stiffening?", "Improve", "Stiffen a joint"),
+    ("I teach", "Why does a robot bend sideways?", "Learn", "Start the lesson"),
 )
-CHECKED = "start.checked"
 OPENED, STIFFEN = "improve.remedy", "stiffen"  # what the Improve page shows opened
 KINDS = {"user": "of your own"}  # as one counts them; the others are their own word
 
@@ -148,12 +146,15 @@ def doors(take: Callable[[bytes, str], None]) -> None:
 
 def _lead(page: str, label: str) -> None:
     """To the page of a door, which opens at what the door says."""
-    if page == file_of("Learn"):
-        st.page_link(page, label=label, icon=":material/arrow_forward:")
+    if page == "Learn":
+        st.page_link(file_of(page), label=label, icon=":material/arrow_forward:")
         return
-    open_at = partial(session.keep, OPENED, STIFFEN)
-    if st.button(label, key="start.stiffen", icon=":material/arrow_forward:", on_click=open_at):
-        st.switch_page(page)
+    inputs.button(label, "start.stiffen", "arrow_forward", _stiffen)
+
+
+def _stiffen() -> None:
+    session.keep(OPENED, STIFFEN)
+    head_for("Improve")
 
 
 def _door(title: str, text: str) -> None:
@@ -161,16 +162,10 @@ def _door(title: str, text: str) -> None:
 
 
 def _then(take: Callable[[bytes, str], None]) -> Callable[[bytes, str], None]:
-    """``take``, and what was taken is asked about on the toolpath page, which ``onward`` leads to."""
+    """``take``, and to the toolpath page, where a program is asked what it cuts."""
 
     def taken(data: bytes, name: str) -> None:
         take(data, name)
-        session.keep(CHECKED, True)
+        head_for("Toolpath")
 
     return taken
-
-
-def onward() -> None:
-    """To the toolpath, where a program that was just dropped is asked what it cuts."""
-    if session.drop(CHECKED):
-        st.switch_page(file_of("Toolpath"))
