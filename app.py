@@ -7,8 +7,7 @@ from streamlit.starlette import App
 
 from robomill import ui
 from robomill.learn.worked import of_the_run
-from robomill.ui.comparing import other
-from robomill.ui.judged.verdict import NOT_COUNTED, tiles_of_b
+from robomill.ui.judged.verdict import NOT_COUNTED
 from robomill.ui.judged.worked import mathematics
 from robomill.ui.posed.arm import arm_at
 from robomill.ui.serving import front
@@ -36,7 +35,7 @@ def start() -> None:
     lead = f"{ui.verdict_beside(result, unit)} {story.cause(result, unit)}".strip()
     ui.headline(f"Start · {setup.name}", ui.verdict_headline(result, unit), lead)
     ui.open_question(result)
-    other.tiles(ui.verdict_tiles(result, unit), tiles_of_b)
+    ui.verdict_row(result, unit)
     mathematics(lambda: of_the_run(result, result.decided.sample), "start")
 
     left, middle, right = ui.split([1, 1.2, 0.8], "finished", gap="small")

@@ -46,8 +46,8 @@ from robomill.ui.judged.verdict import (
     headline as verdict_headline,
     open_question,
     tip_tile,
+    verdict_row,
     verdict_sentence,
-    verdict_tiles,
 )
 from robomill.ui.pieces import Tile, attempt, figure, headline, note, split, thirds, tiles
 from robomill.ui.project import Project, View
@@ -75,6 +75,6 @@ __all__ = [
     "tip_tile",
     "verdict_beside",
     "verdict_headline",
+    "verdict_row",
     "verdict_sentence",
-    "verdict_tiles",
 ]

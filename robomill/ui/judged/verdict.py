@@ -1,6 +1,6 @@
 """The verdict as start, robot, toolpath and milling show it: its tiles, its one sentence and what it leaves out."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -29,12 +29,26 @@ WORDS = TITLES
 TONES = {"unreached": "out", "missed": "out"}  # the others are their own
 OPEN = "open"  # hatched: nobody has said yet what is cut
 NOTHING = {"unreached": "nothing reached", "unjudged": "not judged"}
+SEARCHED = "between which ends: being worked out"  # about as long as what comes
 NOT_COUNTED = f"Left out: {', '.join(LEFT_OUT)}."
+
+
+def verdict_row(result: SimulationResult, unit: str = "mm", dressed: Callable[[list[Tile]], list[Tile]] = list) -> None:
+    """The tiles, ``dressed`` as the page likes, with those of B; beneath them how far the search for the ends is, which
+    stands and goes without moving them."""
+    row = st.container()
+    with st.container():
+        made = verdict_tiles(result, unit)
+    with row:
+        other.tiles(dressed(made), tiles_of_b)
 
 
 def verdict_tiles(result: SimulationResult, unit: str = "mm") -> list[Tile]:
     """What a gauge would read of walls and floors, the tip's deviation as detail, and the verdict."""
-    made, found = plain_tiles(result, unit), widest_first(ranges_of(result))
+    made, searched = plain_tiles(result, unit), ranges_of(result)
+    if searched is None:
+        return [replace(tile, ranges=[SEARCHED]) if tile.value != "–" else tile for tile in made.values()]
+    found = widest_first(searched)
     words = {name: [range_words(each, name, unit) for each in found[:1]] for name in made}
     if out_over(result.verdict, found):
         words["share"].append("so it could be out of tolerance")
@@ -66,9 +80,13 @@ def tiles_of_b(project: Project) -> list[Tile]:
     return list(plain_tiles(other.result(project.setup), project.view.length).values())
 
 
-def ranges_of(result: SimulationResult) -> tuple[Range, ...]:
-    """Between which ends the verdict's numbers may lie instead, from the cache; none while that is being found."""
-    return pieces.attempt(_ranges, result, session.known(result.setup)) or ()
+def ranges_of(result: SimulationResult) -> tuple[Range, ...] | None:
+    """Between which ends the verdict's numbers may lie instead, from the cache; None while that is being found."""
+    try:
+        return pieces.underway(_ranges, result, session.known(result.setup))
+    except RobomillError as exc:
+        pieces.error(exc)
+        return ()
 
 
 @cached.shared(

@@ -1,6 +1,7 @@
 """The milling page's body: inputs on the left; the cut with its scrubber, and three questions that share it."""
 
 import dataclasses
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,9 @@ from robomill.learn.worked import of_the_run
 from robomill.simulation.origin.spread import AlloySpread, alloy_spread, peak_force
 from robomill.simulation.result import SimulationResult
 from robomill.ui import pieces, session
-from robomill.ui.comparing import other
 from robomill.ui.entry import inputs, tools as tools_panel
 from robomill.ui.judged import evidence as evidence_panel
-from robomill.ui.judged.verdict import NOT_COUNTED, tiles_of_b, verdict_tiles
+from robomill.ui.judged.verdict import NOT_COUNTED, verdict_row
 from robomill.ui.judged.worked import mathematics
 from robomill.ui.milling import (
     cut as cut_panel,
@@ -154,7 +154,7 @@ def _numbers(result: SimulationResult, i: int, spread: AlloySpread | None) -> No
     """What holds at the position, and the verdict's tiles."""
     linked.where(result, i, spread)
     pieces.note(f"{_mean_and_peak(result)}{NOT_COUNTED}")
-    other.tiles(tiles(result, verdict_tiles(result, session.project().view.length)), tiles_of_b)
+    verdict_row(result, session.project().view.length, partial(tiles, result))
     mathematics(lambda: of_the_run(result, result.decided.sample), "milling")
     if result.worst >= 0:
         st.page_link(file_of("Improve"), label="What would fix it?", icon=":material/build:")
