@@ -168,22 +168,23 @@ def test_no_page_jumps_as_it_comes(page: Any, url: str) -> None:
     assert max(moved.values()) < 0.2, "0.1 is the aim on a quiet machine"
 
 
-BEFORE_ITS_PICTURE = """() => {
+BEFORE_ITS_PICTURE = """(split) => {
     document.querySelector('[data-testid="stApp"]').dataset.testScriptState = 'running';
-    const [first, last] = document.querySelector('.st-key-split-page [data-testid="stColumn"]').parentElement.children;
+    const [first, last] = document.querySelector(`.${split} [data-testid="stColumn"]`).parentElement.children;
     last.replaceChildren();
     return first.getBoundingClientRect().top - last.getBoundingClientRect().top;
 }"""
 
 
-@pytest.mark.parametrize("name", ["Robot", "Workspace", "Compliance"])
+@pytest.mark.parametrize("name", ["Robot", "Workspace", "Compliance", "Milling"])
 def test_what_is_drawn_last_and_stands_first_has_its_room_before_it_comes(page: Any, url: str, name: str) -> None:
     """In a narrow window: what is typed stood in its place until then, and was pushed out of sight."""
     page.set_viewport_size({"width": 1024, "height": 768})
     page.goto(f"{url}/{name}")
-    page.locator(".st-key-split-page").wait_for()
+    split = "st-key-split-milling" if name == "Milling" else "st-key-split-page"
+    page.locator(f".{split}").wait_for()
     idle(page)
-    assert page.evaluate(BEFORE_ITS_PICTURE) > 400
+    assert page.evaluate(BEFORE_ITS_PICTURE, split) > 400
 
 
 def test_without_webgl_a_sentence_and_the_rendered_picture_stand_there(page: Any, url: str) -> None:
