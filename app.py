@@ -22,19 +22,21 @@ def start() -> None:
     """What this is, a program to be checked, the reference groove finished before anyone has clicked."""
     project = ui.begin("Start")
     setup, unit, dark = project.setup, project.view.length, ui.dark()
-    result = ui.attempt(ui.result, setup)
     story.purpose()
+    head, waits = st.container(), st.container(key="start-waits")
+    with waits:
+        result = ui.attempt(ui.result, setup)
     if result is None:
-        ui.headline(f"Start · {setup.name}", "Nothing is computed yet.")
-        ui.note(
-            "Where numbers above were refused, undo the last change, or mend it on the Robot, Toolpath or Milling page."
-        )
+        refused = "Where a number was refused, undo the last change, or mend it on the Robot, Toolpath or Milling page."
+        with head:
+            ui.headline(f"Start · {setup.name}", "Nothing is computed yet.", refused)
         story.doors(take_file)
         st.stop()
 
     lead = f"{ui.verdict_beside(result, unit)} {story.cause(result, unit)}".strip()
-    ui.headline(f"Start · {setup.name}", ui.verdict_headline(result, unit), lead)
-    ui.open_question(result)
+    with head:
+        ui.headline(f"Start · {setup.name}", ui.verdict_headline(result, unit), lead)
+        ui.open_question(result)
     ui.verdict_row(result, unit)
     mathematics(lambda: of_the_run(result, result.decided.sample), "start")
 
