@@ -98,8 +98,7 @@ def _by_broyden(g: Push, start: FloatArray) -> Settled:
             (x, f), H = best, -np.eye(3) / (1.0 + count / RESTART)
     if np.isfinite(f).all():
         x, f = best
-    rest = float(np.abs(f).max()) if np.isfinite(f).all() else float("nan")
-    return Settled(x, rest, count, gain, ((x, 1.0),))
+    return Settled(x, float(np.abs(f).max()), count, gain, ((x, 1.0),))
 
 
 def _by_height(g: Push, free: FloatArray, axis: FloatArray) -> Settled:
