@@ -140,3 +140,18 @@ def test_a_part_lies_in_the_foot_of_an_arm_within_five_centimetres_of_its_axis_a
 ) -> None:
     words = [*_of_robot(rm.load_robot("slavkovic_5r"), 1e-3 * np.array(zero_mm))]
     assert ["lies in the foot of the robot" in each for each in words] == [True] * told
+
+
+@pytest.mark.parametrize(("long_mm", "told"), [(1.9, True), (2.1, False)])
+def test_a_path_is_a_speck_within_two_millimetres(long_mm: float, told: bool) -> None:
+    path = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [long_mm, 0, -2]], feed_mm_min=1800)
+    assert ["The whole path lies" in each for each in doubted(source=path)] == [True] * told
+
+
+@pytest.mark.parametrize(("long_mm", "short"), [(1.9, True), (2.1, False)])
+def test_a_tool_is_short_within_two_millimetres(long_mm: float, short: bool) -> None:
+    """Whatever way it points; and only one that is not short shows by its z_T on which side its flange stands."""
+    robot = rm.load_robot("slavkovic_5r").replace(tool_xyz=[0.6e-3 * long_mm, 0.0, 0.8e-3 * long_mm])
+    told = ["The tool ends" in each for each in _of_robot(robot, np.array([1.0, 0.0, 0.0]))]
+    assert told == [True] * short
+    assert bool(frame_notes(six(tool_xyz_mm=[0, 0, long_mm]))) != short
