@@ -291,7 +291,7 @@ class Coupling:
     def why(self) -> str:
         """What is left where they do not agree, and how the force changes there: by a jump where its last change was
         slower than the tool's, which alone would have settled."""
-        open_ = [each for each in self.settled if not each.agreed]
+        open_ = [each for each in self.settled if np.isfinite(each.rest) and not each.agreed]
         worst = max(open_, key=lambda each: each.rest)
         steep = f"the force, times the compliance, changes {worst.gain:.1f} times as fast as the tool's place"
         jumps = "the tool just touches, and its force jumps from one place to the next"
