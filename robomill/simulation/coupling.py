@@ -98,8 +98,7 @@ def _by_broyden(g: Push, start: FloatArray) -> Settled:
             (x, f), H = best, -np.eye(3) / (1.0 + count / RESTART)
     if np.isfinite(f).all():
         x, f = best
-    rest = float(np.abs(f).max()) if np.isfinite(f).all() else float("nan")
-    return Settled(x, rest, count, gain, ((x, 1.0),))
+    return Settled(x, float(np.abs(f).max()), count, gain, ((x, 1.0),))
 
 
 def _by_height(g: Push, free: FloatArray, axis: FloatArray) -> Settled:
@@ -292,7 +291,7 @@ class Coupling:
     def why(self) -> str:
         """What is left where they do not agree, and how the force changes there: by a jump where its last change was
         slower than the tool's, which alone would have settled."""
-        open_ = [each for each in self.settled if not each.agreed]
+        open_ = [each for each in self.settled if np.isfinite(each.rest) and not each.agreed]
         worst = max(open_, key=lambda each: each.rest)
         steep = f"the force, times the compliance, changes {worst.gain:.1f} times as fast as the tool's place"
         jumps = "the tool just touches, and its force jumps from one place to the next"

@@ -61,5 +61,5 @@ def _rim(setup: SimulationSetup, path: Toolpath) -> FloatArray:
 
 def _unbroken(length: FloatArray, goes_on: BoolArray) -> FloatArray:
     """(m,) sums of ``length`` (m,) since ``goes_on`` (m,) was last False; 0 there."""
-    total = np.cumsum(np.where(goes_on, length, 0.0))
+    total = np.cumsum(length)
     return np.asarray(total - np.maximum.accumulate(np.where(goes_on, 0.0, total)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robomill.simulation.corners import STEEP, UPRIGHT, Ways, _aside, at_corners
+from robomill.simulation.corners import FARTHEST, STEEP, UPRIGHT, Ways, _aside, at_corners
 
 
 def staircase(step: float) -> tuple[np.ndarray, np.ndarray]:
@@ -85,3 +85,41 @@ def test_a_cut_that_runs_straight_on_beyond_its_corner_is_linked_by_the_line_tha
     s, meets = at_corners(q, up, np.array([0, 1, 1, 2, 3, 4, 4]), nearest, Ways.of(cut, up[:5]))
     assert np.flatnonzero(meets).tolist() == [3, 4]
     np.testing.assert_allclose(s, [0.0, 10e-3, 20e-3, 20e-3, 20e-3, 30e-3, 40e-3])
+
+
+def stepped(up: float, *ends: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Along X for 20 mm, straight up, and along X for as far again, every 0.1 mm: where a path in lines that end so far
+    along it, m, keeps to it, and which samples belong to its corners."""
+    z = np.round(1e4 * up)
+    n = np.arange(401 + z)
+    p = np.column_stack([np.minimum(n, 200) + np.maximum(n - 200 - z, 0), 0 * n, np.clip(n - 200, 0, z)]) * 1e-4
+    s, k = n * 1e-4, np.tile([0.0, 0.0, 1.0], (len(n), 1))
+    line = np.searchsorted(np.array(ends) + 1e-6, s)
+    return s, *at_corners(p, k, line, s, Ways.of(p, k))
+
+
+@pytest.mark.parametrize("up", [20e-3, 6e-3, 5e-3])
+@pytest.mark.parametrize("share", [0.05, 0.19, 0.21, 0.35, 0.46, 0.54, 0.65, 0.79, 0.81, 0.95])
+def test_a_line_ends_at_the_nearer_corner_and_at_none_that_is_further_along_than_twice_the_farthest(
+    up: float, share: float
+) -> None:
+    """In the way up, where it lies above both corners or below them, no way aside of either."""
+    at = np.round(20e-3 + share * up, 4)
+    s, found, meets = stepped(up, at)
+    within = [abs(at - corner) <= min(2.0 * FARTHEST, 0.5 * up) + 1e-9 for corner in (20e-3, 20e-3 + up)]
+    end, expected = int(np.argmin(np.abs(s - at))), s.copy()
+    assert np.flatnonzero(meets).tolist() == [end] * any(within)
+    if within[0]:
+        expected[: end + 1] = np.minimum(expected[: end + 1], 20e-3)
+    if within[1]:
+        expected[end:] = np.maximum(expected[end:], 20e-3 + up)
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("behind", [True, False])
+def test_a_line_that_ends_nearer_to_a_corner_that_has_its_own_is_of_none(behind: bool) -> None:
+    """Up by 6 mm, lines end at one of the corners and 2.8 mm from it."""
+    corner, other = (20e-3, 22.8e-3) if behind else (26e-3, 23.2e-3)
+    s, found, meets = stepped(6e-3, *sorted((corner, other)))
+    assert np.flatnonzero(meets).tolist() == [int(np.argmin(np.abs(s - corner)))]
+    np.testing.assert_allclose(found, s, atol=1e-12)

@@ -213,3 +213,15 @@ def test_what_does_not_agree_says_whether_the_force_jumps_or_is_too_steep(gain: 
     found = Coupling((open_,), (7,), 0.0)
     assert words in found.finding.message
     assert "0.9 µm remain after 171 evaluations" in found.finding.message
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 3), (3, 2, 1, 0), (1, 3, 0, 2)])
+def test_what_is_told_of_steps_that_do_not_agree_is_that_of_the_worst(order):
+    """Whatever stands beside it: steps that agree, that are nearer, and that have no number at all."""
+    worst = Settled(np.zeros(3), 30e-6, 40, 2.5, ())
+    others = [Settled(np.zeros(3), rest, 7, 9.0, ()) for rest in (np.nan, 0.0, 2.0 * TOLERANCE)]
+    told = [*others, worst]
+    alone = Coupling((worst,), (3,), 0.0).why
+    assert Coupling(tuple(told[n] for n in order), (3,), 0.0).why == alone
+    assert "after 40 evaluations" in alone
+    assert "2.5 times as fast" in alone

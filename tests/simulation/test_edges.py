@@ -100,3 +100,12 @@ def test_a_way_past_the_corner_and_back_is_two_ways_along_the_side() -> None:
     path = rm.Toolpath.from_points(p_mm=p, feed_mm_min=[0.0, *[900.0] * (len(x) - 1)])
     (found,) = edge_notes(pocket(0.04), path)
     assert f"for up to {55.0 + 30.0:.1f} mm" in found.message.replace("\u00a0", " ")
+
+
+@pytest.mark.parametrize("begin", [(-51, -10), (51, -10), (-10, -16), (-10, 16)])
+def test_each_side_is_looked_at(begin: tuple[int, int]) -> None:
+    """One cut along each of the four, 20 mm long."""
+    along = np.array([0.0, 20.0] if abs(begin[0]) == 51 else [20.0, 0.0])
+    path = rm.Toolpath.from_points(p_mm=[[*begin, -2.0], [*(begin + along), -2.0]], feed_mm_min=900)
+    (found,) = edge_notes(pocket(0.04), path)
+    assert "1 side of the stock, for up to 20.0 mm" in found.message.replace("\u00a0", " ")

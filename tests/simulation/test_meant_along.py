@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import shapely
 
-from robomill.simulation.meant import LINK, _places, _untold
+from robomill.progress import Progress, watched
+from robomill.simulation.meant import LINK, _aligned, _places, _untold
 
 
 @pytest.mark.parametrize("said", [False, True])
@@ -56,3 +57,13 @@ def test_samples_belong_where_they_are_along_a_cut_and_the_worst_is_off_it_or_le
         bad.append(max(float(np.linalg.norm(q[n] - found[n])), out, behind))
     assert worst == pytest.approx(max(bad), abs=1e-12)
     assert at == int(np.argmax(bad))
+
+
+def test_it_is_told_how_many_samples_have_been_placed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """After every fifth of 24."""
+    monkeypatch.setattr("robomill.simulation.meant.SAID", 5)
+    p, told = np.outer(np.arange(24), [1e-3, 0.0, 0.0]), list[float]()
+    way = np.tile([1.0, 0.0, 0.0], (24, 1))
+    with watched(Progress(say=lambda progress: told.append(progress.share))):
+        np.testing.assert_array_equal(_aligned(p, way, p, way), np.arange(24))
+    assert told == pytest.approx([5 / 24, 10 / 24, 15 / 24, 20 / 24])

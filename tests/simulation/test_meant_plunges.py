@@ -81,3 +81,13 @@ def test_above_the_top_of_what_was_told_a_plunge_is_meant_to_be_there() -> None:
     _bottoms(p, path, wanted, every, every)
     np.testing.assert_allclose(p[2:6, 2], np.minimum(path.p[2:6, 2] - 0.1e-3, 1e-3), atol=1e-12)
     np.testing.assert_allclose(p[2:6, 0], 10e-3, atol=1e-12)
+
+
+@pytest.mark.parametrize("at", [2, 3, 4])
+def test_a_way_down_that_leads_aside_at_any_of_its_samples_is_left_alone(at: int) -> None:
+    straight, path, every = plunged(10.0, 4.0, -3.0), plunged(10.1, 5.5, -2.9), np.arange(7)
+    for aside, led in ((0.9 * LINK, True), (1.2 * LINK, False)):
+        bent, p = straight.p.copy(), path.p.copy()
+        bent[at, 1] += aside
+        _bottoms(p, path, path_of(bent, straight.cutting), every, every)
+        assert (p != path.p).any() == led

@@ -13,6 +13,7 @@ from robomill.arrays import FloatArray
 from robomill.cutting.forces.along_path import PathForce
 from robomill.io.samples import samples_dir
 from robomill.simulation.enlarged import Enlarged, enlarged, so_far
+from robomill.simulation.painted import AROUND, wall_error
 from robomill.simulation.result import SimulationResult
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
@@ -150,3 +151,44 @@ def test_a_slope_whose_tool_lags_behind_is_painted_as_a_floor_that_is_off_in_hei
     x, y = np.meshgrid(shown.drawn.x, shown.drawn.y, indexing="ij")
     floor = (np.abs(x) < 15e-3) & (np.abs(y) < 2e-3)
     assert shown.error[floor] == pytest.approx(-0.01e-3, abs=1e-7)
+
+
+@pytest.mark.parametrize(("dx", "dy"), [(0.1e-3, 0.2e-3), (0.2e-3, 0.1e-3)])
+def test_a_step_that_stands_further_from_every_wall_than_a_step_and_four_cells_is_one_between_floors(
+    pocket: SimulationResult, dx: float, dy: float
+) -> None:
+    """Drawn ever further from a wall along X that is read every 1 mm: where one of these is near, it has its error."""
+    lines = ["G0 X-35 Y0 Z5", "G0 Z-4", "G1 X35 F900", "G0 Z5"]
+    setup = pocket.setup.replace(source=GCodeSource("\n".join(["G21 G90 S12000 M3", *lines, "M2", ""])))
+    made, shown = rm.simulate(setup), enlarged(pocket, 1.0)
+    error, step = np.where(made.path.cutting, 0.1e-3, 0.0)[:, None], setup.step
+    made = dataclasses.replace(made, delta=error * made.R_MF[:, 1])
+    x, y = np.arange(-4e-3, 4e-3, dx), np.arange(R, R + 5e-3, dy)
+    far = y - R - 0.1e-3
+    least, most = (np.sqrt(np.maximum((step + 4.0 * max(dx, dy)) ** 2 - over**2, 0.0)) for over in (0.5 * step, 0.0))
+    for edge in range(4, len(y) - 4):
+        z = np.where(np.arange(len(y)) < edge, -4e-3, 0.0) * np.ones((len(x), 1))
+        found = wall_error(made, dataclasses.replace(shown.drawn, x=x, y=y, z=z), 1.0)
+        beside = slice(edge - AROUND, edge + AROUND)
+        near, none = (np.abs(far[beside]) < least - 1e-9), (np.abs(far[beside]) > most + 1e-9)
+        assert np.isnan(found[:, : edge - AROUND]).all()
+        assert np.isnan(found[:, edge + AROUND :]).all()
+        assert found[:, beside][:, near] == pytest.approx(-0.1e-3, abs=1e-9)
+        assert np.isnan(found[:, beside][:, none]).all()
+
+
+def test_a_rib_that_two_walls_have_moved_over_has_on_either_side_the_error_of_its_own_wall(
+    pocket: SimulationResult,
+) -> None:
+    """1.2 mm thick, told tenfold: the one moves 1 mm into it, the other 0.4 mm. From the middle of the way of the one
+    to where the other has come it is 0.3 mm."""
+    lines = [line for y in (0, 9.2) for line in ("G0 X-35 Z5", f"G0 Y{y}", "G0 Z-2", "G1 X35 F900", "G0 Z5")]
+    made = rm.simulate(pocket.setup.replace(source=GCodeSource("\n".join(["G21 G90 S12000 M3", *lines, "M2", ""]))))
+    aside = np.where(made.path.p[:, 1] < 5e-3, 0.1e-3, -0.04e-3) * made.path.cutting
+    shown = enlarged(dataclasses.replace(made, delta=aside[:, None] * made.R_MF[:, 1]), 10.0)
+    x, y = np.meshgrid(shown.drawn.x, shown.drawn.y, indexing="ij")
+    middle = np.abs(x) < 10e-3
+    for low, high, error in ((4.1e-3, 4.6e-3, -0.1e-3), (4.85e-3, 5.1e-3, -0.04e-3)):
+        some = middle & (y > low) & (y < high)
+        assert some.sum() > 50
+        assert shown.error[some] == pytest.approx(error, abs=1e-9)

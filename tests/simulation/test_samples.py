@@ -82,6 +82,26 @@ def test_creeping_is_moving():
     assert kept.p[-1, 0] > p[-1, 0] - 1.01 * STILL
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_step_is_kept_where_it_ends_further_than_the_limit_from_where_the_tool_last_moved_to(seed):
+    """One by one, on both sides of zero: a long step is always kept, whatever it is measured from."""
+    rng = np.random.default_rng(seed)
+    p = np.zeros((60, 3))
+    p[1:, :2] = np.cumsum(STILL * rng.choice([0.3, 0.7, 1.5], (59, 1)) * rng.choice([-1.0, 1.0], (59, 2)), axis=0)
+    kept = [0]
+    for i in range(1, 60):
+        from_last, step = (np.linalg.norm(p[i] - p[j]) for j in (kept[-1], i - 1))
+        if step > STILL or from_last > STILL:
+            kept.append(i)
+    np.testing.assert_array_equal(moving(toolpath(p)).block, kept)
+
+
+def test_a_step_of_just_the_limit_is_none():
+    p = np.outer([0.0, 0.5, 1.0, 1.5, 3.5], [STILL, 0.0, 0.0])
+    assert moving(toolpath(p)).block.tolist() == [0, 3, 4]
+    assert moving(toolpath(p[[0, 2, 4]])).block.tolist() == [0, 2]
+
+
 def test_turning_on_the_spot_is_kept_and_goes_the_way_of_the_step_after_it():
     k = np.array([[0, 0, 1.0], [0, 0, 1.0], [0, np.sin(0.1), np.cos(0.1)], [0, np.sin(0.2), np.cos(0.2)], [0, 0, 1.0]])
     p = np.array([[0, 0, 0], [1, 0, 0], [1, 0, 0], [1, 0, 0], [1, 2, 0]]) * 1e-2

@@ -123,8 +123,8 @@ def _slopes(told: CutConditions, path: Toolpath, tips: FloatArray) -> FloatArray
     step = np.where(path.cutting, path.step_length, 0.0)
     s = np.cumsum(step)
     down, fall = np.cumsum(fallen(path, tips)), fallen(path, path.p)
-    kind = np.where(path.cutting, np.where(told.mostly_axial, 2, 1), 0)
-    begins = np.append(True, kind[1:] != kind[:-1])
+    on_its_way = path.cutting & ~told.mostly_axial
+    begins = np.append(True, on_its_way[1:] != on_its_way[:-1])
     first = np.maximum.accumulate(np.where(begins, np.arange(len(s)), 0))
     before = np.where(begins, down - fall, np.append(down[:1], down[:-1]))
     area = np.cumsum(0.5 * (down + before) * step)

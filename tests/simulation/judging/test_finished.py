@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from robomill.arrays import FloatArray
 from robomill.cutting.forces.along_path import PathForce
 from robomill.cutting.tool import Cutter
 from robomill.io.samples import samples_dir
-from robomill.simulation.judging.finished import Finished, Spread, _bend
+from robomill.simulation.judging.finished import Finished, Spread, _bend, _swept
 from robomill.simulation.result import SimulationResult
 from robomill.surface.stock import Stock
 from robomill.toolpath.source import GCodeSource
@@ -179,3 +180,26 @@ def test_a_path_bends_at_its_corners_half_before_and_half_after() -> None:
         assert (on[0], on[-1]) == pytest.approx((first, last), abs=1e-6)
         np.testing.assert_allclose(on[1:-1], 0.0, atol=1e-6)
     assert not bend[~np.isin(block, (4, 5, 6, 10, 11))].any()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_swept_is_what_two_moves_pass_over_to_and_from_the_nearest_sample_and_its_own_place(seed: int) -> None:
+    """Of steps longer than the cutters are wide, by distances to lines; some of the steps cut nothing."""
+    rng, m = np.random.default_rng(seed), 12
+    p = np.cumsum(rng.normal(0.0, 6e-3, (m, 3)), axis=0)
+    removes, radius = np.append(False, rng.random(m - 1) < 0.8), rng.choice([2e-3, R], m)
+    sample = np.unique(np.append(rng.permutation(m)[:8], [0, m - 1]))
+    xy = rng.uniform(p[:, :2].min(axis=0) - R, p[:, :2].max(axis=0) + R, (1500, 2))
+    points, expected = shapely.points(xy), np.zeros(len(xy), dtype=bool)
+    for wide in np.unique(radius[sample]):
+        own = sample[radius[sample] == wide]
+        off = np.array([shapely.distance(points, shapely.Point(p[i, :2])) for i in own])
+        for n, i in enumerate(own):
+            nearest = np.argmin(off, axis=0) == n
+            moves = [end for end in (i, i + 1) if 0 < end < m and removes[end]]
+            ways = [shapely.LineString(p[end - 1 : end + 1, :2]) for end in moves]
+            near = shapely.distance(points, shapely.GeometryCollection([shapely.Point(p[i, :2]), *ways])) <= wide
+            expected |= nearest & near
+    made = SimpleNamespace(path=SimpleNamespace(p=p), removes=removes)
+    np.testing.assert_array_equal(_swept(made, sample, radius, xy), expected)  # type: ignore[arg-type]
+    assert 100 < expected.sum() < 1400

@@ -388,3 +388,4 @@ def test_a_blind_slot_has_a_wall_behind_its_begin_and_one_ahead_of_its_end():
         np.testing.assert_allclose(ends.out[there], np.tile([out, 0.0, 0.0], (there.sum(), 1)), atol=1e-12)
         np.testing.assert_allclose(ends.material_left[there], left, atol=1e-12)
     assert len({*np.round(ends.place[:, 0], 9).tolist()}) == 2
+    np.testing.assert_allclose(ends.own, 0.1e-3, atol=1e-12)

@@ -177,3 +177,15 @@ def test_an_arc_of_few_chords_has_its_inner_wall_at_every_one(turn: float) -> No
     assert len(on_arc) == len(angle) - 2
     assert {*on_arc.tolist()} <= {*walls.sample[inner & (walls.length > 0.0)].tolist()}
     np.testing.assert_allclose(walls.error[inner], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("bend", "around"), [(4.0, False), (-4.8, False), (5.2, True), (-9.0, True)])
+def test_walls_are_looked_for_all_around_where_a_path_turns_by_more_than_five_degrees(bend: float, around: bool):
+    """Readings that stand for no length are those that are not beside the path."""
+    x, y = 40.0 * np.cos(np.radians(bend)), 40.0 * np.sin(np.radians(bend))
+    made = run("G0 X-40 Y0 Z5", "G0 Z-2", "G1 X0 F1800", f"G1 X{x:.6f} Y{y:.6f}")
+    walls = pushed(made, left=0.1e-3).gauge.walls
+    near = np.abs(made.path.p[walls.sample, 0]) < 1.5e-3
+    assert (walls.length[near] > 0.0).any()
+    assert (walls.length[near] == 0.0).any() == around
+    assert (walls.length[~near & (np.abs(made.path.p[walls.sample, 0]) < 20e-3)] > 0.0).all()

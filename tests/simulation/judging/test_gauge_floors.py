@@ -10,7 +10,8 @@ import pytest
 
 import robomill as rm
 from robomill.cutting.tool import Cutter
-from robomill.simulation.judging.gauge import ACROSS, AROUND, BESIDE_ROOT, CROWN, LOOK, ON_NOSES, RIM, _under
+from robomill.simulation.judging.gauge import ACROSS, AROUND, BESIDE_ROOT, CROWN, LOOK, ON_NOSES, RIM, _under, gauge
+from robomill.surface.outline import Outline
 from robomill.surface.stock import Stock
 from tests.simulation.judging.pushed_runs import R, pushed, run
 
@@ -207,3 +208,26 @@ def test_from_a_tool_into_the_part_floors_lie_beneath_it_and_what_noses_leave_be
         way = (beside.place - middle) * [0.0, 1.0, 1.0]
         np.testing.assert_allclose(beside.out, way / np.linalg.norm(way, axis=1, keepdims=True), atol=1e-4)
         assert len(beside.out)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.01, 0.05, 0.09, 0.2, 0.7])
+def test_a_slope_that_has_gone_aside_is_one_floor_up_to_how_steep_its_heel_is_at_the_rim(
+    slope: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By differences of what the heel of a flat end leaves on its way up, slope (x + sqrt(R^2 - y^2)); no more than
+    CROWN, and where the path is steeper than that as much as the path."""
+    y, step = np.array([RIM * R, RIM * R + 1e-9, RIM * R - 1e-9]), 2e-9
+    heel = np.sqrt(R**2 - y**2)
+    steepest = slope * np.hypot(1.0, (heel[2] - heel[1]) / step)
+    asked, floors = [], Outline.floors
+
+    def spied(self: Outline, places: object, offset: object, slack: np.ndarray) -> object:
+        asked.append(slack)
+        return floors(self, places, offset, slack)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Outline, "floors", spied)
+    made = run("G0 X-40 Y0 Z60", f"G0 Z{-3.0 - 40.0 * slope}", f"G1 X40 Z{-3.0 + 40.0 * slope} F1800")
+    gauge(pushed(made, left=0.03e-3))
+    expected = slope if slope >= CROWN else min(steepest, CROWN)
+    assert len(asked[0]) > 20
+    np.testing.assert_allclose(asked[0], 0.03e-3 * expected, rtol=1e-5)

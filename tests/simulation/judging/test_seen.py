@@ -107,3 +107,21 @@ def test_a_cut_that_is_all_judged_counts_its_passes_through_air() -> None:
     twice = run(*SLOT, "G1 X-30", cutter=MILL, engagement=True, force=SETUP.force)
     assert not twice.not_judged.any()
     assert (twice.judged & (twice.path.block == 5)).any()
+
+
+def test_of_a_way_at_feed_that_meets_nothing_none_is_judged_where_its_force_is_unknown() -> None:
+    air = run("G0 X-30 Y0 Z8", "G1 X30 F1800")
+    unknown = replace(air, F=np.where(air.path.cutting[:, None], np.nan, air.F))
+    assert unknown.not_judged.any()
+    assert not unknown.judged.any()
+    assert not unknown.mostly_judged
+    assert air.mostly_judged
+
+
+def test_what_cuts_is_at_feed_and_has_an_answer_at_both_of_its_ends() -> None:
+    """Step by step, a slot there and back between rapids, with no number on a third of it."""
+    made = lost(run(*SLOT, "G0 Z5", "G0 X-35", "G0 Z-2", "G1 X-30 Y3"), 0.3)
+    has = made.reached & np.isfinite(made.delta).all(axis=1)
+    cuts = [bool(made.path.cutting[i] and has[i] and has[i - 1]) for i in range(1, len(has))]
+    assert made.removes.tolist() == [False, *cuts]
+    assert 0 < sum(cuts) < made.path.cutting.sum() < len(cuts)

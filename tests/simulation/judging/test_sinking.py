@@ -64,6 +64,20 @@ def test_a_ramp_after_a_rapid_is_cut_as_if_it_were_the_first(deeper: float) -> N
     assert 0.1 < found[0].max()
 
 
+@pytest.mark.parametrize("deep", [0.5e-3, 3e-3])
+def test_a_ramp_after_a_plunge_is_cut_as_if_it_were_the_first(deep: float) -> None:
+    """However far the plunge has gone down, within the last diameter of the way or beyond."""
+    x, down = 1e-3 * np.arange(30), np.arange(0.0, deep, 0.25e-3)
+    alone = np.column_stack([x, 0.0 * x, -1e-3 - 0.01 * x])
+    plunge = np.column_stack([0.0 * down, 0.0 * down, deep - 1e-3 - down])
+    found = []
+    for points in (alone, np.vstack([plunge, alone])):
+        told, path = cut_along(points, [0])
+        found.append(np.array(sinking(told, path, path.p, None, never).steep)[-29:])
+    np.testing.assert_allclose(found[1], found[0], atol=1e-9)
+    assert 0.1 < found[0].max()
+
+
 def cut_along(points: FloatArray, begins: list[int]) -> tuple[CutConditions, Toolpath]:
     """Points (m, 3) m at feed but for rapids to where cuts begin."""
     path = Toolpath.from_points(points, 0.03, cutting=~np.isin(np.arange(len(points)), begins))

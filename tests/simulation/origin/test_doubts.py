@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import robomill as rm
-from robomill.simulation.origin.doubts import CODE, FRAME, SLIP, _of_robot, frame_notes
+from robomill.simulation.origin.doubts import CODE, FRAME, SLIP, _of_robot, _of_sizes, frame_notes
 
 SLOT = {"p_mm": [[-20, 0, -2], [20, 0, -2]], "feed_mm_min": 1800}
 
@@ -140,3 +141,27 @@ def test_a_part_lies_in_the_foot_of_an_arm_within_five_centimetres_of_its_axis_a
 ) -> None:
     words = [*_of_robot(rm.load_robot("slavkovic_5r"), 1e-3 * np.array(zero_mm))]
     assert ["lies in the foot of the robot" in each for each in words] == [True] * told
+
+
+@pytest.mark.parametrize(("long_mm", "told"), [(1.9, True), (2.1, False)])
+def test_a_path_is_a_speck_within_two_millimetres(long_mm: float, told: bool) -> None:
+    path = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [long_mm, 0, -2]], feed_mm_min=1800)
+    assert ["The whole path lies" in each for each in doubted(source=path)] == [True] * told
+
+
+@pytest.mark.parametrize(("long_mm", "short"), [(1.9, True), (2.1, False)])
+def test_a_tool_is_short_within_two_millimetres(long_mm: float, short: bool) -> None:
+    """Whatever way it points; and only one that is not short shows by its z_T on which side its flange stands."""
+    robot = rm.load_robot("slavkovic_5r").replace(tool_xyz=[0.6e-3 * long_mm, 0.0, 0.8e-3 * long_mm])
+    told = ["The tool ends" in each for each in _of_robot(robot, np.array([1.0, 0.0, 0.0]))]
+    assert told == [True] * short
+    assert bool(frame_notes(six(tool_xyz_mm=[0, 0, long_mm]))) != short
+
+
+@pytest.mark.parametrize(("times", "told"), [(1.95, False), (2.05, True)])
+def test_a_path_is_long_beyond_what_an_arm_reaches_to_both_sides(times: float, told: bool) -> None:
+    """All links of a plain arm in one line, there and back."""
+    reach = np.hypot(0.3, 0.6) + 1.0 + 0.05 + 1.0 + 0.2
+    path = rm.Toolpath.from_points(p=[[0, 0, -2e-3], [times * reach, 0, -2e-3]], v_f=0.03)
+    setup = SimpleNamespace(robot=six(), cutter=rm.Cutter("flat", diameter_mm=6))
+    assert ["more than the arm reaches" in each for each in _of_sizes(setup, path)] == [True] * told  # type: ignore[arg-type]
