@@ -245,3 +245,16 @@ def test_few_samples_are_looked_at_where_each_pose_is_searched_for(
         with pytest.raises(StopIteration):
             screen(run, **given)
     assert told == [(count, []), (7, []), (count, [3, 1])]
+
+
+def test_each_sample_uses_what_its_own_deviation_does_and_none_where_nothing_is_judged() -> None:
+    setup = slot()
+    run = rm.simulate(setup)
+    looking = screen(run)
+    d = np.random.default_rng(3).normal(scale=1e-4, size=(2, len(looking.at), 3))
+    d[1, 5, 2] = np.nan
+    for measure, size in (("tip", np.sqrt((d**2).sum(axis=2))), ("feed", np.abs(d[..., 0]))):
+        told = np.where(run.judged[looking.at], size / setup.limits[measure], 0.0)
+        told[1, 5] = np.nan
+        np.testing.assert_allclose(looking.shares(measure, d), told, rtol=1e-12)
+    assert not run.judged[looking.at].all()
