@@ -114,15 +114,13 @@ class Moves:
         before = start = q[a - 1]
         if self._leads_out(j, a):
             start = self.end[j - 1] + q[a] - self.wanted.p[a]
-        if self.share[a] <= 0.0 and b - a > 1:
+        if self.share[a] <= 0.0:
             start, a = q[a], a + 1
         links = [Piece(0.0, 0.0, start)] if np.abs(start - before).max() > SAME else []
         f = np.append(0.0, self.share[a:b])
         nodes = np.vstack([start, q[a:b]])
-        if self.sweep[j] != 0.0 and len(f) > 2:
+        if self.sweep[j] != 0.0:
             return links, arc_pieces(f, nodes, int(self.plane[j]), float(self.sweep[j]), bound)
-        if len(f) == 2:
-            return links, [Piece(0.0, 1.0, nodes[1])]
         return links, straight_pieces(f, nodes, bound)
 
     def _led(self, c: FloatArray, first: list[int], past: list[int]) -> FloatArray:

@@ -229,3 +229,21 @@ def test_ways_are_compared_by_what_they_meet_of_the_stock(engagement: bool) -> N
     (first,) = seen
     assert first.engagement
     assert first.replace(engagement=engagement) == setup
+
+
+def test_layers_are_as_thick_as_the_thickest_that_is_cut_at_feed_across_the_tool() -> None:
+    """Neither rapids nor what is not met nor plunges say how thick they are, nor how deep the path goes."""
+    a_p, z = np.array([1.0, 1.5, 9.0, 9.0, 9.0]) * 1e-3, np.array([-1.0, -2.5, -9.0, -9.0, -9.0]) * 1e-3
+    cutting, met = np.array([1, 1, 0, 1, 1], dtype=bool), np.array([1, 1, 1, 0, 1], dtype=bool)
+    axial = np.array([0, 0, 0, 0, 1], dtype=bool)
+
+    def layer(off: float, top: float = 0.0) -> float:
+        path = SimpleNamespace(cutting=cutting, p=np.column_stack([np.full((5, 2), 7.0), z]))
+        conditions = SimpleNamespace(engaged=met, mostly_axial=axial, a_p=a_p)
+        return module._layer(SimpleNamespace(path=path, conditions=conditions, max_deviation=off), top)  # type: ignore[arg-type]
+
+    assert layer(0.9e-3) == 1.5e-3
+    assert layer(1.1e-3) == np.inf, "all of the depth but what the tip may be off"
+    assert layer(1.1e-3, top=1e-3) == 1.5e-3
+    axial[:] = True
+    assert layer(0.0) == np.inf

@@ -189,3 +189,13 @@ def test_a_grid_has_about_as_many_places_as_were_asked_for_however_long_its_box(
 def test_more_than_a_full_turn_is_one(degrees: tuple[float, float]) -> None:
     found = area(setup(), {"yaw_deg": degrees})
     np.testing.assert_allclose(np.degrees([found.lower[3], found.upper[3]]), [degrees[0], degrees[0] + 360.0])
+
+
+@pytest.mark.parametrize("turns", range(1, 5))
+def test_degrees_that_are_quarter_turns_in_radians_to_two_digits_are_refused(turns: int) -> None:
+    """1.57, 3.14, 4.71 and 6.28 are radians; a hundredth beside them is a number of degrees."""
+    radians = round(turns * np.pi / 2.0, 2)
+    with pytest.raises(SetupError, match=r"yaw_deg is in °"):
+        area(setup(), {"yaw_deg": (0.0, radians)})
+    beside = area(setup(), {"yaw_deg": (0.0, radians + 0.01)})
+    assert beside.upper[3] == pytest.approx(np.radians(radians + 0.01))

@@ -90,3 +90,21 @@ def test_where_what_is_left_is_not_linear_it_is_aimed_lower_until_the_tolerance_
     np.testing.assert_array_equal(x, run)
     assert 0.99 < size * x[0] * beyond <= 1.0
     assert (rounds <= 2) == (beyond == 1.0)
+
+
+def test_what_no_deviation_explains_goes_with_the_joints_in_the_first_half_of_the_rounds_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where it never stays: it is run as often as it may be, and what was found last is told."""
+    told: list[bool] = []
+
+    def changing(result: object, now: object, x: np.ndarray, goes: bool) -> Errors:
+        told.append(goes)
+        return Errors(np.zeros((1, 1)), np.full((1, 1, 1), 2.0 + len(told) % 2), np.ones(1))
+
+    monkeypatch.setattr(module, "judged", lambda x, measure: SimpleNamespace(share=1.0))
+    monkeypatch.setattr(module, "linear", changing)
+    own = SimpleNamespace(low=np.array([0.1]), high=np.ones(1), weight=np.ones(1), measure="verdict", at=lambda x: x)
+    x, run, _, rounds = _Search.settled(own, np.ones(1), np.ones(1))  # type: ignore[arg-type]
+    assert told == [True] * (rounds // 2) + [False] * (rounds // 2)
+    np.testing.assert_allclose([x[0], run[0]], 0.5, rtol=2e-4)

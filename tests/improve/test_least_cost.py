@@ -1,10 +1,15 @@
 """The convex program against another solver and against its own optimality conditions, taken from the numbers alone."""
 
+from types import SimpleNamespace
+from typing import Any
+
+import clarabel
 import numpy as np
 import pytest
 from scipy.optimize import linprog, minimize, nnls
 
-from robomill.improve.least_cost import Errors, least_cost, least_share
+from robomill.improve import least_cost as module
+from robomill.improve.least_cost import Errors, Least, least_cost, least_share
 
 
 def drawn(seed: int, d: int, q: int = 300, n: int = 5) -> Errors:
@@ -91,3 +96,49 @@ def test_the_least_share_is_that_of_a_linear_program() -> None:
     found = least_share(errors, np.full(2, 0.1), np.ones(2))
     np.testing.assert_allclose(found.x, [0.1, 0.1], atol=1e-6)
     assert found.value == pytest.approx(0.2, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("primal", "dual", "r", "residual"),
+    [
+        (4.0, 3.0, (0.0, 0.0), 0.25),
+        (-8.0, -7.0, (0.0, 0.0), 0.125),
+        (0.5, 0.375, (0.0, 0.0), 0.125),
+        (1.5, 1.875, (0.0, 0.0), 0.25),
+        (4.0, 3.0, (0.5, 0.0), 0.5),
+        (4.0, 3.0, (0.3, 0.5), 0.5),
+    ],
+)
+def test_the_residual_is_the_largest_and_the_gap_is_one_of_what_is_large_and_of_one_where_that_is_small(
+    monkeypatch: pytest.MonkeyPatch, primal: float, dual: float, r: tuple[float, float], residual: float
+) -> None:
+    status = clarabel.SolverStatus.Solved
+    told = SimpleNamespace(status=status, obj_val=primal, obj_val_dual=dual, r_prim=r[0], r_dual=r[1], x=[2.0, 3.0])
+    monkeypatch.setattr(clarabel, "DefaultSolver", lambda *_: SimpleNamespace(solve=lambda: told))
+    found = module._solved((np.ones(2), np.ones(2), np.ones((2, 2)), np.ones(2), []), 1)
+    assert (found.x.tolist(), found.value, found.residual) == ([2.0], primal, residual)
+
+
+@pytest.mark.parametrize("beyond", [2.0, 1.0])
+def test_errors_are_left_out_that_are_small_at_both_ends_until_one_is_too_large(
+    monkeypatch: pytest.MonkeyPatch, beyond: float
+) -> None:
+    """Of x + y 70 sizes, the 64 largest of which are held at first; of x - y, nothing at both ends, one that is too
+    large where the first solution lies, of 200."""
+    size = np.concatenate([np.linspace(0.1, 0.8, 70), np.full(199, 0.5), [beyond]])
+    given = size[:, None, None] * np.where(np.arange(270) < 70, 1.0, [[1.0], [-1.0]]).T[:, None]
+    errors, asked = Errors(np.zeros((270, 1)), given, np.ones(270)), []
+
+    def solved(some: Errors, n: int) -> Least:
+        asked.append(some.given[:, 0])
+        return Least(np.array([0.9, 0.0] if len(asked) == 1 else [0.25, 0.2]), 1.0, 0.5)
+
+    monkeypatch.setattr(module, "_solved", solved)
+    program: Any = lambda some: some  # noqa: E731
+    found = module._generated(errors, program, np.full(2, 0.1), np.ones(2), 1.0)
+    assert len(asked) == (2 if beyond > 1.0 else 1)
+    np.testing.assert_allclose(np.sort(asked[0][:, 0]), np.sort(size[6:70]))
+    assert (asked[0][:, 1] > 0.0).all()
+    if beyond > 1.0:
+        assert [-beyond] in asked[1][asked[1][:, 1] < 0.0][:, 1:].tolist()
+    np.testing.assert_allclose(found.x, [0.25, 0.2] if beyond > 1.0 else [0.9, 0.1])  # kept within the bounds

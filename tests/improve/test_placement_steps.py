@@ -10,8 +10,10 @@ import pytest
 
 from robomill.improve import placement as module
 from robomill.improve.area import grid
-from robomill.improve.placed import FINE, KEPT_OUT, NO_ROOM, UNREACHED, WHY
+from robomill.improve.placed import FINE, KEPT_OUT, NO_ROOM, SINGULAR, UNKNOWN, UNREACHED, WHY
 from robomill.improve.placement import STARTS, _Search, _spacing, _worst_samples
+from robomill.improve.screening import Standing
+from robomill.kinematics.dexterity import NEAR
 
 AXES = (np.arange(4) * 0.1, np.arange(5) * 0.05, np.array([0.01]), np.radians(np.arange(3) * 30.0))
 
@@ -169,3 +171,34 @@ def test_where_a_part_lies_its_turn_is_counted_as_the_range_of_yaw_has_it(
     assert here[:3].tolist() == [0.1, 0.2, 0.3]
     np.testing.assert_array_equal(seen[0], here)
     assert (found.known, base) == (True, run)
+
+
+@pytest.mark.parametrize(
+    ("x", "missed", "room", "det", "share", "why"),
+    [
+        (0.1, 0, 0.1, 0.5, 3.0, FINE),
+        (0.1, 0, 0.1, 0.5, np.nan, UNKNOWN),
+        (0.1, 0, 0.2, 2.0 * NEAR, 0.5, FINE),
+        (0.1, 0, 0.2, NEAR, 0.5, SINGULAR),
+        (0.1, 0, 0.2, -0.5, 0.5, SINGULAR),
+        (0.1, 0, 0.2, -0.5 * NEAR, np.nan, SINGULAR),
+        (0.1, 0, 0.2, np.nan, 0.5, SINGULAR),
+        (0.1, 0, 0.0999, -0.5, 0.5, NO_ROOM),
+        (0.1, 0, np.nan, 0.5, 0.5, NO_ROOM),
+        (0.1, 1, 0.0, 0.0, np.nan, UNREACHED),
+        (0.0, 1, 0.0, 0.0, np.nan, KEPT_OUT),
+        (0.0, 0, 0.2, 0.5, 0.5, KEPT_OUT),
+    ],
+)
+def test_a_place_is_not_allowed_for_the_first_reason_that_it_has(
+    x: float, missed: int, room: float, det: float, share: float, why: int
+) -> None:
+    """It meets a box, is not reached, has no room, is singular or on both sides of that, or has no number."""
+    own = search([0.0] * 4, [1.0] * 4, measure="verdict", setup=None)
+    own.area.T_MW = lambda places: places
+    stands = Standing(np.array([missed]), np.array([room]), np.array([det]))
+    screened = SimpleNamespace(standing=stands, share=lambda *_: np.array([share]))
+    looking = SimpleNamespace(over=lambda T_MW: screened)
+    found, reasons = _Search._look(own, looking, np.array([[x, 0.0, 0.0, 0.0]]))  # type: ignore[arg-type]
+    assert found is screened
+    assert reasons.tolist() == [why]

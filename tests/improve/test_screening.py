@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
+from random_arms import seven
 
 import robomill as rm
+from robomill.improve import screening as module
 from robomill.improve.area import area
-from robomill.improve.screening import screen, share_of, standing
+from robomill.improve.screening import MOST_SAMPLES, SLOW_SAMPLES, screen, share_of, standing
 from robomill.kinematics.dexterity import determinant, largest_determinant, limit_distance
 from tests.improve.shoulder import shoulder
 
@@ -210,3 +214,47 @@ def test_the_first_sample_and_the_first_cut_of_every_tool_are_looked_at() -> Non
         assert own[0] in at
         assert next(i for i in own if path.cutting[i]) in at
     np.testing.assert_array_equal(screen(run, most=len(path)).at, np.arange(len(path)))
+
+
+@pytest.mark.parametrize(
+    ("robot", "spin", "count"),
+    [
+        ("slavkovic_5r", "least_motion", MOST_SAMPLES),
+        ("kuka_kr500", "least_motion", MOST_SAMPLES),
+        ("fanuc_r2000ic", 0.3, MOST_SAMPLES),
+        ("fanuc_r2000ic", "least_motion", SLOW_SAMPLES),
+        ("fanuc_r2000ic", "least_deviation", SLOW_SAMPLES),
+        ("seven", 0.3, SLOW_SAMPLES),
+        ("seven", "least_motion", SLOW_SAMPLES),
+    ],
+)
+def test_few_samples_are_looked_at_where_each_pose_is_searched_for(
+    monkeypatch: pytest.MonkeyPatch, robot: str, spin: float | str, count: int
+) -> None:
+    """By an arm that has no closed form, or that may turn about its tool; as many as are asked for in any case."""
+    told: list[tuple[int, list[int]]] = []
+
+    def few(result: object, most: int, also: np.ndarray) -> np.ndarray:
+        told.append((most, also.tolist()))
+        raise StopIteration
+
+    monkeypatch.setattr(module, "_few", few)
+    arm = seven() if robot == "seven" else rm.load_robot(robot)
+    run: Any = SimpleNamespace(setup=SimpleNamespace(robot=arm, spin=spin), path=range(5))
+    for given in ({}, {"most": 7}, {"also": np.array([3, 1])}):
+        with pytest.raises(StopIteration):
+            screen(run, **given)
+    assert told == [(count, []), (7, []), (count, [3, 1])]
+
+
+def test_each_sample_uses_what_its_own_deviation_does_and_none_where_nothing_is_judged() -> None:
+    setup = slot()
+    run = rm.simulate(setup)
+    looking = screen(run)
+    d = np.random.default_rng(3).normal(scale=1e-4, size=(2, len(looking.at), 3))
+    d[1, 5, 2] = np.nan
+    for measure, size in (("tip", np.sqrt((d**2).sum(axis=2))), ("feed", np.abs(d[..., 0]))):
+        told = np.where(run.judged[looking.at], size / setup.limits[measure], 0.0)
+        told[1, 5] = np.nan
+        np.testing.assert_allclose(looking.shares(measure, d), told, rtol=1e-12)
+    assert not run.judged[looking.at].all()

@@ -230,3 +230,18 @@ def test_shoulder_and_elbow_stand_as_in_the_run_and_the_wrist_on_both_sides(bran
     assert len(turned) == 2
     np.testing.assert_allclose(turned[0, :3], turned[1, :3], atol=1e-9)
     assert np.abs(turned[0] - turned[1]).max() > 0.1
+
+
+def test_the_map_has_a_number_where_the_arm_can_stand_in_one_of_its_ways() -> None:
+    """Joint 4 goes 60 degrees to either side of where it stands: the other way of the wrist is half a turn off."""
+    setup = straight().replace(spin=0.2)
+    middle = rm.simulate(setup).theta[:, 3].mean()
+    limits = np.array(setup.robot.limits_all)
+    limits[3] = middle - np.pi / 3.0, middle + np.pi / 3.0
+    setup = setup.replace(robot=setup.robot.replace(limits_all=limits))
+    found = turn(setup, measure="tip")
+    k = int(np.argmin(np.abs(found.angle - 0.2)))
+    run = rm.simulate(setup.replace(spin=float(found.angle[k])))
+    assert np.nanmax(found.share[:, k]) == pytest.approx(run.max_deviation / setup.tolerance, rel=1e-6)
+    assert np.isfinite(found.share[:, k]).all()
+    assert not np.isfinite(found.share).all()

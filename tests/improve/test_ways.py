@@ -1,6 +1,7 @@
 """Paths that cut the same part otherwise, by their geometry."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -109,3 +110,33 @@ def test_turned_round_it_goes_in_with_the_lowest_feed_of_the_program_or_that_of_
     down = back.cutting & (np.diff(back.p[:, 2], prepend=9.0) < 0.0)
     assert down.sum() == 1
     assert 6e4 * back.v_f[down][0] == pytest.approx(min(feed, 300.0))
+
+
+def test_a_path_leans_if_the_tool_does_at_one_of_its_points() -> None:
+    k = np.array([[0.0, 0.0, 1.0], [0.0, 0.6, 0.8], [0.0, 0.0, 1.0]])
+    path = rm.Toolpath.from_points(p_mm=[[0, 0, -2], [9, 0, -2], [9, 5, -2]], feed_mm_min=600, k=k)
+    with pytest.raises(ToolpathError, match="leans"):
+        in_levels(path, np.zeros(2), 0.0)
+
+
+@pytest.mark.parametrize("raised", [0.0, 1.0, 2.0, 3.5])
+def test_a_move_cuts_air_where_both_of_its_ends_lie_on_the_face_or_above_it(raised: float) -> None:
+    """In and out at feed, through the air, down to the face, along it, and into the material aslant."""
+    p = np.array(
+        [[0, 50, 1], [0, 51, -2], [9, 52, -2], [9, 53, 1], [18, 54, 1], [18, 55, 0], [27, 56, 0], [30, 57, -1]]
+    )
+    path = rm.Toolpath.from_points(p_mm=p, feed_mm_min=600, cutting=[False] + [True] * 7)
+    found = in_levels(path, np.array([raised * 1e-3]), 0.0)
+    z = p[:, 2] + raised
+    cuts_ = [False, *(min(a, b) < 0.0 for a, b in pairwise(z))]
+    np.testing.assert_array_equal(found.cutting, cuts_)
+    np.testing.assert_allclose(found.v_f, np.where(cuts_, 0.01, 0.0))
+
+
+def test_between_levels_it_rises_where_one_ends_goes_over_to_where_the_next_begins_and_down() -> None:
+    path = rm.Toolpath.from_points(p_mm=[[0, 0, -3], [9, 1, -4], [8, 5, -5], [7, 6, -6]], feed_mm_min=600)
+    found = in_levels(path, np.array([2e-3, 0.0]), -1e-3)
+    over = [[7, 6, 1], [0, 0, 1], [0, 0, -3]]  # 2 mm above the stock
+    told = np.array([[0, 0, -1], [9, 1, -2], [8, 5, -3], [7, 6, -4], *over, [9, 1, -4], [8, 5, -5], [7, 6, -6]])
+    np.testing.assert_allclose(found.p, told * 1e-3, atol=1e-15)
+    assert not found.cutting[4:7].any()
