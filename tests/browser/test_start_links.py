@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from screenshots import idle
 
 pytestmark = pytest.mark.browser
 WAIT = 60_000
@@ -55,6 +56,29 @@ def test_a_link_opens_at_anothers_and_asks_before_it_takes_the_place_of_work(pag
         headline(other, "Heart")
         assert shared(other)[1] == command
         stranger.close()
+
+
+@pytest.mark.parametrize(
+    ("at", "buttons", "leads_to"),
+    [
+        ("Robot", ["Go to worst"], "Milling"),
+        ("", ["Stiffen a joint"], "Improve"),
+        ("Learn", ["Show where it goes", "Measure it in the virtual laboratory"], "Identification"),
+    ],
+)
+def test_a_button_leads_to_its_page_and_one_can_go_back(
+    page: Any, url: str, at: str, buttons: list[str], leads_to: str
+) -> None:
+    page.goto(f"{url}/{at}")
+    for name in buttons:
+        page.get_by_role("button", name=name).click()
+    page.wait_for_url(f"**/{leads_to}", timeout=WAIT)
+    idle(page)
+    page.get_by_test_id("stSidebarNavLink").filter(has_text=at or "Start").click()
+    page.wait_for_url(f"**/{at}", timeout=WAIT)
+    idle(page)
+    page.wait_for_timeout(500)
+    assert page.url == f"{url}/{at}"
 
 
 def test_what_is_shared_is_copied_by_keyboard_and_by_touch(page: Any) -> None:

@@ -24,7 +24,7 @@ from robomill.ui.posed import fields, push
 from robomill.ui.posed.arm import arm
 from robomill.ui.posed.point import InHand, default_point, in_hand, place
 from robomill.ui.project import Project
-from robomill.ui.serving.menu import head_for
+from robomill.ui.serving.menu import go_on, head_for
 from robomill.ui.work import running
 from robomill.units import format_number, format_si, format_times, from_si, unit_label
 from robomill.viz.arm import ArmScene, displacement_scale
@@ -128,6 +128,7 @@ def stand(project: Project) -> tuple[InHand, str]:
 @st.fragment
 def question(found: InHand) -> None:
     """The question, its four answers, the picture, and after the reveal where the tip went and why."""
+    go_on("Learn")
     push = AsidePush.of(found.pose.C)
     st.html(BIG + f'<h1 class="rm-ask">Push the tool along {push.name}. Where does the tip go?</h1>')
     now = progress()

@@ -38,7 +38,7 @@ def head_for(title: str) -> None:
 
 
 def go_on(title: str) -> None:
-    """From the page ``title`` to where its person is bound."""
+    """From the page ``title`` to where its person is bound; a part of it that holds such a button calls it, too."""
     bound = session.kept(BOUND, title)
     if bound != title:
         st.switch_page(file_of(bound))
