@@ -52,6 +52,11 @@ class Settled:
     def agreed(self) -> bool:
         return self.rest <= TOLERANCE
 
+    @property
+    def is_open(self) -> bool:
+        """Whether something is left, and known: a g that is no number leaves nothing to settle."""
+        return bool(np.isfinite(self.rest)) and not self.agreed
+
 
 def settle(g: Push, start: FloatArray, free: FloatArray, axis: FloatArray) -> Settled:
     """Solve g(x) = x near ``start`` (3,) m, to ``TOLERANCE`` in every component; ``free`` (3,) m is x without a force,
@@ -70,7 +75,7 @@ def settle(g: Push, start: FloatArray, free: FloatArray, axis: FloatArray) -> Se
         lambda: _by_shares(g, found.x, NEAR, 4 * TURNS),
     )
     for otherwise in ways:
-        if found.agreed or not np.isfinite(found.rest):
+        if not found.is_open:
             break
         held = otherwise()
         better = held if held.rest < found.rest else found
@@ -291,7 +296,7 @@ class Coupling:
     def why(self) -> str:
         """What is left where they do not agree, and how the force changes there: by a jump where its last change was
         slower than the tool's, which alone would have settled."""
-        open_ = [each for each in self.settled if np.isfinite(each.rest) and not each.agreed]
+        open_ = [each for each in self.settled if each.is_open]
         worst = max(open_, key=lambda each: each.rest)
         steep = f"the force, times the compliance, changes {worst.gain:.1f} times as fast as the tool's place"
         jumps = "the tool just touches, and its force jumps from one place to the next"

@@ -71,7 +71,7 @@ def march_coupled(bent: Bent, one_pass: FloatArray) -> Coupled:
     F = bent.force(conditions, bent.R_MF)
     open_ = np.zeros(len(path), dtype=bool)
     for i, each in settled.items():
-        open_[i] = np.isfinite(each.rest) and not each.agreed
+        open_[i] = each.is_open
     lines = tuple(sorted(set(path.block[open_].tolist())))
     with np.errstate(invalid="ignore"):
         difference = float(np.nanmax(np.abs(bent.delta(F) - one_pass)[told.cutting], initial=0.0))

@@ -190,24 +190,23 @@ def chord_counts(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> Int
     They end at whole multiples of their step from angle 0, wherever the arc begins, and at its own end: two laps of
     one circle share their corners, so that the second finds nothing which chords of the first have left standing.
     """
-    before, last, _ = _numbered(angle, sweep, whole)
-    return np.maximum(last - before, 1.0).astype(np.int64)
+    return _numbered(angle, sweep, whole)[1]
 
 
 def chord_ends(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> tuple[IntArray, FloatArray]:
     """For each chord its arc, and which part of the arc's sweep has been made where it ends: 1 at the last alone."""
-    before, last, begin = _numbered(angle, sweep, whole)
-    counts = np.maximum(last - before, 1.0).astype(np.int64)
+    before, counts, begin = _numbered(angle, sweep, whole)
     owner, number = steps(counts)
     fraction = (before[owner] + number - begin[owner]) * (2.0 * math.pi / whole / np.abs(sweep))[owner]
     fraction[np.cumsum(counts) - 1] = 1.0
     return owner, fraction
 
 
-def _numbered(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Steps counted along the turn from angle 0, each (m,): the last at or before the arc's begin, the first at or
-    beyond its end, and its begin. What lies within ``_SAME_END`` of a step stands on it."""
+def _numbered(angle: FloatArray, sweep: FloatArray, whole: FloatArray) -> tuple[FloatArray, IntArray, FloatArray]:
+    """Steps counted along the turn from angle 0, each (m,): the last at or before the arc's begin, how many lead from
+    there to its end or beyond, at least 1, and its begin. What lies within ``_SAME_END`` of a step stands on it."""
     step = 2.0 * math.pi / whole
     begin = np.sign(sweep) * angle / step
     end = begin + np.abs(sweep) / step
-    return np.floor(begin + _SAME_END), np.ceil(end - _SAME_END), begin
+    before = np.floor(begin + _SAME_END)
+    return before, np.maximum(np.ceil(end - _SAME_END) - before, 1.0).astype(np.int64), begin
