@@ -55,6 +55,13 @@ def idle(page: Any) -> None:
     page.wait_for_selector('[data-testid="stApp"][data-test-script-state="notRunning"]', timeout=60_000)
 
 
+def boxes(*places: Any) -> list[dict[str, float]]:
+    """Where each stands (x, y, width, height in px of the window), of one instant: a page that grows moves all of them
+    together, and boxes asked for one after another would differ by what has grown between."""
+    page, nodes = places[0].page, [place.first.element_handle() for place in places]
+    return list(page.evaluate("nodes => nodes.map(node => node.getBoundingClientRect().toJSON())", nodes))
+
+
 def settle(page: Any) -> None:
     """Wait until the script has run and the pictures are drawn."""
     idle(page)

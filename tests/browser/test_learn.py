@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from screenshots import idle
+from screenshots import boxes, idle
 
 from robomill.ui.learn.lesson import ASPECT
 from robomill.viz.rendered.framing import FILL
@@ -23,7 +23,7 @@ def test_question_and_picture_stand_side_by_side(page: Any, url: str, width: int
     picture = page.locator(".st-key-learn-push .js-plotly-plot")
     picture.locator("canvas").first.wait_for()
     page.wait_for_timeout(1500)
-    asked, drawn = answers.bounding_box(), picture.bounding_box()
+    asked, drawn = boxes(answers, picture)
     assert asked["x"] >= drawn["x"] + drawn["width"] - 1, "beside each other"
     assert abs(asked["y"] - drawn["y"]) < 60
     assert asked["x"] + asked["width"] <= width

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from screenshots import boxes
 
 pytestmark = pytest.mark.browser
 
@@ -147,14 +148,10 @@ def test_in_a_narrow_window_inputs_stand_between_the_picture_and_the_questions(m
     milling.wait_for_selector("text=Section at the position")
     milling.wait_for_timeout(500)
 
-    def top(selector: str) -> float:
-        box = milling.locator(selector).first.bounding_box()
-        assert box is not None
-        return float(box["y"])
-
-    picture, force = top(".st-key-milling-look"), top(".st-key-milling-open-force")
-    accuracy, question = top(".st-key-milling-open-accuracy"), top(".st-key-milling-more")
-    assert picture < top("[data-testid='stMain'] .rm-tiles") < force <= accuracy < question
+    keys = (".st-key-milling-look", "[data-testid='stMain'] .rm-tiles", ".st-key-milling-open-force")
+    selectors = (*keys, ".st-key-milling-open-accuracy", ".st-key-milling-more")
+    picture, tiles, force, accuracy, question = (box["y"] for box in boxes(*map(milling.locator, selectors)))
+    assert picture < tiles < force <= accuracy < question
 
 
 def test_each_group_of_inputs_says_its_value_beside_its_title(milling: Any) -> None:
@@ -175,7 +172,7 @@ def test_what_does_not_hang_on_the_inputs_stands_below_them_in_the_whole_width(m
     wide.get_by_text("Over the whole surface").wait_for()
     wide.get_by_text("Over the whole surface").scroll_into_view_if_needed()
     milling.wait_for_timeout(500)
-    left, below, beside = (each.bounding_box() for each in (inputs, wide, more))
+    left, below, beside = boxes(inputs, wide, more)
     assert abs(below["x"] - left["x"]) < 2
     assert below["width"] > left["width"] + beside["width"]
     assert beside["x"] > left["x"] + left["width"]
