@@ -21,6 +21,7 @@ BROUGHT_BY = {
     "imageio_ffmpeg": ("imageio-ffmpeg", "film"),
     "ezdxf": ("ezdxf", "drawing"),
     "svgelements": ("svgelements", "drawing"),
+    "cssselect2": ("cssselect2", "drawing"),
     "shapely": ("shapely", "drawing"),
 }
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +60,15 @@ def boxes(*places: Any) -> list[dict[str, float]]:
     together, and boxes asked for one after another would differ by what has grown between."""
     page, nodes = places[0].page, [place.first.element_handle() for place in places]
     return list(page.evaluate("nodes => nodes.map(node => node.getBoundingClientRect().toJSON())", nodes))
+
+
+def until(page: Any, shown: Callable[[], object], wanted: object) -> None:
+    """Wait until that is shown: a machine that does much else draws late, and is no fault of the page."""
+    for _ in range(130):
+        if shown() == wanted:
+            return
+        page.wait_for_timeout(150)
+    assert shown() == wanted
 
 
 def settle(page: Any) -> None:

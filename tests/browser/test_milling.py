@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from screenshots import boxes
+from screenshots import boxes, until
 
 pytestmark = pytest.mark.browser
 
@@ -70,8 +70,7 @@ def test_the_sentence_leads_to_its_line_and_the_curve_can_be_clicked(milling: An
     near = min((b for b in points if b), key=lambda b: abs(b["x"] + b["width"] / 2 - middle))
     page.mouse.click(near["x"] + near["width"] / 2, near["y"] + near["height"] / 2)
     idle(page)
-    page.wait_for_timeout(600)
-    assert "(50.00" not in place(page)
+    until(page, lambda: "(50.00" in place(page), wanted=False)
 
 
 def test_the_scrubber_moves_code_section_and_point_without_the_whole_page(milling: Any) -> None:

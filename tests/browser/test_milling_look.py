@@ -7,7 +7,7 @@ import time
 from typing import Any
 
 import pytest
-from screenshots import page_paths
+from screenshots import page_paths, until
 
 pytestmark = pytest.mark.browser
 
@@ -113,8 +113,7 @@ def test_keys_exaggeration_camera_and_view_are_drawn_at_once_and_kept(look: Any,
     look.get_by_label("Exaggeration").select_option("50")
     look.get_by_label("Camera").select_option("top")
     look.get_by_role("radio", name="Arm").click()
-    look.wait_for_timeout(400)
-    assert drawn(look) == {"station": "0.505", "times": "x50", "camera": "top", "view": "arm"}
+    until(look, lambda: drawn(look), {"station": "0.505", "times": "x50", "camera": "top", "view": "arm"})
     assert "line 7" in (slider.get_attribute("aria-valuetext") or "")
     look.wait_for_timeout(600)
     idle(look)
@@ -122,8 +121,7 @@ def test_keys_exaggeration_camera_and_view_are_drawn_at_once_and_kept(look: Any,
     idle(look)
     look.get_by_role("link", name="Milling").first.click()
     look.wait_for_selector(".live[data-drawn]", timeout=60_000)
-    look.wait_for_timeout(800)
-    assert drawn(look) == {"station": "0.505", "times": "x50", "camera": "top", "view": "arm"}
+    until(look, lambda: drawn(look), {"station": "0.505", "times": "x50", "camera": "top", "view": "arm"})
 
 
 def test_the_picture_is_turned_with_the_mouse(look: Any, sent: list[int]) -> None:
@@ -132,8 +130,7 @@ def test_the_picture_is_turned_with_the_mouse(look: Any, sent: list[int]) -> Non
     look.mouse.down()
     look.mouse.move(box["x"] + 260, box["y"] + 170, steps=4)
     look.mouse.up()
-    look.wait_for_timeout(400)
-    assert drawn(look)["camera"] == "turned"
+    until(look, lambda: drawn(look)["camera"], "turned")
     assert sent == []
 
 

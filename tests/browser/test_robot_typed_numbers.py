@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from typing import Any
 
 import pytest
-from screenshots import idle
+from screenshots import idle, until
 
 pytestmark = pytest.mark.browser
 
@@ -43,15 +42,6 @@ def cell(page: Any, row: int, column: int) -> str:
     """What a cell shows; rows and columns are counted from 0."""
     name = f"canvas [role=row][aria-rowindex='{row + 2}'] [role=gridcell][aria-colindex='{column + 1}']"
     return str(grid_of(page).locator(name).text_content())
-
-
-def until(page: Any, shown: Callable[[], str], text: str) -> None:
-    """Wait until a text is shown."""
-    for _ in range(60):
-        if shown() == text:
-            break
-        page.wait_for_timeout(150)
-    assert shown() == text
 
 
 def sees(page: Any, row: int, column: int, text: str) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from screenshots import until
 
 from robomill.io.samples import samples_dir
 from robomill.io.setups.projects import load_setup
@@ -86,11 +87,7 @@ def points(page: Any) -> list[str]:
 
 def see(page: Any, expected: list[str]) -> None:
     """Wait until the table shows these points; it draws a moment after the project has changed."""
-    for _ in range(60):
-        if points(page) == expected:
-            return
-        page.wait_for_timeout(150)
-    assert points(page) == expected
+    until(page, lambda: points(page), expected)
 
 
 def test_a_slot_is_sketched_seen_in_the_table_and_simulated(toolpath: Any, board: Any) -> None:

@@ -101,6 +101,10 @@ def _unseen(read: Read) -> Iterator[Finding]:
     if read.unseen:
         text = f"{_counted(read.unseen)}: made invisible in the file, left out"
         yield Finding("ignored", text, code="drawing-unseen")
+    if read.partly:
+        text = f"{_counted(read.partly)}: hidden in part in the file (clipping path or mask), the lines are taken "
+        text += "whole, also where they are not seen"
+        yield Finding("warning", text, code="drawing-clipped")
     hidden = sorted(read.hidden & {piece.layer for piece in read.pieces})
     if hidden:
         many = len(hidden) > 1

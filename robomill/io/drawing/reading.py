@@ -39,13 +39,14 @@ def metres(unit: str) -> float:
 class Read:
     """What a file holds: its lines in m, layers that are switched off, and what was not taken, by its name.
 
-    ``unseen`` is what the file itself makes invisible.
+    ``unseen`` is what the file itself makes invisible, and ``partly`` what it hides in part.
     """
 
     pieces: list[Contour] = field(default_factory=list)
     hidden: set[str] = field(default_factory=set)
     left_out: Counter[str] = field(default_factory=Counter)
     unseen: Counter[str] = field(default_factory=Counter)
+    partly: Counter[str] = field(default_factory=Counter)
 
 
 class Reading:

@@ -6,11 +6,16 @@ Layers are those of Inkscape, else the groups of the page. Y points up from the 
 import io
 import re
 from collections import Counter
+from collections.abc import Iterator, Mapping
 from xml.etree import ElementTree
+
+import numpy as np
 
 from robomill.errors import ToolpathError
 from robomill.extras import needed
 from robomill.io.drawing.reading import PER_INCH, STUMBLES, Read, Reading, metres
+from robomill.io.drawing.svg_clips import CLIP, REGION, Clips, clipper, mark
+from robomill.io.drawing.svg_styles import STYLED, write_in
 from robomill.io.drawing.svg_viewports import (
     ABSOLUTE,
     NOT_DRAWN,
@@ -24,25 +29,22 @@ from robomill.io.drawing.svg_viewports import (
     pixels,
     target_of,
 )
+from robomill.toolpath.contour import Contour
 from robomill.units import format_count
 
 DEEPEST = 200  # elements in elements, twice as many where some are used by others
 MOST_TAGS = 100_000  # beginnings, ends and comments of elements
 MOST_ELEMENTS, OF_ONE = 20_000, 50  # drawn, each time they are used; so many characters of a path count as one,
 STRETCHES = 5  # and so many lines and curves of it
-MOST_STYLE, MOST_TRANSFORM = 20_000_000, 1_000  # characters: of styles, times elements; of any other attribute
+MOST_PLACED, MOST_TRANSFORM = 20_000_000, 1_000  # characters: of all transforms, one in another; of any attribute
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 LAYER, NO_LAYER = "robomill-layer", "drawing"
 PLACED = 60  # characters of the transform that a viewport or a use comes to
 WORDS = ("text", "image", "foreignObject")
-# All that says where a line is; the rest would be handed down to every element below.
-PLACES = "d points x y x1 y1 x2 y2 cx cy r rx ry width height viewBox preserveAspectRatio transform"
-STYLED = frozenset((*PLACES.split(), "display", "visibility"))
-KEPT = STYLED | {"style", "class", "id", "href", XLINK, LAYER}
+KEPT = STYLED | {"style", "class", "id", "href", XLINK, LAYER, CLIP, "clipPathUnits"}
 LONG = {"d", "points", "style"}  # attributes that may be
 COMMANDS = "MLTHVCSQAZmlthvcsqaz"
 _DISPLAY = re.compile(r"(?:^|;)display:\s*([\w-]+)(?!.*;display:)")
-_IMPORTANT = re.compile(r"!\s*important\s*$", re.IGNORECASE)
 NO_PATH = re.compile(rf"[^{COMMANDS}eE\d\s,.+-]")
 
 
@@ -72,11 +74,12 @@ class Svg:
             raise ToolpathError(
                 f"{self.name}: this is no SVG file, or one that is damaged or cut off ({exc}); export it again as SVG."
             ) from None
-        level = [root]
-        for _ in range(DEEPEST):
+        level, self.depth = [root], 0
+        while level:
+            if self.depth == DEEPEST:
+                raise self._refuse(f"its elements are nested deeper than {DEEPEST}")
             level = [child for element in level for child in element]
-        if level:
-            raise self._refuse(f"its elements are nested deeper than {DEEPEST}")
+            self.depth += 1
         if root.tag not in ("svg", f"{SVG}svg"):
             raise ToolpathError(f"{self.name}: the file holds <{root.tag:.60}>, expected <svg>; export it as SVG.")
         return root
@@ -90,6 +93,7 @@ class Svg:
     # ---- a look at everything before it is drawn -------------------------------------------------------------------
     def _look(self) -> None:
         """Names layers, puts away what is drawn only where it is used, and counts what all uses come to."""
+        write_in(self.root, self.depth, self._refuse)
         self.known = known = {e.attrib["id"]: e for e in self.root.iter() if "id" in e.attrib}
         for parent in list(self.root.iter()):
             drawn = _switched(parent) if kind_of(parent) == "switch" else None
@@ -99,6 +103,7 @@ class Svg:
                     continue
                 self._look_at(parent, place, child)
         for element in self.root.iter():
+            mark(element)
             for key in [key for key in element.attrib if key not in KEPT]:
                 del element.attrib[key]
             for key in element.attrib.keys() - LONG:
@@ -113,18 +118,13 @@ class Svg:
             display = styled[1] if styled else element.get("display", "")
             if kind_of(element) != "symbol" and display.strip() == "none":
                 self.unseen[kind_of(element)] += 1
-        drawn, turned = self._count_of(self.root, known, {}, set())
-        style = sum(len(e.text or "") for e in self.root.iter() if kind_of(e) == "style")
-        if style * drawn > MOST_STYLE:
-            raise self._refuse(f"its styles are {format_count(style)} characters long")
-        if turned > MOST_STYLE:
+        _, turned = self._count_of(self.root, known, {}, set())
+        if turned > MOST_PLACED:
             raise self._refuse("its transforms, one in another, are too long")
 
     def _reduce(self, element: ElementTree.Element) -> None:
-        """Leave of words and styles what says where a line is, and whether it is drawn."""
-        element.text = _rules(element.text or "") if kind_of(element) == "style" else None
-        if "style" in element.attrib:
-            element.set("style", _placing(element.attrib["style"]))
+        """Leave of words and attributes what says where a line is, and whether it is drawn."""
+        element.text = None
         if element.get("visibility") == "inherit":
             del element.attrib["visibility"]
         odd = NO_PATH.search(element.get("d", "")) if kind_of(element) == "path" else None
@@ -166,6 +166,8 @@ class Svg:
             kind = kind_of(element)
             if kind == "use" and (target := target_of(element, known)) is not None:
                 inside.append(target)
+            if (clip := clipper(element, known)) is not None:
+                inside.append(clip)
             if kind == "use" and not element.get("href", element.get(XLINK, "")).strip().startswith("#"):
                 self.left_out["use of another file"] += 1
             count, turned = 1 + _weight(element), 0
@@ -220,16 +222,17 @@ class Svg:
         try:
             written = ElementTree.tostring(Viewports(self.name, self.known).written_out(self.root), encoding="unicode")
             page = svgelements.SVG.parse(io.StringIO(written), ppi=PER_INCH["px"], on_error="raise")
+            if page is None:  # all of it is not displayed
+                return reading.found
             height = float(page.height) if page.viewbox is not None or "height" in self.root.attrib else 0.0
+            clips, low = Clips(), np.array([0.0, height * scale])
             for element in page.elements():
-                if not isinstance(element, svgelements.Shape):
-                    continue
-                if str(element.values.get("visibility", "")).strip() in ("hidden", "collapse"):
-                    reading.found.unseen[type(element).__name__.lower().removeprefix("simple")] += 1
-                    continue
-                layer = str(element.values.get(LAYER, NO_LAYER))
-                for shape, line in lines_of(abs(svgelements.Path(element)), scale, reading):
-                    reading.take(layer, shape, line * [1.0, -1.0] + [0.0, height * scale])
+                if REGION in getattr(element, "values", {}).get("attributes", {}):
+                    clips.open(element.values[REGION])
+                if isinstance(element, svgelements.Shape):
+                    lines = lines_of(abs(svgelements.Path(element)), scale, reading)
+                    contours = (Contour(NO_LAYER, shape, line * [1.0, -1.0] + low) for shape, line in lines)
+                    _take(contours, _named(element), element.values, clips, reading)
         except ToolpathError:
             raise
         except (*STUMBLES, RecursionError) as exc:
@@ -240,6 +243,33 @@ class Svg:
             )
             raise ToolpathError(f"{self.name}: {said}; export it again as SVG.") from None
         return reading.found
+
+
+def _named(shape: object) -> str:
+    return type(shape).__name__.lower().removeprefix("simple")
+
+
+def _take(contours: Iterator[Contour], kind: str, said: Mapping[str, object], clips: Clips, reading: Reading) -> None:
+    """Take the lines of one element of that ``kind``, of which so much is ``said``, as far as it is seen; or what they
+    leave to see of others."""
+    visible = str(said.get("visibility", "")).strip() not in ("hidden", "collapse")
+    if REGION in said:
+        if visible:
+            evenodd = said.get("clip-rule") == "evenodd"
+            clips.add(str(said[REGION]), [contour.outline() for contour in contours], evenodd)
+        return
+    if not visible:
+        reading.found.unseen[kind] += 1
+        return
+    numbers = [key.removeprefix(f"{CLIP}-") for key in said if key.startswith(f"{CLIP}-")]
+    for contour in contours:
+        seen = clips.seen(numbers, contour)
+        if seen is False:
+            reading.found.unseen["clipped line"] += 1
+            continue
+        if seen is None:
+            reading.found.partly[kind] += 1
+        reading.take(str(said.get(LAYER, NO_LAYER)), contour.shape, contour.points)
 
 
 def _put_away(parent: ElementTree.Element, place: int) -> None:
@@ -267,24 +297,6 @@ def _weight(element: ElementTree.Element) -> int:
         return weight
     stretches = max(sum(map(d.count, COMMANDS)), len(NUMBER.findall(d + points)) // 2)
     return max(weight, stretches // STRETCHES)
-
-
-def _placing(style: str) -> str:
-    """The part of a style that says where a line is, and whether it is drawn."""
-    said = (each.partition(":") for each in style.split(";"))
-    placing = [(name.strip().lower(), value) for name, _, value in said if name.strip().lower() in STYLED]
-    return ";".join(f"{name}:{_IMPORTANT.sub('', value).strip()}" for name, value in placing)
-
-
-def _rules(sheet: str) -> str:
-    """The rules of a style sheet that do."""
-    first, *rest = sheet.split("/*")
-    found = []
-    for rule in "".join([first, *(each.partition("*/")[2] for each in rest)]).split("}"):
-        names, _, style = rule.partition("{")
-        if placing := _placing(style):
-            found.append(f"{','.join(dict.fromkeys(name.strip() for name in names.split(',')))}{{{placing}}}")
-    return "\n".join(found)
 
 
 def _text_of(data: bytes, name: str) -> str:

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 from robomill.errors import ToolpathError
 from robomill.io.drawing.reading import metres
+from robomill.io.drawing.svg_clips import CLIP, REGION, clipper
 
 SVG, XLINK = "{http://www.w3.org/2000/svg}", "{http://www.w3.org/1999/xlink}href"
 ABSOLUTE = {"mm": "mm", "cm": "cm", "in": "in", "pt": "pt", "pc": "pt", "q": "mm"}  # and what of it people know
@@ -55,7 +56,7 @@ class Viewports:
     """Writes out the viewports of a page called ``name``, whose elements ``known`` are found by their id."""
 
     def __init__(self, name: str, known: Mapping[str, ElementTree.Element]) -> None:
-        self.name, self.known = name, known
+        self.name, self.known, self.clips = name, known, 0
 
     def written_out(self, root: ElementTree.Element) -> ElementTree.Element:
         """The page without ``<use>``, ``<symbol>`` and ``<svg>`` inside of it; raises ToolpathError."""
@@ -67,6 +68,20 @@ class Viewports:
         return page
 
     def _written(self, element: ElementTree.Element, view: View) -> ElementTree.Element:
+        written = self._unclipped(element, view)
+        if written.attrib.pop(CLIP, None) is None:
+            return written
+        self.clips += 1
+        group = ElementTree.Element(f"{SVG}g")
+        if (clip := clipper(element, self.known)) is not None:
+            placed = ElementTree.SubElement(group, f"{SVG}g", {"transform": element.get("transform", "")})
+            region = ElementTree.SubElement(placed, f"{SVG}g", {**clip.attrib, REGION: str(self.clips)})
+            region.extend([self._written(child, view) for child in clip])
+        written.set(f"{CLIP}-{self.clips}", "")
+        group.append(written)
+        return group
+
+    def _unclipped(self, element: ElementTree.Element, view: View) -> ElementTree.Element:
         kind = kind_of(element)
         if kind in ("defs", *NOT_DRAWN):
             put_away = ElementTree.Element(f"{SVG}defs")

@@ -10,16 +10,7 @@ import pytest
 
 from robomill.errors import ToolpathError
 from robomill.io.drawing.svg import Svg
-
-SPACES = (
-    'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
-    'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
-)
-PAGE = 'width="100mm" height="80mm" viewBox="0 0 100 80"'
-
-
-def svg(body: str, head: str = PAGE, before: str = "") -> Svg:
-    return Svg(f"{before}<svg {SPACES} {head}>{body}</svg>".encode(), "part.svg")
+from tests.io.drawing.made import PAGE, SPACES, svg
 
 
 def pieces(body: str, head: str = PAGE):

@@ -1,0 +1,87 @@
+"""What the clipping paths of an SVG page leave to see of its lines (CSS Masking 1, chapters 5 to 7).
+
+Lines are not cut where they are clipped: what is hidden wholly is left out, and what is hidden in part is told.
+"""
+
+import re
+from collections.abc import Iterable, Mapping
+from functools import reduce
+from typing import Any
+from xml.etree import ElementTree
+
+from robomill.arrays import FloatArray
+from robomill.toolpath.contour import Contour
+
+CLIP, REGION = "robomill-clip", "robomill-region"
+UNKNOWN = "?"  # what hides, where that is a mask, or a shape of CSS
+EDGE = 1e-5  # m, to which a line is drawn beside an edge
+_URL = re.compile(r"\s*url\(\s*['\"]?#([^'\")]+)['\"]?\s*\)\s*")
+_STYLE = re.compile(r"(?:^|;)(clip-path|mask):([^;]*)")
+
+
+def mark(element: ElementTree.Element) -> None:
+    """Name at an element the clipping path that holds for it, by its id, before its attributes are thinned out."""
+    said = {key: element.get(key, "none") for key in ("clip-path", "mask")} | dict(
+        _STYLE.findall(element.get("style", ""))
+    )
+    clip, mask = (said[key].strip() for key in ("clip-path", "mask"))
+    named = _URL.fullmatch(clip)
+    if mask not in ("none", ""):
+        element.set(CLIP, UNKNOWN)
+    elif clip not in ("none", ""):
+        element.set(CLIP, named[1] if named else UNKNOWN)
+
+
+def clipper(element: ElementTree.Element, known: Mapping[str, ElementTree.Element]) -> ElementTree.Element | None:
+    """The clipping path of an element, in the coordinates of the element; None where it is not one that is followed."""
+    found = known.get(element.get(CLIP, ""))
+    moved = {element.get(key, "0").strip() for key in ("x", "y")} if element.tag.endswith("use") else set()
+    if found is None or not found.tag.endswith("clipPath") or CLIP in found.attrib or moved - {"0"}:
+        return None
+    return found if found.get("clipPathUnits", "userSpaceOnUse") == "userSpaceOnUse" else None
+
+
+class Clips:
+    """The regions of a page that its clipping paths leave to see, by the number that ``Viewports`` gave them."""
+
+    def __init__(self) -> None:
+        self._parts: dict[str, list[Any]] = {}
+        self._regions: dict[str, Any] = {}
+
+    def open(self, number: str) -> None:
+        """A region begins; with nothing in it nothing is seen."""
+        self._parts[number] = []
+
+    def add(self, number: str, rings: Iterable[FloatArray], evenodd: bool) -> None:
+        """Add what the rings (r, 2) m of one shape have in them."""
+        from shapely import LinearRing, Polygon, make_valid, symmetric_difference, union_all
+
+        ways: tuple[list[Any], list[Any]] = [], []
+        for ring in rings:
+            if len(ring) >= 4:
+                ways[LinearRing(ring).is_ccw].append(make_valid(Polygon(ring)))
+        if evenodd:
+            self._parts[number].append(reduce(symmetric_difference, (*ways[0], *ways[1]), Polygon()))
+        else:  # what is gone around once in each way is outside
+            self._parts[number].append(symmetric_difference(*map(union_all, ways)))
+
+    def seen(self, numbers: Iterable[str], contour: Contour) -> bool | None:
+        """Whether a line is seen: all of it, nothing (False), or some of it, as far as is known (None)."""
+        from shapely import LineString
+
+        line, whole = LineString(contour.outline()), True
+        for number in numbers:
+            region = self._region(number)
+            if region is not None and not region.intersects(line):
+                return False
+            whole = whole and region is not None and region.covers(line)
+        return whole or None
+
+    def _region(self, number: str) -> Any:
+        """None for one that is not known."""
+        from shapely import prepare, union_all
+
+        if number in self._parts and number not in self._regions:
+            self._regions[number] = union_all(self._parts[number]).buffer(EDGE)
+            prepare(self._regions[number])
+        return self._regions.get(number)
