@@ -27,6 +27,7 @@ BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 NO_NUMBERS = (TypeError, ValueError, OverflowError)
 """What NumPy and Python raise of what is no number, or larger than any."""
+PLAIN = (str, int, float, bytes)  # nobody writes into these
 DIGITS = 13  # of a number that tell it from another
 SMALLEST = 1e-290  # below it, no power of ten brings thirteen digits before the point
 TYPED = 100_000  # cells: larger arrays are no lists that people type, and are told apart to the last bit
@@ -160,10 +161,10 @@ def sealed(value: T) -> T:
 
     Dataclasses that see to it themselves say so by ``seals_itself``.
     """
-    if isinstance(value, np.ndarray):
-        value.flags.writeable = False
-    elif getattr(value, "seals_itself", False):
+    if value is None or isinstance(value, PLAIN) or getattr(value, "seals_itself", False):
         pass
+    elif isinstance(value, np.ndarray):
+        value.flags.writeable = False
     elif is_dataclass(value) and not isinstance(value, type):
         for field in fields(value):
             sealed(getattr(value, field.name))

@@ -33,9 +33,9 @@ def true_error(result: SimulationResult, ideal: ZMap, drawn: ZMap, aside: ZMap, 
     over = aside.z - ideal.z
     wall = np.abs(over) > drawn.cell
     sample = nearest.of(drawn, wall, np.minimum(ideal.z, drawn.z))
-    wall[wall] = np.abs(over[wall]) > drawn.cell + times * (size * _slope(result)[i])[sample]
-    sample = nearest.of(drawn, wall, np.minimum(ideal.z, drawn.z))
-    error[wall] = np.sign(over[wall]) * size[sample]  # where no gauge was put
+    moved_over = np.abs(over[wall]) > drawn.cell + times * (size * _slope(result)[i])[sample]
+    wall[wall] = moved_over
+    error[wall] = np.sign(over[wall]) * size[sample[moved_over]]  # where no gauge was put
     readings, reach = _walls(result), times * float(size.max()) + float(result.tooling.each("radius").max())
     for sign in (1.0, -1.0):
         some = readings.only(sign * readings.left > 0.0)
