@@ -91,7 +91,7 @@ class Knowledge(Said, Value):
         """What a band holds of the compliances' part, in words."""
         if self.error is None:
             return "noise of the fit only"
-        return f"noise of the fit and error of the model ({self.error.words()})"
+        return self.error.beside_noise()
 
     def widened(self, robot: Robot, force: float = 0.0, length: float = 0.0) -> Knowledge:
         """The same with each force component unsure by ``force`` N and each D-H length by ``length`` m (one std)."""

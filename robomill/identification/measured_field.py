@@ -18,7 +18,7 @@ from robomill.arrays import FloatArray, IntArray, as_floats, frozen, made_array
 from robomill.errors import LoadTestError
 from robomill.frames import Columns
 from robomill.identification.load_test import MEASURED, LoadTests
-from robomill.identification.map_error import between_points, noise_by_asymmetry, noise_of_tests
+from robomill.identification.map_error import GRID, between_points, errors_of_tests, noise_by_asymmetry
 from robomill.kinematics.transforms import axis_from_tilt, world_from_pose
 from robomill.lazy import cached_property
 from robomill.progress import checkpoint
@@ -28,7 +28,6 @@ from robomill.units import format_count, format_percent, format_si, from_si
 from robomill.values import Tabled
 from robomill.vectors import angle_between
 
-GRID = 1e-6  # m: coordinates closer than this are one grid line
 ASYMMETRY = 0.15  # |C - C^T| / |C| from which a point is named
 
 
@@ -75,6 +74,7 @@ class MeasuredField(Tabled):
         x_M = tests.x_M[:, :5] if tests.x_M is not None else world_from_pose(tests.tool_poses(robot))
         count = int(pose.max()) + 1
         C, where, spread = np.empty((count, 3, 3)), np.empty((count, 5)), np.empty((count, 3))
+        by_size = np.empty((count, 3, 3))
         for k in range(count):
             checkpoint(k / count, "Poses of the map")
             here = np.flatnonzero(pose == k)
@@ -87,8 +87,9 @@ class MeasuredField(Tabled):
             C[k] = np.linalg.lstsq(F, moved, rcond=None)[0].T
             size = np.abs(F).max()
             spread[k] = np.sqrt(np.diag(np.linalg.inv((F / size).T @ (F / size)))) / size
+            by_size[k] = np.sqrt((moved.T / size) ** 2 @ np.linalg.pinv(F / size).T ** 2)
             where[k] = x_M[here[0]]
-        stderr = noise_of_tests(C, spread, tests.noise) * np.repeat(spread[:, None, :], 3, axis=1)
+        stderr = errors_of_tests(C, spread, by_size, tests.noise)
         return cls(where[:, :3], C, where[:, 3:], reach, tests.provenance, stderr)
 
     def columns(self) -> Columns:
@@ -118,7 +119,8 @@ class MeasuredField(Tabled):
         """(..., 3, 3) m/N standard error of each entry of ``compliance(p)``; NaN where that is NaN or it is not known.
 
         The measured points' own, as if neighbours erred alike (a gauge that stands askew does not average out), and
-        what a straight line between points may miss, as bent as the map is.
+        what a straight line between points may miss in the middle of a cell, as bent as the map is. So where neighbours
+        err by chance, 95 % bands hold more than 95 % between the points.
         """
         p = as_floats(p, "points", (3,), error=LoadTestError, finite=False)
         return np.sqrt(self._within_reach(p, self.stderr**2) + self._bent**2)

@@ -31,8 +31,17 @@ def axes_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
     if tests.gauges is not None or tests.aimed.any() or tests.wrench[:, 3:].any() or whole.sum() < FEWEST:
         return ()
     tests = tests.select(whole).thinned(MOST)
+    for model in Model.asked_of_slips(robot, 3 * len(tests)):
+        found = _suspected(robot, tests, model)
+        if found:
+            return found
+    return ()
+
+
+def _suspected(robot: Robot, tests: LoadTests, model: Model) -> tuple[Finding, ...]:
+    """The axes along which the springs of ``model`` explain most."""
     F, moved = tests.wrench[:, :3], tests.displacement[:, :3]
-    D = np.stack([_yield(robot, tests, axis) for axis in np.eye(3)], axis=-1)
+    D = np.stack([_yield(robot, tests, axis, model) for axis in np.eye(3)], axis=-1)
 
     def left_over(force: FloatArray, read: FloatArray) -> float:
         A = np.einsum("mcpf,mf->mcp", D, force).reshape(-1, D.shape[2])
@@ -48,17 +57,18 @@ def axes_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
     if not least * BETTER < stated:
         return ()
     was, now_left = format_percent(stated), format_percent(least)
+    fit = "a fit with bending links" if model.has("bending") else "the fit"
     text = (
-        f"{what}, they would take what the fit leaves over from {was} to {now_left} of the displacements; all are read "
+        f"{what}, they would take what {fit} leaves over from {was} to {now_left} of the displacements; all are read "
         "along the axes of {M}: is that the frame they were taken in?"
     )
     return (Finding("suspicious", text, code="axes"),)
 
 
-def _yield(robot: Robot, tests: LoadTests, axis: FloatArray) -> FloatArray:
-    """(m, 3, n) displacements for each compliance under a unit force along an axis of {M}."""
+def _yield(robot: Robot, tests: LoadTests, axis: FloatArray, model: Model) -> FloatArray:
+    """(m, 3, p) displacements for each compliance under a unit force along an axis of {M}."""
     wrench = np.broadcast_to(np.concatenate([axis, np.zeros(3)]), (len(tests), 6))
-    return Model("joints").terms(robot, replace(tests, wrench=wrench))[:, :3, 0]
+    return model.terms(robot, replace(tests, wrench=wrench))[:, :3, 0]
 
 
 def _readings(robot: Robot, tests: LoadTests) -> Iterator[tuple[str, FloatArray, FloatArray]]:

@@ -32,16 +32,26 @@ CODE = "sense"
 
 
 def sense_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
-    """Joints whose stated angles explain far more with the opposite sign."""
+    """Joints whose stated angles explain far more with the opposite sign, of the joints' springs or beside bending."""
     solved = any(finding.code in SOLVED for finding in tests.findings)
     if tests.theta is None or solved or len(tests) < FEWEST:
         return ()
     tests = tests.thinned(MOST)
+    readings = int(np.isfinite(tests.displacement[:, :3]).sum())
+    for model in Model.asked_of_slips(robot, readings):
+        found = _suspected(robot, tests, model)
+        if found:
+            return found
+    return ()
+
+
+def _suspected(robot: Robot, tests: LoadTests, model: Model) -> tuple[Finding, ...]:
+    """The joints that explain most with the opposite sign, by the springs of ``model``."""
     which: tuple[int, ...] = ()
-    stated, least = _left_over(robot, tests), np.inf
+    stated, least = _left_over(robot, tests, model), np.inf
     for turned in _turned(robot.n) if stated > AMISS else ():
         checkpoint()
-        now = _left_over(robot, _with_turned(robot, tests, turned))
+        now = _left_over(robot, _with_turned(robot, tests, turned), model)
         if now < 0.999 * least:
             which, least = turned, now
     if not least * BETTER < stated or least > WELL:
@@ -49,8 +59,9 @@ def sense_suspicions(robot: Robot, tests: LoadTests) -> tuple[Finding, ...]:
     names = listed([f"theta{i + 1}" for i in which])
     was, now_left = format_percent(stated), format_percent(least)
     joints = "this joint" if len(which) == 1 else "these joints"
+    fit = "a fit with bending links" if model.has("bending") else "the fit"
     text = (
-        f"With the opposite sign of {names}, the poses would take what the fit leaves over from {was} to {now_left} of "
+        f"With the opposite sign of {names}, the poses would take what {fit} leaves over from {was} to {now_left} of "
         f"the displacements: do the angles of {joints} count the other way than in the robot's file?"
     )
     return (Finding("suspicious", text, count=len(which), code=CODE),)
@@ -70,9 +81,9 @@ def _with_turned(robot: Robot, tests: LoadTests, which: tuple[int, ...]) -> Load
     return turned.moved(robot, np.zeros(3)) if turned.aimed.any() else turned
 
 
-def _left_over(robot: Robot, tests: LoadTests) -> float:
-    """Share of the displacements that the joints do not explain."""
-    terms, measured = measured_terms(robot, tests, Model("joints"))
+def _left_over(robot: Robot, tests: LoadTests, model: Model) -> float:
+    """Share of the displacements that the springs of ``model`` do not explain."""
+    terms, measured = measured_terms(robot, tests, model)
     linear = np.nonzero(measured)[1] < 3
     A, b = terms[linear, 0], tests.displacement[measured][linear]
     if not b.any():

@@ -86,7 +86,7 @@ def identification_report(result: IdentificationResult) -> dict[str, Any]:
         "band": None
         if band is None
         else {
-            "made_of": f"noise of the fit and error of the model ({band.error.words()})",
+            "made_of": band.error.beside_noise(),
             "model_error_share": band.error.share,
             "model_error_per_N_mm": from_si(band.error.per_newton, "mm"),
             "model_error_floor_mm": from_si(band.error.floor, "mm"),

@@ -43,6 +43,23 @@ def test_other_axes_are_suspected(F, moved, words):
     assert words in said(ROBOT, F, moved)["axes"]
 
 
+@pytest.mark.parametrize(
+    ("axes", "words"),
+    [
+        (lambda F, d: (in_tool(F), in_tool(d)), "frame of the tool for forces and displacements"),
+        (lambda F, d: (F @ TURN.T, d @ TURN.T), "as -y, x and z for forces and displacements"),
+        (lambda F, d: (F, d[:, [1, 0, 2]]), "as y, x and z for displacements"),
+        (lambda F, d: (F, d), ""),
+    ],
+)
+def test_strong_bending_hides_no_other_axes(axes, words):
+    """Of the joints' springs alone right axes left half of the displacements over, too, and nothing was said."""
+    bent = make(ARM, replace(RIG, bending={2: (2e-6, 1e-6), 3: (1e-6, 2e-6)}, noise=20e-6), 30, seed=2)
+    F, moved = axes(bent.F, bent.moved)
+    found = axes_suspicions(ROBOT, rm.LoadTests(F, moved, theta=bent.q))
+    assert [words in each.message for each in found] == [True] * bool(words)
+
+
 def test_what_is_right_or_noisy_is_not_suspected():
     assert "axes" not in said(ROBOT, MADE.F, MADE.moved)
     for seed in range(10):

@@ -129,7 +129,8 @@ def _errors(robot: Robot, tests: LoadTests, choice: Model, fitted: Fitted, misse
     size = np.sqrt(size2)[system.test]
     counted = system.linear & good(system, fitted.weights)
     load = np.linalg.norm(tests.wrench[:, :3], axis=1)[system.test]
-    return Errors(missed.error, missed.variance, size, load, missed.fold).chosen(counted)
+    reading = np.nan_to_num(tests.noise)[system.test] ** 2  # what is stated is no error of the model
+    return Errors(missed.error, missed.variance + reading, size, load, missed.fold).chosen(counted)
 
 
 def _band(errors: Errors, dof: int) -> Band | None:

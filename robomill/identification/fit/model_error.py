@@ -3,12 +3,15 @@
 The errors on poses left out are larger than the fit's own covariance says wherever the model is not the arm. Each is
 taken as drawn with variance
 
-    D cov D^T + k^2 (floor^2 + per_newton^2 |F|^2 + share^2 |delta|^2),
+    D cov D^T + reading^2 + k^2 (floor^2 + per_newton^2 |F|^2 + share^2 |delta|^2),
 
 parts that grow with the displacement, with the force (an elastic arm that is not the model's errs by its load) and a
-part that does not (the gauge's noise, play); tests under one load (within ``ALIKE``) cannot tell the last two apart,
-and count as the second. The parts are fitted to the squared errors; k is then the smallest number with which the 95 %
-bands hold 95 % of the errors left out (split conformal prediction: no normal distribution is asked for).
+part that does not (play, noise that is not stated); tests under one load (within ``ALIKE``) cannot tell the last two
+apart, and count as the second. The parts are fitted to the squared errors; k is then the smallest number with which the
+95 % bands hold 95 % of the errors left out (split conformal prediction: no normal distribution is asked for).
+
+``reading`` is the noise that the reading left out states: it is the gauge's and no error of the model. Of readings that
+state none it cannot be told from one, and bands then hold the true displacement more often than they say.
 """
 
 from __future__ import annotations
@@ -50,11 +53,18 @@ class ModelError:
         )
         return ", ".join(text for value, text in parts if value > 0.0) or "none found"
 
+    def beside_noise(self) -> str:
+        """What a band is made of that holds it; and why it may hold more than 95 % of what is true."""
+        found = f"noise of the fit and error of the model ({self.words()})"
+        unstated = "noise of readings that state none counts as such, so the true deviation lies within more often"
+        return f"{found}; {unstated}" if self.variance(np.array(1.0), np.array(1.0)) > 0.0 else found
+
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """Errors on what was left out (e,) m, the variance (e,) m^2 that the fit gave each, the size (e,) m of the
-    displacement predicted there, the load (e,) N it was under, and the fold (e,) each was left out with."""
+    """Errors on what was left out (e,) m, the variance (e,) m^2 that the fit gave each with that of the reading's own
+    noise where it is stated, the size (e,) m of the displacement predicted there, the load (e,) N it was under, and the
+    fold (e,) each was left out with."""
 
     error: FloatArray
     variance: FloatArray

@@ -13,7 +13,7 @@ along it; ``constant`` is one symmetric 3 x 3 for every pose, the naive baseline
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -33,6 +33,7 @@ from robomill.kinematics.jacobian import twists
 from robomill.robot.model import Robot
 
 Kind = Literal["joint", "bending", "tool", "entry"]
+SPARE = 2  # readings a parameter from which springs that may not be there are asked for slips
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,18 @@ class Model:
     def title(self) -> str:
         """What people call it."""
         return MODELS[self.name].title
+
+    @classmethod
+    def asked_of_slips(cls, robot: Robot, equations: int) -> Iterator[Model]:
+        """Springs beside which slips are sought: the joints, then links that bend at every joint as well.
+
+        A slip shows only beside springs that are there: what strong bending leaves over of the joints hides it. Bending
+        takes up what it likes of few readings, and is asked only where each parameter has ``SPARE`` of them.
+        """
+        yield cls()
+        bending = cls("joints+bending", robot.joint_numbers)
+        if equations >= SPARE * len(bending.parameters(robot)):
+            yield bending
 
     def has(self, kind: Kind) -> bool:
         """Whether springs of that kind are in it."""

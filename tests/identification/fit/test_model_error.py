@@ -42,6 +42,37 @@ def test_share_and_floor_are_those_the_errors_were_drawn_with():
     assert by_load.per_newton == pytest.approx(4e-8, rel=0.06)
 
 
+def test_noise_that_a_reading_states_is_no_error_of_the_model():
+    errors = drawn(8)
+    stated = replace(errors, variance=errors.variance + 5e-6**2)
+    assert model_error(errors, 10000).floor == pytest.approx(5e-6, rel=0.5)
+    found = model_error(stated, 10000)
+    assert found.floor < 2e-6
+    assert found.share == pytest.approx(0.08, rel=0.05)
+    assert held(stated, 10000) == pytest.approx(0.95, abs=0.01)
+
+
+@pytest.mark.parametrize(("stated", "least", "most"), [(4e-6, 0.9, 0.99), (np.nan, 0.999, 1.0)])
+def test_bands_hold_the_true_deflection_as_often_as_they_say_where_readings_state_their_noise(stated, least, most):
+    """Springs alone and gauges that err by 4 um, drawn anew; what nobody states counts as the model's, and is told."""
+    theta = np.random.default_rng(1).uniform(ROBOT.limits[:, 0] * 0.5, ROBOT.limits[:, 1] * 0.5, (18, 5))
+    F = np.tile(250.0 * np.eye(3), (12, 1))
+    J = rm.geometric_jacobian(ROBOT, theta)[:, :3]
+    C = np.einsum("mik,k,mjk->mij", J, ROBOT.C_theta, J)
+    moved = np.einsum("mij,mj->mi", np.repeat(C[:12], 3, axis=0), F)
+    push = np.random.default_rng(2).uniform(-80.0, 80.0, (6, 3))
+    truth = np.einsum("mij,mj->mi", C[12:], push)
+    inside = []
+    for seed in range(16):
+        read = moved + np.random.default_rng([3, seed]).normal(0.0, 4e-6, moved.shape)
+        tests = LoadTests(F, read, theta=np.repeat(theta[:12], 3, axis=0), noise=np.full(36, stated))
+        known = Knowledge.of(rm.identify(ROBOT, tests), ROBOT)
+        sure = uncertain_deflection(ROBOT, theta[12:], push, known)
+        inside.append(np.mean(np.abs(sure.delta - truth) <= sure.half_width()))
+    assert least <= np.mean(inside) <= most
+    assert np.isfinite(stated) or "noise of readings that state none" in known.made_of
+
+
 def test_under_one_load_what_is_left_grows_with_the_load():
     errors = drawn(6, share=0.0)
     one = model_error(replace(errors, load=np.full(20000, 250.0)), 10000)

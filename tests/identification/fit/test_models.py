@@ -107,3 +107,9 @@ def test_one_matrix_for_every_pose():
     world = LoadTests(F, np.ones((4, 3)), x_M=np.zeros((4, 5)))
     with pytest.raises(LoadTestError, match="with_joints"):
         model.terms(ROBOT, world)[:, :, 0]
+
+
+@pytest.mark.parametrize(("readings", "names"), [(29, ["joints"]), (30, ["joints", "joints+bending"])])
+def test_slips_are_sought_beside_bending_where_every_spring_has_two_readings(readings, names):
+    """Five joints, each with two bendings."""
+    assert [model.name for model in Model.asked_of_slips(ROBOT, readings)] == names
