@@ -77,8 +77,8 @@ class Machine:
     ``feed_in_block`` that F beside a word of units counts in the new ones; ``sharp`` that compensation goes around
     outside corners without an arc (G451).
 
-    ``t_changes`` says that T changes the tool at once, without M6; ``kept_d`` is the D that a G41 without one means, 0
-    for the tool in the spindle. ``radii`` are the radius and wear that G10 gives a tool.
+    ``t_changes`` says that T changes the tool at once, without M6; ``kept_d`` is the D that a G41 without one means,
+    None for the tool in the spindle. ``radii`` are the radius and wear that G10 gives a tool.
 
     ``corner`` is what the line says of the corner at its end (size in program units), ``rounding`` what RNDM says of
     all corners (a radius, 0: none), ``polar_words`` says that X
@@ -120,7 +120,8 @@ class Machine:
         self.feed_mode, self.feed, self.speed, self.spindle, self.spindle_mode = 940, 0.0, 0.0, 0, 970
         self.retract_r, self.diameter_mode = True, False
         self.tool, self.selected, self.in_spindle = _NO_TOOL, 0, 0
-        self.tool_name, self.t_changes, self.kept_d = "", False, 0.0
+        self.tool_name, self.t_changes = "", False
+        self.kept_d: float | None = None
         self.away: tuple[bool, ...] = (False, False, False)
         self.aways: list[tuple[int, tuple[bool, ...]]] = []
         self.homes: set[int] = set()
