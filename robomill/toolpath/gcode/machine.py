@@ -87,7 +87,8 @@ class Machine:
     as ``further`` says, ``is_fanuc``
     says that G10 and variables mean what they mean there, ``other_control`` that it is neither LinuxCNC nor grbl,
     ``strict`` that LinuxCNC is stated, ``variable`` what those are that nobody has set, ``machine_word`` which word
-    leads to a place in the machine, ``sides`` what it calls G41 and G42. ``keeps_heights`` and ``kept_steps`` are
+    leads to a place in the machine, ``zero_ended`` that none of G54 and on is in force (None: the program has
+    none), ``sides`` what it calls G41 and G42. ``keeps_heights`` and ``kept_steps`` are
     those of ``cycle_rules``. ``modal`` is what MCALL or G66 holds, ``r_set`` are the R parameters that a program
     has set.
     """
@@ -132,6 +133,7 @@ class Machine:
         self.left: list[float] = []
         self.strict = False
         self.is_fanuc, self.other_control, self.machine_word = False, False, "G53"
+        self.zero_ended: bool | None = None
         self.variable: Callable[[Machine, int], float] | None = None
         self.extended: dict[int, tuple[list[float], float]] = {}
         self.further = "G54.1 P{}"
@@ -175,7 +177,8 @@ class Machine:
         held = self.compensation is not None or self.recorder.held is not None
         other = self.diameter_mode or self.polar_words or self.modal is not None or self.scale is not None
         counted = self.feeds_follow or self.unit_code == 210
-        return counted and not (held or other or self.rounding or any(self.away) or self.stuck or self.leans)
+        lost = any(self.away) or self.zero_ended or self.stuck or self.leans
+        return counted and not (held or other or self.rounding or lost)
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""
