@@ -174,7 +174,7 @@ def drill(machine: Machine, block: Block) -> None:
     demand(machine, block, refusal)
     if block.motion == 880:
         machine.note("manual-retract", "warning", "G88 stops for a retract by hand, which the path leaves out")
-    if cycles.is_tap(block.motion) and machine.plane != 17:
+    if cycles.is_tap(block.motion) and machine.plane != 17 and not machine.is_fanuc:
         message = f"{g_name(block.motion)} outside of G17 taps along the wrong axes, as LinuxCNC does"
         machine.note("tap-axes", "warning", message)
 
