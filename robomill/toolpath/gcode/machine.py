@@ -306,11 +306,12 @@ class Machine:
         self.scale, self.initial_level = scale, math.nan
 
     def said_point(self) -> list[float]:
-        """Where the tool stands (x, y, z, a, b, c) as a line would say it, while words are scaled or not."""
-        scale = self.scale
+        """Where the tool stands (x, y, z, a, b, c) as a line would say it: without cutter compensation and scale."""
+        held, scale = self.compensation, self.scale
+        point = list(self.p) if held is None or held.programmed is None else held.programmed_point(self)
         if scale is None:
-            return list(self.p)
-        return [*(scale.said(axis, self.p[axis]) for axis in range(3)), *self.p[3:]]
+            return list(point)
+        return [*(scale.said(axis, point[axis]) for axis in range(3)), *point[3:]]
 
     def meant(self, place: tuple[float, float]) -> tuple[float, float]:
         """Where X and Y of a line lie in the current coordinate system."""

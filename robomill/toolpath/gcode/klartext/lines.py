@@ -154,9 +154,6 @@ class Klartext(KlartextTools):
     # --- moves
     def here(self) -> list[float]:
         """The programmed point, in the coordinates in force."""
-        compensation = self.machine.compensation
-        if compensation is not None and compensation.programmed is not None:
-            return list(compensation.programmed_point(self.machine))
         return self.machine.said_point()
 
     def set_pole(self, code: str, line: int) -> None:

@@ -253,10 +253,7 @@ def _tool_axis(code: str, number: int, machine: Machine) -> str:
 def _places(code: str, machine: Machine) -> str:
     """AC( ) says a place and IC( ) a step, whatever mode is in force: as the mode in force counts."""
     absolute = _absolute(code, machine)
-    compensation = machine.compensation
     here = machine.said_point()
-    if compensation is not None and compensation.programmed is not None:
-        here = compensation.programmed_point(machine)
 
     def counted(found: re.Match[str]) -> str:
         letter, way, value = found[1].upper(), found[2].upper(), float(found[3])
