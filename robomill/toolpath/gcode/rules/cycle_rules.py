@@ -109,7 +109,7 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
             return refusal
         above = current if repeat == 0 and (current > clearance or m.is_fanuc) else clear
         _go(m, TRAVERSE, line, end, above, rows)
-        if above > clearance:
+        if above > clearance or (m.is_fanuc and above < clearance):
             _go(m, TRAVERSE, line, end, clearance, rows)
         _hole(m, motion, line, end, (clearance, clear, bottom), rows)
     for axis in range(6):
