@@ -114,6 +114,9 @@ def _execute_g(machine: Machine, block: Block, plain: list[float]) -> None:
         _check_plane(machine, block, g[modal.PLANE])
         set_plane(machine, plain)
     if modal.UNITS in g:
+        kept = is_cycle(machine.motion) or machine.modal is not None
+        if kept and g[modal.UNITS] != machine.unit_code and not machine.strict:
+            raise block.refuse("units change while a cycle is in force, whose depths they would change; end it first.")
         machine.set_units(g[modal.UNITS])
     if modal.DIAMETER in g:
         diameter = g[modal.DIAMETER] == 70
