@@ -49,14 +49,14 @@ class SinumerikPolar(SinumerikShapes):
         found = _MOTION.search(code)
         return self.machine.motion // 10 if found is None else int(found[1])
 
-    def _in_plane(self, name: str, line: int) -> None:
-        if self.machine.plane != 17 or self.bent or any(self.machine.away[:2]):
+    def _in_plane(self, name: str, line: int, moves: bool = True) -> None:
+        if self.machine.plane != 17 or (moves and self.bent) or any(self.machine.away[:2]):
             raise GCodeError.at(line, f"{name} is read in G17, from a known place and beside G0 to G3 alone.")
 
     # --- poles
     def _put_pole(self, kind: str, code: str, line: int) -> None:
         """G110 counts from where the tool is, G111 from zero, G112 from the pole before."""
-        self._in_plane(f"G11{kind}", line)
+        self._in_plane(f"G11{kind}", line, moves=False)
         said = {letter: self.value(inside or plain, line) for letter, _, inside, plain in _PLACE.findall(code)}
         if said.keys() != {"X", "Y"} or (kind == "2" and self.middle is None):
             raise GCodeError.at(line, f"G11{kind} needs X and Y, and G112 a pole before it; as in G111 X10 Y20.")
