@@ -18,6 +18,9 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     """Execute a checked line; True if the program ends here. ``saved`` is where M70 keeps the modes."""
     words, g = block.words, block.g
     plain = moves.plain_words(block)
+    stays = g.get(modal.NON_MODAL, -1) in (-1, 40, 280, 300, 530) and block.motion in (-1, 0, 10)
+    if machine.leaving is not None and (not stays or modal.UNITS in g):
+        machine.leaving = None  # what counts from elsewhere, and arcs and cycles, go on from the programmed point
     set_rates(machine, plain)
     if g.get(modal.SPINDLE_MODE) == 960:
         machine.note("surface-speed", "warning", "G96: the spindle speed follows the diameter and is not known")

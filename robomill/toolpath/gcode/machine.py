@@ -78,7 +78,8 @@ class Machine:
     outside corners without an arc (G451).
 
     ``t_changes`` says that T changes the tool at once, without M6; ``kept_d`` is the D that a G41 without one means,
-    None for the tool in the spindle. ``radii`` are the radius and wear that G10 gives a tool.
+    None for the tool in the spindle. ``leaving`` is how far aside of the
+    contour G40 has left the tool, until it moves in the plane. ``radii`` are the radius and wear that G10 gives a tool.
 
     ``corner`` is what the line says of the corner at its end (size in program units), ``rounding`` what RNDM says of
     all corners (a radius, 0: none), ``polar_words`` says that X
@@ -147,6 +148,7 @@ class Machine:
         self.cycle = [math.nan] * len(LETTERS)
         self.initial_level, self.keeps_heights, self.kept_steps = math.nan, False, False
         self.compensation: Any = None
+        self.leaving: list[float] | None = None
         self.arc_not_allowed = False
         self.figures = [0.0] * 3
         self.spline: list[tuple[float, float, float]] = []
@@ -177,7 +179,7 @@ class Machine:
         held = self.compensation is not None or self.recorder.held is not None
         other = self.diameter_mode or self.polar_words or self.modal is not None or self.scale is not None
         counted = self.feeds_follow or self.unit_code == 210
-        lost = any(self.away) or self.zero_ended or self.stuck or self.leans
+        lost = any(self.away) or self.zero_ended or self.stuck or self.leans or self.leaving is not None
         return counted and not (held or other or self.rounding or lost)
 
     def set_units(self, code: int) -> None:
