@@ -98,7 +98,7 @@ class Arc:
         return np.asarray(points)
 
     def _turned(self, sweep: float, line: int) -> float:
-        """The signed angle: as it is said, where that leads to the end on one side or the other, in whole turns more."""
+        """The signed angle: as it is said, where that leads to the end on either side, be it by whole turns more."""
         if self.angle is None:
             return sweep
         for signed in (sweep, sweep - 2.0 * math.pi if sweep < 2.0 * math.pi else -sweep):
@@ -179,7 +179,7 @@ class Drilling:
         """(height above the point, feed, dwell before), in order, at a ``feed`` (m/s); a feed of 0 is a rapid."""
         moves = [(self.out, 0.0, 0.0), (self.clear, 0.0, 0.0)]
         if self.step > 0.0:
-            pecks = math.ceil((self.clear + self.depth - self.first) / self.step) + 1
+            pecks = math.ceil((self.clear + self.depth - self.first) / self.step - 1e-9) + 1
             for peck in range(min(pecks, MAX_PECKS) - 1):
                 down = self.clear - self.first - peck * self.step
                 moves += [(down, feed, 0.0), (self.clear, 0.0, 0.0), (down, 0.0, 0.0)]

@@ -108,3 +108,9 @@ def test_the_way_to_a_lower_hole_is_as_level_in_another_coordinate_system() -> N
     path = read_apt(f"UNITS/MM\n{frames}{cycle}\nGOTO/10,0,0\nGOTO/20,0,-5\nCYCLE/OFF\nFINI\n")
     assert path.p[1] * 1e3 == pytest.approx([0, 10, 50])
     np.testing.assert_allclose(path.p[5:7] * 1e3, [(0, 20, -97), (0, 20, -102)], atol=1e-9)
+
+
+def test_pecks_that_come_out_even_end_at_the_bottom_once() -> None:
+    """12 mm in steps of 3 are four pecks, though 0.009 / 0.003 is a little more than 3 in binary."""
+    path = read_apt(f"{HEAD}FROM/0,0,50\nCYCLE/DEEP,DEPTH,10,MMPM,60,CLEAR,2,STEP,3\nGOTO/1,0,0\nFINI\n")
+    np.testing.assert_allclose(path.p[path.cutting, 2] * 1e3, [-1, -4, -7, -10], atol=1e-9)

@@ -94,6 +94,10 @@ class Machine:
     has set.
     """
 
+    kept_d: float | None = None
+    zero_ended: bool | None = None
+    leaving: list[float] | None = None
+
     def __init__(self, tools: Tools | None) -> None:
         asked = WeakMethod(self.provided)  # no ring that only the garbage collector would undo
         self.store = Parameters(lambda name: asked()(name), (*_AXES, *_PROVIDED))  # type: ignore[misc]
@@ -123,7 +127,6 @@ class Machine:
         self.retract_r, self.diameter_mode = True, False
         self.tool, self.selected, self.in_spindle = _NO_TOOL, 0, 0
         self.tool_name, self.t_changes = "", False
-        self.kept_d: float | None = None
         self.away: tuple[bool, ...] = (False, False, False)
         self.aways: list[tuple[int, tuple[bool, ...]]] = []
         self.homes: set[int] = set()
@@ -134,7 +137,6 @@ class Machine:
         self.left: list[float] = []
         self.strict = False
         self.is_fanuc, self.other_control, self.machine_word = False, False, "G53"
-        self.zero_ended: bool | None = None
         self.variable: Callable[[Machine, int], float] | None = None
         self.extended: dict[int, tuple[list[float], float]] = {}
         self.further = "G54.1 P{}"
@@ -148,7 +150,6 @@ class Machine:
         self.cycle = [math.nan] * len(LETTERS)
         self.initial_level, self.keeps_heights, self.kept_steps = math.nan, False, False
         self.compensation: Any = None
-        self.leaving: list[float] | None = None
         self.arc_not_allowed = False
         self.figures = [0.0] * 3
         self.spline: list[tuple[float, float, float]] = []
