@@ -155,7 +155,7 @@ class Compensation:
         if self.programmed is not None:
             self.finish(machine, block)
             aside, machine.p = list(machine.p), self.programmed_point(machine)
-            machine.leaving = [was - now for was, now in zip(aside, machine.p)] if machine.is_fanuc else None
+            machine.leaving = [was - now for was, now in zip(aside, machine.p)] if machine.other_control else None
             machine.arc_not_allowed = True
         machine.compensation = None
 

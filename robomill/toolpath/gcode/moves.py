@@ -165,7 +165,7 @@ def move(machine: Machine, block: Block) -> None:
             machine.need_compensation_off(block, "G53")
         compensated_corners.follow(machine, block, end)
         return
-    row, aside = Move(block.line), None if in_plane else machine.leaving
+    row, aside = Move(block.line), None if is_arc else _aside(machine, block)
     there = end if aside is None else [p + step for p, step in zip(end, aside)]
     demand(machine, block, rules.make_move(machine, words, block.motion, there, row))
     if aside is not None:
@@ -181,6 +181,18 @@ def _in_plane(machine: Machine, block: Block) -> bool:
     """Whether a line names an axis of the plane, or a polar place in it."""
     named = {"xyz"[axis] for axis in rules.axes(machine.plane)[:2]}
     return not block.words.keys().isdisjoint(named | {"@", "^"})
+
+
+def _aside(machine: Machine, block: Block) -> list[float] | None:
+    """How far aside of the contour a line goes that names no axis of the plane behind G40; None back onto it."""
+    if machine.leaving is None or _in_plane(machine, block):
+        return None
+    if machine.is_fanuc:
+        return machine.leaving
+    if max(map(abs, machine.leaving)) > 1e-9:
+        text = "cutter compensation ends without a move in its plane: the tool is taken to go back onto the contour,"
+        machine.note("ends-aside", "warning", f"{text} which it may cut into; leave the contour in the plane first")
+    return None
 
 
 def drill(machine: Machine, block: Block) -> None:
@@ -228,7 +240,7 @@ def home(machine: Machine, block: Block, code: int) -> None:
     machine.need_compensation_off(block, f"G{code // 10}")
     end = find_end(machine, block)
     machine.place(block.words)
-    aside = [0.0] * 6 if machine.leaving is None or _in_plane(machine, block) else machine.leaving
+    aside = _aside(machine, block) or [0.0] * 6
     machine.go(TRAVERSE, block.line, [p + step for p, step in zip(end, aside)])
     stored = 5161 if code == 280 else 5181
     values = machine.store.values(stored, 6)

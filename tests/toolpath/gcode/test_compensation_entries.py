@@ -225,3 +225,18 @@ def test_behind_g40_a_fanuc_goes_home_from_beside_the_contour() -> None:
 def test_cutter_compensation_of_a_fanuc_begins_on_a_move_in_its_plane(start: str) -> None:
     """It starts with the first block that names an axis of the plane: the tool went down 2 mm aside."""
     assert aside(10, start, "G40 X0\n") == [[0, -10, 0], [8, 0, 0], [8, 20, 0], [0, 20, 0]]
+
+
+@pytest.mark.parametrize(
+    ("dialect", "text"),
+    [
+        ("heidenhain", "BEGIN PGM A MM\nTOOL CALL 1 Z S9 F99\nL X+0 Y-9 Z+0 FMAX M3\nL X+10 Y+0 RL\nL Y+20\n{}"),
+        ("sinumerik", "G71 G90 S9 M3 F99\nT1\nM6\nG0 X0 Y-9 Z0\nG41 G1 X10 Y0\n{}"),
+    ],
+)
+def test_where_compensation_ends_along_z_alone_the_way_back_is_told(dialect: str, text: str) -> None:
+    """What these controls do there is not known well enough to be read without a word."""
+    ends = {"heidenhain": ("L Z+50 R0 FMAX\n", "L X+0 R0\nL Z+50 FMAX\n"), "sinumerik": ("G40 Z5\n", "G40 X0\nZ5\n")}
+    for end, told in zip(ends[dialect], (1, 0)):
+        program = interpret(text.format(end), dialect=dialect, tools={1: Tool(1, diameter=4e-3)})
+        assert sum(finding.code == "ends-aside" for finding in program.findings) == told
