@@ -312,7 +312,7 @@ def _go(state: _State, numbers: list[float], line: int, is_start: bool = False) 
         axis, down = np.array(state.axis), feed_of(*state.drilling.rate, state.speed)
         if down <= 0.0:
             raise GCodeError.at(line, f"the cycle's {_STANDS}")
-        above = float((np.array([to_si(v, state.unit) for v in before]) - point) @ axis) if before else 0.0
+        above = float((_stands(state) - point) @ axis) if state.rows else 0.0
         if above > state.drilling.out:
             _put(state, point + above * axis, 0.0, line)
         for height, feed, dwell in state.drilling.moves(down):
@@ -331,6 +331,12 @@ def _go(state: _State, numbers: list[float], line: int, is_start: bool = False) 
     for each in points:
         _put(state, each, feed, line)
     state.rapid = False
+
+
+def _stands(state: _State) -> FloatArray:
+    """Where the tool is, which a cycle leaves above its point: (3,) m, as points are written now."""
+    place = np.array(state.rows[-1][:3]) - state.shift
+    return place if state.frame is None else state.frame[:3, :3].T @ (place - state.frame[:3, 3])
 
 
 def _put(state: _State, point: FloatArray, feed: float, line: int) -> None:
@@ -384,4 +390,7 @@ def _units(state: _State, values: list[str], line: int) -> None:
     unit = {"MM": "mm", "METRIC": "mm", "MILLIMETERS": "mm", "INCH": "in", "INCHES": "in", "IN": "in"}.get(found)
     if unit is None:
         raise GCodeError.at(line, f"UNITS has {found!r}; expected MM or INCHES.")
+    ratio = to_si(1.0, state.unit) / to_si(1.0, unit)  # what was written before stays where it is
+    state.here = tuple(v * ratio for v in state.here)
+    state.points = {name: [str(float(v) * ratio) for v in place] for name, place in state.points.items()}
     state.unit = state.unit_said = unit

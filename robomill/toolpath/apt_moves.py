@@ -51,6 +51,7 @@ OFF_CIRCLE = 1e-3
 """Start and end of an arc may be off its radius by this share, or"""
 OFF_CIRCLE_LEAST = 2e-5  # m
 MAX_PECKS = 10_000
+MAX_TURNS = 10_000
 
 
 @dataclass(frozen=True)
@@ -97,12 +98,14 @@ class Arc:
         return np.asarray(points)
 
     def _turned(self, sweep: float, line: int) -> float:
-        """The signed angle: as it is said, where that is the way round to the end on one side or the other."""
+        """The signed angle: as it is said, where that leads to the end on either side, be it by whole turns more."""
         if self.angle is None:
             return sweep
         for signed in (sweep, sweep - 2.0 * math.pi if sweep < 2.0 * math.pi else -sweep):
-            if abs(abs(signed) - abs(self.angle)) < math.radians(0.5):
-                return signed
+            more = round((abs(self.angle) - abs(signed)) / (2.0 * math.pi))
+            size = abs(signed) + 2.0 * math.pi * more
+            if 0 <= more < MAX_TURNS and abs(size - abs(self.angle)) < math.radians(0.5):
+                return math.copysign(size, signed)
         text = f"the arc turns by {math.degrees(self.angle):g} degrees, which does not lead to its end; mend the file."
         raise GCodeError.at(line, text)
 
@@ -120,8 +123,8 @@ def arc_of(values: list[str], unit: str, line: int) -> Arc:
         raise GCodeError.at(line, "an arc needs an axis i,j,k and a radius above 0.")
     angle = math.radians(_floats([named["ANGLE"]], line)[0]) if "ANGLE" in named else None
     turns = round(_floats([named["TIMES"]], line)[0]) if "TIMES" in named else 1
-    if not 1 <= turns <= 10_000:
-        raise GCodeError.at(line, f"an arc turns {turns} times; expected 1 to 10000.")
+    if not 1 <= turns <= MAX_TURNS:
+        raise GCodeError.at(line, f"an arc turns {turns} times; expected 1 to {MAX_TURNS}.")
     centre = np.array([to_si(v, unit) for v in numbers[:3]])
     radius = to_si(numbers[6], unit) if len(numbers) > 6 else None
     return Arc(centre, np.array(numbers[3:6]) / size, radius, angle, turns)
@@ -176,7 +179,7 @@ class Drilling:
         """(height above the point, feed, dwell before), in order, at a ``feed`` (m/s); a feed of 0 is a rapid."""
         moves = [(self.out, 0.0, 0.0), (self.clear, 0.0, 0.0)]
         if self.step > 0.0:
-            pecks = math.ceil((self.clear + self.depth - self.first) / self.step) + 1
+            pecks = math.ceil((self.clear + self.depth - self.first) / self.step - 1e-9) + 1
             for peck in range(min(pecks, MAX_PECKS) - 1):
                 down = self.clear - self.first - peck * self.step
                 moves += [(down, feed, 0.0), (self.clear, 0.0, 0.0), (down, 0.0, 0.0)]

@@ -182,6 +182,23 @@ def test_inches_are_heard_however_they_are_said(said: str) -> None:
     assert path.units == "in"
 
 
+@pytest.mark.parametrize(
+    ("behind", "ends"),
+    [
+        ("GODLTA/1,0,0\n", [(25.4, 0), (50.8, 0)]),
+        ("GOTO/P1\n", [(25.4, 0), (0, 25.4)]),
+        ("CIRCLE/0,0,0,0,0,1,1\nGOTO/0,1,0\n", [(25.4, 0), (0, 25.4)]),
+    ],
+)
+def test_units_that_change_leave_what_was_written_before_where_it_is(behind: str, ends: list[tuple[float, ...]]):
+    """At 25.4 mm the tool is 1 inch from zero, and so is a point at 25.4 mm that has a name."""
+    path = read_apt(f"UNITS/MM\nP1=POINT/0,25.4,0\nFEDRAT/100,MMPM\nGOTO/25.4,0,0\nUNITS/INCHES\n{behind}FINI\n")
+    np.testing.assert_allclose(path.p[[0, -1], :2] * 1e3, ends, atol=1e-9)
+    if behind.startswith("CIRCLE"):
+        np.testing.assert_allclose(np.hypot(*path.p[:, :2].T), 25.4e-3)
+        assert path.p[:, :2].min() > -1e-9  # a quarter of it
+
+
 def test_tlaxis_is_the_axis_of_the_points_behind_it_and_multax_off_keeps_the_last() -> None:
     path = read_apt(
         f"{HEAD}FROM/0,0,9\nTLAXIS/0,3,4\nGOTO/1,0,0\nMULTAX/ON\nGOTO/2,0,0,0.8,0,0.6\nMULTAX/OFF\nGOTO/3,0,0\n"

@@ -43,6 +43,8 @@ def test_an_arc_of_catia_is_the_circle_through_its_start_along_its_tangent(seed:
         ("CIRCLE/0,0,5,0,0,-1,10,0.01,0.5,8,0", -270),
         ("MOVARC/0,0,5,0,0,1,10,ANGLE,90", 90),
         ("MOVARC/0,0,5,0,0,1,10,ANGLE,270", -270),
+        ("MOVARC/0,0,5,0,0,1,10,ANGLE,450", 450),
+        ("MOVARC/0,0,5,0,0,1,10,ANGLE,630", -630),
         ("MOVARC/CENTER,0,0,5,AXIS,0,0,1,RADIUS,10", 90),
         ("CIRCLE/0,0,5,0,0,2,10,TIMES,3", 810),
     ],

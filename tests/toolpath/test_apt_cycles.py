@@ -91,3 +91,26 @@ def test_cycles_of_solidworks_cam() -> None:
     feeds = [round(float(z) * 1e3, 6) for z, cut in zip(path.p[:, 2], path.cutting) if cut]
     assert feeds == [-2, -6, -10]
     assert path.p[-1, 2] * 1e3 == pytest.approx(25)
+
+
+def test_the_way_to_a_lower_hole_leads_across_at_the_height_where_the_tool_stands() -> None:
+    """After a hole at 0 the tool is at RAPTO 3: over a hole at -5 it goes across at 3, and down to -2 only there."""
+    cycle = "CYCLE/DRILL,RAPTO,3,FEDTO,-10,RTRCTO,AUTO,MMPM,250"
+    path = read_apt(f"UNITS/MM\nRAPID\nGOTO/0,0,50\n{cycle}\nGOTO/10,0,0\nGOTO/20,0,-5\nCYCLE/OFF\nFINI\n")
+    wanted = [(0, 50), (10, 50), (10, 3), (10, -10), (10, 3), (20, 3), (20, -2), (20, -15), (20, -2)]
+    np.testing.assert_allclose(path.p[:, [0, 2]] * 1e3, wanted, atol=1e-9)
+
+
+def test_the_way_to_a_lower_hole_is_as_level_in_another_coordinate_system() -> None:
+    """MSYS lies 100 lower and its x axis is y of the first: what is 3 above its zero is 97 below that of the first."""
+    cycle = "CYCLE/DRILL,RAPTO,3,FEDTO,-10,MMPM,250"
+    frames = "MSYS/0,0,0,1,0,0,0,1,0\nRAPID\nGOTO/0,0,50\nMSYS/0,0,-100,0,1,0,-1,0,0\n"
+    path = read_apt(f"UNITS/MM\n{frames}{cycle}\nGOTO/10,0,0\nGOTO/20,0,-5\nCYCLE/OFF\nFINI\n")
+    assert path.p[1] * 1e3 == pytest.approx([0, 10, 50])
+    np.testing.assert_allclose(path.p[5:7] * 1e3, [(0, 20, -97), (0, 20, -102)], atol=1e-9)
+
+
+def test_pecks_that_come_out_even_end_at_the_bottom_once() -> None:
+    """12 mm in steps of 3 are four pecks, though 0.009 / 0.003 is a little more than 3 in binary."""
+    path = read_apt(f"{HEAD}FROM/0,0,50\nCYCLE/DEEP,DEPTH,10,MMPM,60,CLEAR,2,STEP,3\nGOTO/1,0,0\nFINI\n")
+    np.testing.assert_allclose(path.p[path.cutting, 2] * 1e3, [-1, -4, -7, -10], atol=1e-9)

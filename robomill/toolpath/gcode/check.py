@@ -45,6 +45,8 @@ def choose_motion(machine: Machine, block: Block, dialect: Dialect = _LINUXCNC) 
     covets = non_modal in modal.NEEDS_AXES
     if covets and (polar or (not axes and non_modal in (520, 920))):
         raise block.refuse(f"{g_name(non_modal)} needs axis words such as X0.")
+    if non_modal in (520, 920) and machine.before_turn is not None and not words.keys().isdisjoint("xy"):
+        raise block.refuse(f"{g_name(non_modal)} while coordinates are turned (G68) is not read; end that first (G69).")
     if motion == 800:
         if (axes or polar) and not covets:
             motion = _ends_and_moves(machine, block, dialect)

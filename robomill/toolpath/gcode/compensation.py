@@ -154,8 +154,8 @@ class Compensation:
         """G40: record what is held and go on from the programmed point."""
         if self.programmed is not None:
             self.finish(machine, block)
-            machine.p = self.programmed_point(machine)
-            machine.p[self.axes[2]] = self.programmed[2]
+            aside, machine.p = list(machine.p), self.programmed_point(machine)
+            machine.leaving = [was - now for was, now in zip(aside, machine.p)] if machine.other_control else None
             machine.arc_not_allowed = True
         machine.compensation = None
 

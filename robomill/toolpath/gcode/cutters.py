@@ -1,6 +1,7 @@
 """Which cutter is meant: D of this line or of one before, T that changes the tool at once, and what G41 makes of it."""
 
 import re
+from math import isclose
 
 from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import COMPENSATION, g_name
@@ -27,6 +28,9 @@ def keep_d(machine: Machine, block: Block) -> None:
     beside = block.g.get(COMPENSATION)
     if beside is None:
         machine.kept_d = block.words.pop("d")
+        held = machine.compensation
+        if held is not None and not isclose(abs(_size(machine, block, "D")[0]), held.radius, abs_tol=1e-9):
+            raise block.refuse(f"D{machine.kept_d:g} changes the cutter while G41 or G42 is on; use G40 first.")
     elif machine.is_fanuc and beside in (410, 420):
         machine.kept_d = block.words["d"]
 
@@ -48,20 +52,7 @@ def compensation_on(machine: Machine, block: Block) -> None:
         radius = block.words["d"] / 2.0
         orientation = round(block.words.get("l", 0.0))
     else:
-        number = block.words.get("d", machine.kept_d)
-        if abs(number - round(number)) > 1e-4 or number < 0:
-            raise block.refuse(f"{name} has D{number:g}; expected the number of a tool.")
-        tool = known_tool(machine, block, round(number))
-        if machine.tools is None or not (tool.sized or machine.strict):
-            named = f'tool "{machine.tool_name[:40]}"' if machine.tool_name else "the tool in the spindle"
-            which = f"tool {tool.number}" if tool.number else named
-            do = "give a tool table" if machine.tools is None else "write it into the tool table"
-            raise block.refuse(f"{name} needs the diameter of {which}; {do}.")
-        if tool.number and tool.number not in machine.tools:
-            raise block.refuse(f"tool {tool.number} is not in the tool table; add it.")
-        if not tool.number and machine.tool_name:
-            raise block.refuse(f'tool "{machine.tool_name[:40]}" is not in the tool table; add it under that name.')
-        radius, orientation = from_si(tool.diameter, machine.unit) / 2.0, tool.orientation
+        radius, orientation = _size(machine, block, name)
         if machine.plane != 18 and orientation not in (0, 9):
             raise block.refuse(f"{name} with a lathe tool works in the plane G18 only.")
     u, v, _ = axes(machine.plane)
@@ -75,3 +66,27 @@ def compensation_on(machine: Machine, block: Block) -> None:
             raise block.refuse(f"{name} changes the side or the cutter without G40; use G40 first.")
         return
     machine.compensation = Compensation(left, abs(radius), orientation, machine.plane)
+
+
+def _size(machine: Machine, block: Block, name: str) -> tuple[float, int]:
+    """Radius (program units) and lathe orientation by D, of this line or before; none is the tool in the spindle.
+
+    D0 of a Fanuc control always means 0, whatever tool is in the spindle (15i, Operator's Manual: cutter compensation).
+    """
+    said = block.words.get("d", machine.kept_d)
+    number = 0.0 if said is None else said
+    if abs(number - round(number)) > 1e-4 or number < 0:
+        raise block.refuse(f"{name} has D{number:g}; expected the number of a tool.")
+    if machine.is_fanuc and said == 0.0:
+        return 0.0, 0
+    tool = known_tool(machine, block, round(number))
+    if machine.tools is None or not (tool.sized or machine.strict):
+        named = f'tool "{machine.tool_name[:40]}"' if machine.tool_name else "the tool in the spindle"
+        which = f"tool {tool.number}" if tool.number else named
+        do = "give a tool table" if machine.tools is None else "write it into the tool table"
+        raise block.refuse(f"{name} needs the diameter of {which}; {do}.")
+    if tool.number and tool.number not in machine.tools:
+        raise block.refuse(f"tool {tool.number} is not in the tool table; add it.")
+    if not tool.number and machine.tool_name:
+        raise block.refuse(f'tool "{machine.tool_name[:40]}" is not in the tool table; add it under that name.')
+    return from_si(tool.diameter, machine.unit) / 2.0, tool.orientation

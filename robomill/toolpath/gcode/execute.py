@@ -18,6 +18,9 @@ def execute(machine: Machine, block: Block, saved: dict[str, Any]) -> bool:
     """Execute a checked line; True if the program ends here. ``saved`` is where M70 keeps the modes."""
     words, g = block.words, block.g
     plain = moves.plain_words(block)
+    stays = g.get(modal.NON_MODAL, -1) in (-1, 40, 280, 300, 530) and block.motion in (-1, 0, 10)
+    if machine.leaving is not None and (not stays or modal.UNITS in g):
+        machine.leaving = None  # what counts from elsewhere, and arcs and cycles, go on from the programmed point
     set_rates(machine, plain)
     if g.get(modal.SPINDLE_MODE) == 960:
         machine.note("surface-speed", "warning", "G96: the spindle speed follows the diameter and is not known")
@@ -114,6 +117,9 @@ def _execute_g(machine: Machine, block: Block, plain: list[float]) -> None:
         _check_plane(machine, block, g[modal.PLANE])
         set_plane(machine, plain)
     if modal.UNITS in g:
+        kept = is_cycle(machine.motion) or machine.modal is not None
+        if kept and g[modal.UNITS] != machine.unit_code and not machine.strict:
+            raise block.refuse("units change while a cycle is in force, whose depths they would change; end it first.")
         machine.set_units(g[modal.UNITS])
     if modal.DIAMETER in g:
         diameter = g[modal.DIAMETER] == 70

@@ -77,8 +77,9 @@ class Machine:
     ``feed_in_block`` that F beside a word of units counts in the new ones; ``sharp`` that compensation goes around
     outside corners without an arc (G451).
 
-    ``t_changes`` says that T changes the tool at once, without M6; ``kept_d`` is the D that a G41 without one means, 0
-    for the tool in the spindle. ``radii`` are the radius and wear that G10 gives a tool.
+    ``t_changes`` says that T changes the tool at once, without M6; ``kept_d`` is the D that a G41 without one means,
+    None for the tool in the spindle. ``leaving`` is how far aside of the
+    contour G40 has left the tool, until it moves in the plane. ``radii`` are the radius and wear that G10 gives a tool.
 
     ``corner`` is what the line says of the corner at its end (size in program units), ``rounding`` what RNDM says of
     all corners (a radius, 0: none), ``polar_words`` says that X
@@ -87,10 +88,15 @@ class Machine:
     as ``further`` says, ``is_fanuc``
     says that G10 and variables mean what they mean there, ``other_control`` that it is neither LinuxCNC nor grbl,
     ``strict`` that LinuxCNC is stated, ``variable`` what those are that nobody has set, ``machine_word`` which word
-    leads to a place in the machine, ``sides`` what it calls G41 and G42. ``keeps_heights`` and ``kept_steps`` are
+    leads to a place in the machine, ``zero_ended`` that none of G54 and on is in force (None: the program has
+    none), ``sides`` what it calls G41 and G42. ``keeps_heights`` and ``kept_steps`` are
     those of ``cycle_rules``. ``modal`` is what MCALL or G66 holds, ``r_set`` are the R parameters that a program
     has set.
     """
+
+    kept_d: float | None = None
+    zero_ended: bool | None = None
+    leaving: list[float] | None = None
 
     def __init__(self, tools: Tools | None) -> None:
         asked = WeakMethod(self.provided)  # no ring that only the garbage collector would undo
@@ -120,7 +126,7 @@ class Machine:
         self.feed_mode, self.feed, self.speed, self.spindle, self.spindle_mode = 940, 0.0, 0.0, 0, 970
         self.retract_r, self.diameter_mode = True, False
         self.tool, self.selected, self.in_spindle = _NO_TOOL, 0, 0
-        self.tool_name, self.t_changes, self.kept_d = "", False, 0.0
+        self.tool_name, self.t_changes = "", False
         self.away: tuple[bool, ...] = (False, False, False)
         self.aways: list[tuple[int, tuple[bool, ...]]] = []
         self.homes: set[int] = set()
@@ -174,7 +180,8 @@ class Machine:
         held = self.compensation is not None or self.recorder.held is not None
         other = self.diameter_mode or self.polar_words or self.modal is not None or self.scale is not None
         counted = self.feeds_follow or self.unit_code == 210
-        return counted and not (held or other or self.rounding or any(self.away) or self.stuck or self.leans)
+        lost = any(self.away) or self.zero_ended or self.stuck or self.leans or self.leaving is not None
+        return counted and not (held or other or self.rounding or lost)
 
     def set_units(self, code: int) -> None:
         """G20 or G21: every length that is kept changes its unit."""
@@ -302,11 +309,12 @@ class Machine:
         self.scale, self.initial_level = scale, math.nan
 
     def said_point(self) -> list[float]:
-        """Where the tool stands (x, y, z, a, b, c) as a line would say it, while words are scaled or not."""
-        scale = self.scale
+        """Where the tool stands (x, y, z, a, b, c) as a line would say it: without cutter compensation and scale."""
+        held, scale = self.compensation, self.scale
+        point = list(self.p) if held is None or held.programmed is None else held.programmed_point(self)
         if scale is None:
-            return list(self.p)
-        return [*(scale.said(axis, self.p[axis]) for axis in range(3)), *self.p[3:]]
+            return list(point)
+        return [*(scale.said(axis, point[axis]) for axis in range(3)), *point[3:]]
 
     def meant(self, place: tuple[float, float]) -> tuple[float, float]:
         """Where X and Y of a line lie in the current coordinate system."""

@@ -141,13 +141,20 @@ def _leave(machine: Machine, what: str, axes: list[bool]) -> None:
 
 
 def move(machine: Machine, block: Block) -> None:
-    """G0, G1, G2 and G3."""
+    """G0, G1, G2 and G3.
+
+    On a Fanuc cutter compensation begins and ends on moves in its plane: what goes along the third axis alone goes
+    straight, before G41 has begun, and still aside of the contour where G40 has not yet been followed by a move in it.
+    (16/18, Operator's Manual: a movement not in the offset plane is a block without tool movement.)
+    """
     words = plain_words(block)
     demand(machine, block, rules.check_move(machine, words, block.motion))
     end = find_end(machine, block, words)
     compensation = machine.compensation
     is_arc = rules.is_arc(block.motion)
-    if compensation is not None and compensation.radius > 0 and not (is_arc and machine.plane == 19):
+    in_plane = is_arc or _in_plane(machine, block)
+    waits = machine.is_fanuc and not in_plane and compensation is not None and compensation.programmed is None
+    if compensation is not None and compensation.radius > 0 and not waits and not (is_arc and machine.plane == 19):
         if machine.rounding:
             machine.need_compensation_off(block, "RNDM")
         machine.arc_not_allowed = False
@@ -158,11 +165,34 @@ def move(machine: Machine, block: Block) -> None:
             machine.need_compensation_off(block, "G53")
         compensated_corners.follow(machine, block, end)
         return
-    row = Move(block.line)
-    demand(machine, block, rules.make_move(machine, words, block.motion, end, row))
+    row, aside = Move(block.line), None if is_arc else _aside(machine, block)
+    there = end if aside is None else [p + step for p, step in zip(end, aside)]
+    demand(machine, block, rules.make_move(machine, words, block.motion, there, row))
+    if aside is not None:
+        machine.p, machine.arc_not_allowed = end, True
+    else:
+        machine.leaving = None
     if machine.corner is not None and not (row.kind == FEED or (is_arc and machine.corner.kind == ROUND)):
         raise block.refuse(AT_END)
     machine.recorder.add(row, machine.corner_of(row.kind))
+
+
+def _in_plane(machine: Machine, block: Block) -> bool:
+    """Whether a line names an axis of the plane, or a polar place in it."""
+    named = {"xyz"[axis] for axis in rules.axes(machine.plane)[:2]}
+    return not block.words.keys().isdisjoint(named | {"@", "^"})
+
+
+def _aside(machine: Machine, block: Block) -> list[float] | None:
+    """How far aside of the contour a line goes that names no axis of the plane behind G40; None back onto it."""
+    if machine.leaving is None or _in_plane(machine, block):
+        return None
+    if machine.is_fanuc:
+        return machine.leaving
+    if max(map(abs, machine.leaving)) > 1e-9:
+        text = "cutter compensation ends without a move in its plane: the tool is taken to go back onto the contour,"
+        machine.note("ends-aside", "warning", f"{text} which it may cut into; leave the contour in the plane first")
+    return None
 
 
 def drill(machine: Machine, block: Block) -> None:
@@ -174,7 +204,7 @@ def drill(machine: Machine, block: Block) -> None:
     demand(machine, block, refusal)
     if block.motion == 880:
         machine.note("manual-retract", "warning", "G88 stops for a retract by hand, which the path leaves out")
-    if cycles.is_tap(block.motion) and machine.plane != 17:
+    if cycles.is_tap(block.motion) and machine.plane != 17 and not machine.is_fanuc:
         message = f"{g_name(block.motion)} outside of G17 taps along the wrong axes, as LinuxCNC does"
         machine.note("tap-axes", "warning", message)
 
@@ -210,7 +240,8 @@ def home(machine: Machine, block: Block, code: int) -> None:
     machine.need_compensation_off(block, f"G{code // 10}")
     end = find_end(machine, block)
     machine.place(block.words)
-    machine.go(TRAVERSE, block.line, end)
+    aside = _aside(machine, block) or [0.0] * 6
+    machine.go(TRAVERSE, block.line, [p + step for p, step in zip(end, aside)])
     stored = 5161 if code == 280 else 5181
     values = machine.store.values(stored, 6)
     if code // 10 not in machine.homes and not any(values):
@@ -221,7 +252,7 @@ def home(machine: Machine, block: Block, code: int) -> None:
     target = _machine_end(machine, dict(zip(XYZABC, target)))
     chosen = [letter in block.words for letter in XYZABC]
     final = [t if c or not any(chosen) else e for t, e, c in zip(target, end, chosen)]
-    machine.go(TRAVERSE, block.line, final)
+    machine.go(TRAVERSE, block.line, [p + step for p, step in zip(final, aside)])
     machine.p = final
 
 

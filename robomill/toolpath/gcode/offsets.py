@@ -64,6 +64,8 @@ def select_system(machine: Machine, block: Block, system: int) -> None:
         return
     if machine.before_turn is not None:
         raise block.refuse(f"{name} while coordinates are shifted or turned (G68, TRANS, ROT); end that first.")
+    if machine.scale is not None and (machine.is_fanuc or not machine.other_control):
+        raise block.refuse(f"{name} while coordinates are scaled or mirrored (G51, G51.1); end that first.")
     absolute = _absolute(machine)
     origin, rotation = stored_system(machine, system)
     machine.p = _in_system(machine, absolute, origin, rotation)

@@ -24,6 +24,7 @@ from robomill.toolpath.gcode.lines import Lines
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.program import Program, most_moves
+from robomill.toolpath.gcode.sinumerik.lines import chooses_zeros
 from robomill.toolpath.gcode.tilted import check_rotary, drop_positioning
 from robomill.toolpath.path import TABLES, Toolpath, far_off
 from robomill.toolpath.text import Source, is_apt, named_as_file, read_source
@@ -145,6 +146,7 @@ def _machine(tools: Tools | None, dialect: Dialect, lines: Lines) -> Machine:
         machine.store.cut_towards_zero()
     if dialect.name == "sinumerik":
         machine.further = "G5{:02}"
+        machine.zero_ended = False if chooses_zeros(lines.data) else None
         machine.t_changes = never_changes(lines.data)
     if dialect.name == "fanuc":
         begin_empty(machine)

@@ -194,3 +194,49 @@ def test_beside_the_image_of_a_heidenhain_contour(side: str) -> None:
     plain, mirrored = (interpret(text, tools={1: Tool(1, 8e-3)}) for text in texts)
     np.testing.assert_allclose(mirrored.end[-4:] * [-1, 1, 1], plain.end[-4:], atol=1e-12)
     assert plain.end[-5, 0] * 1e3 == pytest.approx(-4.0 if side == "L" else 4.0)
+
+
+BESIDE = "O1\nG21 G90 S900 M3 F100\nT1 M6\nG0 X0 Y-10. Z{}\n{}Y20.\n{}M30\n"
+START = "G41 D1 G1 X10. Y0\n"
+
+
+def aside(height: float, start: str, end: str) -> list[list[float]]:
+    """Where the moves behind the first one end (mm), beside a wall along +Y at X10 by a radius of 2."""
+    program = interpret(BESIDE.format(height, start, end), dialect="fanuc", tools={1: Tool(1, diameter=4e-3)})
+    return (np.round(program.end * 1e3, 6) + 0.0).tolist()[1:]
+
+
+@pytest.mark.parametrize("end", ["G40 Z5.\nX30. Y20.\n", "G40\nZ5.\nX30.\n", "G40\nG91 Z5.\nG90 X30.\n"])
+def test_behind_g40_a_fanuc_stays_beside_the_contour_until_it_moves_in_the_plane(end: str) -> None:
+    """16/18, Operator's Manual: with G40 and no movement in the offset plane the vector stands square to the cut before
+    and is cancelled in the next move. The tool went 2 mm into the wall as it rose."""
+    assert aside(0, START, end) == [[8, 0, 0], [8, 20, 0], [8, 20, 5], [30, 20, 5]]
+
+
+def test_behind_g40_a_fanuc_goes_home_from_beside_the_contour() -> None:
+    found = aside(0, START, "G40\nG91 G28 Z0\nG90 G0 X30. Y20.\nZ5.\n")
+    assert found[2][:2] == found[3][:2] == [8, 20]
+    assert found[-1] == [30, 20, 5]
+    with pytest.raises(GCodeError, match="the move after G40 must be straight"):
+        aside(0, START, "G40 Z5.\nG2 X20. Y30. R10.\n")
+
+
+@pytest.mark.parametrize("start", ["G41 D1\nG0 Z0\nG1 X10. Y0\n", "G41 D1 G0 Z0\nG1 X10. Y0\n"])
+def test_cutter_compensation_of_a_fanuc_begins_on_a_move_in_its_plane(start: str) -> None:
+    """It starts with the first block that names an axis of the plane: the tool went down 2 mm aside."""
+    assert aside(10, start, "G40 X0\n") == [[0, -10, 0], [8, 0, 0], [8, 20, 0], [0, 20, 0]]
+
+
+@pytest.mark.parametrize(
+    ("dialect", "text"),
+    [
+        ("heidenhain", "BEGIN PGM A MM\nTOOL CALL 1 Z S9 F99\nL X+0 Y-9 Z+0 FMAX M3\nL X+10 Y+0 RL\nL Y+20\n{}"),
+        ("sinumerik", "G71 G90 S9 M3 F99\nT1\nM6\nG0 X0 Y-9 Z0\nG41 G1 X10 Y0\n{}"),
+    ],
+)
+def test_where_compensation_ends_along_z_alone_the_way_back_is_told(dialect: str, text: str) -> None:
+    """What these controls do there is not known well enough to be read without a word."""
+    ends = {"heidenhain": ("L Z+50 R0 FMAX\n", "L X+0 R0\nL Z+50 FMAX\n"), "sinumerik": ("G40 Z5\n", "G40 X0\nZ5\n")}
+    for end, told in zip(ends[dialect], (1, 0)):
+        program = interpret(text.format(end), dialect=dialect, tools={1: Tool(1, diameter=4e-3)})
+        assert sum(finding.code == "ends-aside" for finding in program.findings) == told

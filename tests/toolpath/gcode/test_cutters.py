@@ -85,3 +85,23 @@ def test_the_tool_in_the_spindle_needs_a_size_whatever_was_called_before(words: 
     line = 4 + words.count("\n")
     with pytest.raises(GCodeError, match=f'^Line {line}: tool "FOO" is not in the tool table; add it under that name'):
         interpret(text, dialect="sinumerik", tools=tools)
+
+
+CUT = "O0001\nG21 G90 S900 M3\nT1 M6\nG0 X0 Y0 Z0\n{}Y20.\n{}G40 X0\nM30\n"
+
+
+def test_another_d_within_the_contour_is_refused_and_the_same_one_is_heard() -> None:
+    """A control changes over to D2 at once; passed over, the rest of the contour was cut with the size before."""
+    assert told(CUT.format("G41 D1 G1 X10. Y0 F100.\n", "D1 Y30.\n"), "fanuc")[1:3] == [[8, 20, 1], [8, 30, 1]]
+    for other in ("D2", "D0"):
+        with pytest.raises(GCodeError, match=rf"^Line 7: {other} changes the cutter while G41 or G42 is on; use G40"):
+            told(CUT.format("G41 D1 G1 X10. Y0 F100.\n", f"{other} Y30.\n"), "fanuc")
+
+
+@pytest.mark.parametrize("start", ["G41 D0 G1 X10. Y0 F100.\n", "D0\nG41 G1 X10. Y0 F100.\n"])
+def test_d0_of_a_fanuc_control_is_no_size_at_all(start: str) -> None:
+    """Its offset number 0 always means 0; LinuxCNC takes the tool in the spindle, of a radius of 2 mm."""
+    assert told(CUT.format(start, ""), "fanuc") == [[10, 0, 1], [10, 20, 1], [0, 20, 1]]
+    assert interpret(CUT.format(start, ""), dialect="fanuc").ok, "no table is needed for it"
+    if start.startswith("G41"):
+        assert told(CUT.format(start, "").replace("O0001", ""), "linuxcnc")[1] == [8, 20, 1]

@@ -98,3 +98,20 @@ def test_a_probe_that_must_meet_something_has_a_way_to_go(code: str, must_meet: 
             interpret(text.format(50))
     else:
         assert (interpret(text.format(50)).end[-1] * 1e3).tolist() == pytest.approx([5, 2, 50])
+
+
+UNITS_IN_CYCLE = [
+    ("fanuc", "O1\nG21 G90 S9 M3 F99\nG81 X1. Z-5. R2.\n{}G20\nX1.\n", "G80\n"),
+    ("auto", "G21 G90 S9 M3 F99\nG81 X1 Z-5 R2\n{}G20\nG0 X1\n", "G80\n"),
+    ("sinumerik", "G71 G90 S9 M3 F99\nMCALL CYCLE81(30,0,2,-5)\n{}G70\nG0 X1\n", "MCALL\n"),
+]
+
+
+@pytest.mark.parametrize(("dialect", "text", "end"), UNITS_IN_CYCLE)
+def test_units_do_not_change_beneath_a_cycle_that_holds(dialect: str, text: str, end: str) -> None:
+    """A depth of 5 mm became one of 5 in at the next hole."""
+    with pytest.raises(GCodeError, match=r"^Line [34]: units change while a cycle is in force"):
+        interpret(f"{text.format('')}M30\n", dialect=dialect)
+    assert interpret(f"{text.format(end)}M30\n", dialect=dialect).end[-1, 0] == pytest.approx(25.4e-3)
+    same = text.format("").replace("G20", "G21").replace("G70", "G71")
+    assert interpret(f"{same}M30\n", dialect=dialect).end[-1, 0] == pytest.approx(1e-3)

@@ -112,3 +112,31 @@ def test_lengths_that_are_kept_change_their_unit() -> None:
     assert mixed.end == pytest.approx(metric.end)
     assert mixed.rotary == pytest.approx(metric.rotary)
     assert interpret("G21 F254\nG20\nG1 X1\nM2\n").v_f == pytest.approx([254e-3 / 60])
+
+
+STEPS = {
+    "sinumerik": (
+        "G71 G90 G17 F100 S900 M3\nT1 M6\n{}G0 X5 Y-10 Z0\n"
+        "G41 G1 X10 Y0\nY=IC(20)\nG91 X=AC(30)\nG90 G40 X30 Y40\nM30\n",
+        {"": "", "X": "MIRROR X0\n", "Y": "MIRROR Y0\n", "XY": "MIRROR X0 Y0\n"},
+    ),
+    "heidenhain": (
+        "BEGIN PGM A MM\nTOOL CALL 1 Z S900 F100\n{}L X+5 Y-10 Z+0 FMAX M3\nL X+10 Y+0 RL\nL IY+20\nL IX+20\n"
+        "L X+30 Y+40 R0\nEND PGM A MM\n",
+        {"": "", "X": "CYCL DEF 8.1 X\n", "Y": "CYCL DEF 8.1 Y\n", "XY": "CYCL DEF 8.1 X Y\n"},
+    ),
+}
+
+
+@pytest.mark.parametrize("mirrored", ["", "X", "Y", "XY"])
+@pytest.mark.parametrize("control", STEPS)
+def test_steps_within_a_mirrored_contour_count_from_where_it_was_said_to_be(control: str, mirrored: str) -> None:
+    """Left of a wall along +Y at X10 and one along +X at Y20 by a radius of 2; its image, whatever side that is on.
+
+    The steps were counted from the place in the image: the tool went to the other side of zero.
+    """
+    text, images = STEPS[control]
+    program = interpret(text.format(images[mirrored]), dialect=control, tools={1: Tool(1, diameter=4e-3)})
+    ends = np.array([(8, 0), (8, 20), (10, 22), (30, 22), (30, 40)], dtype=float)
+    ends *= [-1 if "X" in mirrored else 1, -1 if "Y" in mirrored else 1]
+    np.testing.assert_allclose(program.end[1:, :2] * 1e3, ends, atol=1e-9)

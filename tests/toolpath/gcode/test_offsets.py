@@ -374,3 +374,22 @@ def test_under_compensation_other_systems_alone_are_placed(kind: str, system: in
         return
     with pytest.raises(GCodeError, match=f"^Line 6: G10 {kind} cannot move the current coordinate system"):
         interpret(text.format(f"G10 {kind} P{system} X5\n"))
+
+
+@pytest.mark.parametrize("shift", ["G52 X10.", "G92 X10. Y0"])
+def test_what_a_control_forbids_within_a_rotation_is_refused(shift: str) -> None:
+    """Fanuc: G52 to G59 and G92 must not be specified in coordinate system rotation; along Z alone nothing turns."""
+    head = "O0001\nG21 G90 G54\nG0 X1. Y0 Z10.\nG68 X0 Y0 R90.\n"
+    with pytest.raises(GCodeError, match=r"^Line 5: G\d\d while coordinates are turned \(G68\) is not read"):
+        interpret(f"{head}{shift}\nG0 X0 Y0\nM30\n", dialect="fanuc")
+    program = interpret(f"{head}G52 Z5.\nG0 X2. Y0 Z1.\nM30\n", dialect="fanuc")
+    np.testing.assert_allclose(program.end[-1] * 1e3, [0, 2, 6], atol=1e-9)
+
+
+@pytest.mark.parametrize("scale", ["G51 X0 Y0 P2.", "G51.1 X0"])
+def test_another_system_within_a_scale_or_mirror_is_refused(scale: str) -> None:
+    """Fanuc: G52 to G59 must not be specified in scaling, nor in a mirror image; G54 within G54 is no other."""
+    text = f"O0001\nG21 G90 G54\nG10 L2 P2 X100. Y0 Z0\nG0 X1. Y0 Z10.\n{scale}\n{{}}\nG0 X1. Y0\nM30\n"
+    with pytest.raises(GCodeError, match=r"^Line 6: G55 while coordinates are scaled or mirrored"):
+        interpret(text.format("G55"), dialect="fanuc")
+    assert len(interpret(text.format("G54"), dialect="fanuc")) == 2

@@ -12,7 +12,7 @@ from robomill.toolpath.gcode.fanuc.scaling import scales
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.moves import drill
 from robomill.toolpath.gcode.program import TRAVERSE
-from robomill.toolpath.gcode.rules.cycle_rules import is_cycle, pecks, takes_dwell
+from robomill.toolpath.gcode.rules.cycle_rules import is_cycle, is_tap, pecks, takes_dwell
 from robomill.toolpath.gcode.rules.motion_rules import RAPID
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.plane import axes, polar
@@ -82,6 +82,9 @@ def repeats(machine: Machine, block: Block) -> None:
     words, motion = block.words, block.motion
     if not is_cycle(motion) or motion == _BACK_BORING:
         return
+    if is_tap(motion) and 1.0 <= words.get("j", 0.0) <= 9.0 and not {"i", "k"} & words.keys():
+        text = f"J{words.pop('j'):g} of a tap brings it out so many times as fast (Haas), which is left out"
+        machine.note("tap-out", "info", text)
     block.falls = pecks(motion) and {"i", "j", "k"} <= words.keys() and "q" not in words
     if "k" in words and "l" not in words and not block.falls:
         words["l"] = words.pop("k")

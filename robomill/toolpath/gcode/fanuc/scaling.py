@@ -31,7 +31,7 @@ def scales(machine: Machine, block: Block, code: int) -> bool:
     machine.initial_level = math.nan
     words = block.words
     if machine.before_turn is not None or machine.polar_words:
-        raise block.refuse(f"{_CODES[code]} inside of G68 or G16 is not read; give it before them.")
+        raise block.refuse(f"{_CODES[code]} inside of G68 or G16 is not read; end that first (G69, G15).")
     if code == _UNSCALED:
         if words.keys() & set("xyz"):
             raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")
@@ -110,6 +110,8 @@ def scale_words(machine: Machine, block: Block) -> None:
         return
     if non_modal not in (-1, 40):
         raise block.refuse(f"{g_name(non_modal)} while coordinates are scaled (G51) is not read; end that first (G50).")
+    if not words.keys().isdisjoint("@^"):
+        raise block.refuse("G16 while coordinates are scaled or mirrored is not read; end that first (G50, G50.1).")
     cycle = is_cycle(motion)
     if motion not in (-1, 800, RAPID, LINE, CLOCKWISE, COUNTERCLOCKWISE) and not cycle:
         raise block.refuse(f"{g_name(motion)} while coordinates are scaled (G51) is not read; end that first (G50).")

@@ -25,6 +25,7 @@ _FROM_TABLE = "takes its shift from a table, which is not read; write X, Y, Z."
 _DRILLS = {
     200: "drilling",
     201: "reaming",
+    202: "boring",
     203: "drilling",
     205: "drilling",
     206: "tapping",
@@ -66,6 +67,9 @@ class KlartextCycles(KlartextValues):
         if number in _DRILLS or number in _PATTERNS:
             if number in _DRILLS:
                 self.drill, self.says_out = number, "Q208" in rest
+                if number == 202:
+                    text = "CYCL DEF 202 is read as boring; its step aside in the hole (Q214) is left out"
+                    self.machine.findings.add("fine-boring", "info", line, text)
             for name, value in re.findall(r"(Q\d+) ?= ?(\S+)", rest):
                 if name == "Q208" and value in ("MAX", "FMAX"):
                     self.set_q(name, RAPID_OUT, line)
@@ -265,7 +269,7 @@ class KlartextCycles(KlartextValues):
         """The feed out of a hole: Q208, and Q206 where that is 0; without a Q208 a rapid, but for tapping."""
         if number == 206:
             return down
-        if number not in (201, 203) and not (number == 205 and self.says_out):
+        if number not in (201, 202, 203) and not (number == 205 and self.says_out):
             return 0.0
         return 0.0 if self.q(208) >= RAPID_OUT else self.q(208) / self.tenth or down or math.inf
 

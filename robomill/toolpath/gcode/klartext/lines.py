@@ -15,6 +15,8 @@ from robomill.toolpath.gcode.dialects import plain_numbers
 from robomill.toolpath.gcode.klartext.planes import WORD, Words
 from robomill.toolpath.gcode.klartext.tools import BY_TOOTH, KlartextTools
 from robomill.toolpath.gcode.klartext.values import NUMBER
+from robomill.toolpath.gcode.program import FEED
+from robomill.toolpath.gcode.rules.motion_rules import MINUTE
 from robomill.toolpath.gcode.scan import behind_remark
 from robomill.toolpath.gcode.tool_axis import angles_of
 from robomill.toolpath.gcode.words import Block
@@ -28,8 +30,9 @@ _RADIUS = re.compile(rf"(?<![A-Z])R[ \t]*({NUMBER})")
 _NORMAL = re.compile(rf"N[XYZ] ?{NUMBER}")
 _WITH_M = re.compile(
     rf"(M118(?: ?[XYZABC] ?{NUMBER})*|M128|M140 ?MB ?(?:MAX|{NUMBER})|M120|M124|M103|M138)"
-    rf"(?: ?(?:F|LA|T) ?(?:MAX|{NUMBER})| [ABC]\b)*"
+    rf"(?: ?(?:F|LA|T) ?(?:MAX|AUTO|{NUMBER})| [ABC]\b)*"
 )
+_BACK = re.compile(rf"MB ?(MAX|{NUMBER})(?: ?F ?(MAX|AUTO|{NUMBER}))?")
 _SIDE = re.compile(r"(?<![A-Z])R(0|L|R)(?![\d.,])")
 _SENSE = re.compile(r"DR[ \t]*([-+])")
 _M = re.compile(r"(?<![A-Z])M[ \t]*(\d+)")
@@ -151,9 +154,6 @@ class Klartext(KlartextTools):
     # --- moves
     def here(self) -> list[float]:
         """The programmed point, in the coordinates in force."""
-        compensation = self.machine.compensation
-        if compensation is not None and compensation.programmed is not None:
-            return list(compensation.programmed_point(self.machine))
         return self.machine.said_point()
 
     def set_pole(self, code: str, line: int) -> None:
@@ -203,6 +203,11 @@ class Klartext(KlartextTools):
             out.append("G95" if self.per_turn else "G94")
         if feed is not None and feed[2] != "MAX":
             out.append(self.feed_words(feed[1], feed[2], line))
+        if 140 in codes:
+            at = self.here()
+            if arc or any(abs(value - at["XYZABC".index(letter)]) > 1e-9 for letter, value in where.items()):
+                raise GCodeError.at(line, "M140 beside a move is not read; put it on a line of its own.")
+            where = {}  # the place where the tool is, said once more
         machine.machine_word = "M140" if 140 in codes else "M91" if 91 in codes else "M92"
         if where:
             if not {91, 92} & {*codes} and (feed is None or feed[2] != "MAX"):
@@ -215,8 +220,6 @@ class Klartext(KlartextTools):
         out += [f"M{m}" if m in _KEPT_M else _PAIRS[m] for m in codes if m in _KEPT_M or m in _PAIRS]
         self._say_m([m for m in codes if m not in _KEPT_M and m not in _PAIRS], line)
         if 140 in codes:
-            if where:
-                raise GCodeError.at(line, "M140 beside a move is not read; put it on a line of its own.")
             out.append(self._retract(code, line))
         self.modal_cycle = self.modal_cycle or 89 in codes
         self.due = 99 in codes or (self.modal_cycle and bool(where))
@@ -239,14 +242,23 @@ class Klartext(KlartextTools):
                 self.machine.findings.add("unknown-m", "ignored", line, f"M{m} is left out: it moves nothing")
 
     def _retract(self, code: str, line: int) -> str:
-        found = re.search(rf"MB ?(MAX|{NUMBER})", code)
+        """M140 goes back along the tool by MB, at its own F, which holds for that alone, or at rapid."""
+        found = _BACK.search(code)
         if found is None or found[1] == "MAX":
             return "G53 G0 Z0"
-        at, far = self.here(), self.number(found[1], line)
+        machine, at, far = self.machine, self.here(), self.number(found[1], line)
         axis = axis_from_tilt(math.radians(at[3]), math.radians(at[4])).tolist()  # of the tool, which may lean
-        if any(away and k for away, k in zip(self.machine.away, axis)):
+        if any(away and k for away, k in zip(machine.away, axis)):
             return ""
-        return "G0 " + " ".join(f"{letter}{p + far * k:.9f}" for letter, p, k in zip("XYZ", at, axis) if k)
+        if found[2] in (None, "MAX"):
+            return "G0 " + " ".join(f"{letter}{p + far * k:.9f}" for letter, p, k in zip("XYZ", at, axis) if k)
+        if self.per_turn:
+            raise GCodeError.at(line, "M136 would count the F of M140 per turn, which is not read; end it by M137.")
+        machine.need_compensation_off(Block(line), "M140 with F")
+        end = [*(p + far * k for p, k in zip(machine.p, axis)), *machine.p[3:]]
+        machine.go(FEED, line, end, self.rate(found[2], line) * machine.factor / MINUTE)
+        machine.p = end
+        return ""
 
     def _end(self, kind: str, words: Words, code: str, line: int) -> tuple[dict[str, float], str]:
         """Where a line leads, by letter, and the words of its arc ("" for a straight move)."""

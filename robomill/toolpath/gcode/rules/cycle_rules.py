@@ -109,7 +109,7 @@ def cycle(m, w, motion: int, line: int, end, rows) -> int:
             return refusal
         above = current if repeat == 0 and (current > clearance or m.is_fanuc) else clear
         _go(m, TRAVERSE, line, end, above, rows)
-        if above > clearance:
+        if above > clearance or (m.is_fanuc and above < clearance):
             _go(m, TRAVERSE, line, end, clearance, rows)
         _hole(m, motion, line, end, (clearance, clear, bottom), rows)
     for axis in range(6):
@@ -212,10 +212,10 @@ def _hole(m, motion: int, line: int, end, heights, rows) -> None:
 
 
 def _tap(m, line: int, end, height: float, rows) -> None:
-    """Outside of G17 the reference taps along permuted axes; read as that machine would."""
+    """Outside of G17 the reference taps along permuted axes; read as that machine would, on a Fanuc along its own."""
     first, second, third = axes(m.plane)
     u, v = end[first], end[second]
-    end[0], end[1], end[2] = from_plane(m.plane if m.plane == 17 else 37 - m.plane, u, v, height)
+    end[0], end[1], end[2] = from_plane(m.plane if m.plane == 17 or m.is_fanuc else 37 - m.plane, u, v, height)
     _go(m, FEED, line, end, end[third], rows)
     end[first], end[second], end[third] = u, v, height
 

@@ -61,7 +61,7 @@ class SinumerikAngles(SinumerikPolar):
         angle, rest = self._taken(code, line)
         if self._motion(rest) not in (0, 1) or _OTHER_PLANE.search(rest):
             raise GCodeError.at(line, f"{self._said} is the angle of a straight cut (G0, G1) in G17; mend the line.")
-        at, absolute = self._here(), self._absolute(rest)
+        at, absolute = self.machine.said_point(), self._absolute(rest)
         along = polar(1.0, math.radians(angle))
         said = {
             letter: self.value(inside or plain, line) + at["XY".index(letter)] * (way == "IC" or not (way or absolute))

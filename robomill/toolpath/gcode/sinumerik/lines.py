@@ -25,6 +25,9 @@ _SILENT = re.compile(
 _ROUND_CORNERS = re.compile(r"\bKONT[CT]?\b", re.IGNORECASE)
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
 _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
+_SETTABLE = re.compile(r"\bG5(?:[4-7]|0[5-9]|[1-9]\d)\b", re.IGNORECASE)
+_CHOSEN = re.compile(rb"^[^;\n]*?\bG5(?:[4-7]|0[5-9]|[1-9]\d)\b", re.MULTILINE | re.IGNORECASE)
+_GOES = re.compile(r"\b[XYZ](?:1?[ \t]*=|[ \t]*[-+.\d])", re.IGNORECASE)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)"
 _EXPONENT = re.compile(rf"({_NUMBER})EX([-+]?\d{{1,3}})\b", re.IGNORECASE)
 _PLACE = re.compile(rf"\b([XYZABCIJK])[ \t]*=[ \t]*(AC|IC)[ \t]*\([ \t]*({_NUMBER})[ \t]*\)", re.IGNORECASE)
@@ -89,6 +92,7 @@ def translated(raw: str, number: int, machine: Machine) -> str:
         code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
     code = _FIXED_POINT.sub(lambda found: _fixed_point(found, machine), code)
     code = _feeds(code, number, machine)
+    code = _in_machine(code, machine)
     code = _WORDS.sub(lambda found: _UNITS[found[0].upper()], code)
     code = _written_out(code)
     code = _tool_axis(code, number, machine)
@@ -107,6 +111,23 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = _TOOL.sub(lambda found: named_tool(found[1], number, machine), code)
     code = re.sub(r"\bD\d+\b", "", code, flags=re.IGNORECASE)
     return code + comment
+
+
+def chooses_zeros(data: bytes) -> bool:
+    """Whether a program has G54 to G57 or G505 to G599, in which its part lies."""
+    return _CHOSEN.search(data) is not None
+
+
+def _in_machine(code: str, machine: Machine) -> str:
+    """G500 ends G54 and its kin: what a program that has one of them says behind it are places in the machine."""
+    said = _WORDS.findall(code)
+    if machine.zero_ended is not None:
+        ends = any(each.upper() == "G500" for each in said)
+        machine.zero_ended = ends or (machine.zero_ended and not _SETTABLE.search(code))
+    machine.machine_word = "G500" if machine.zero_ended else "G53"
+    if not machine.zero_ended or not _GOES.search(code) or not _absolute(code, machine):
+        return code
+    return code if re.search(r"\b(?:G0*53|G153|SUPA)\b", code, re.IGNORECASE) else f"{code} G53"
 
 
 def _unswivelled(found: re.Match[str], number: int, machine: Machine) -> str:
@@ -232,10 +253,7 @@ def _tool_axis(code: str, number: int, machine: Machine) -> str:
 def _places(code: str, machine: Machine) -> str:
     """AC( ) says a place and IC( ) a step, whatever mode is in force: as the mode in force counts."""
     absolute = _absolute(code, machine)
-    compensation = machine.compensation
     here = machine.said_point()
-    if compensation is not None and compensation.programmed is not None:
-        here = compensation.programmed_point(machine)
 
     def counted(found: re.Match[str]) -> str:
         letter, way, value = found[1].upper(), found[2].upper(), float(found[3])

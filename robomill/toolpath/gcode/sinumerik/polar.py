@@ -41,13 +41,6 @@ class SinumerikPolar(SinumerikShapes):
             return self._to_polar(left, line)
         return self._by_angle(left, line) if _ANGLE.search(left) else left
 
-    def _here(self) -> list[float]:
-        """Where the tool stands, as lines say it."""
-        compensation = self.machine.compensation
-        if compensation is not None and compensation.programmed is not None:
-            return list(compensation.programmed_point(self.machine))
-        return self.machine.said_point()
-
     def _absolute(self, code: str) -> bool:
         mode = _MODES.search(code)
         return self.machine.absolute if mode is None else mode[1] == "0"
@@ -56,18 +49,19 @@ class SinumerikPolar(SinumerikShapes):
         found = _MOTION.search(code)
         return self.machine.motion // 10 if found is None else int(found[1])
 
-    def _in_plane(self, name: str, line: int) -> None:
-        if self.machine.plane != 17 or self.bent or any(self.machine.away[:2]):
+    def _in_plane(self, name: str, line: int, moves: bool = True) -> None:
+        if self.machine.plane != 17 or (moves and self.bent) or any(self.machine.away[:2]):
             raise GCodeError.at(line, f"{name} is read in G17, from a known place and beside G0 to G3 alone.")
 
     # --- poles
     def _put_pole(self, kind: str, code: str, line: int) -> None:
         """G110 counts from where the tool is, G111 from zero, G112 from the pole before."""
-        self._in_plane(f"G11{kind}", line)
+        self._in_plane(f"G11{kind}", line, moves=False)
         said = {letter: self.value(inside or plain, line) for letter, _, inside, plain in _PLACE.findall(code)}
         if said.keys() != {"X", "Y"} or (kind == "2" and self.middle is None):
             raise GCodeError.at(line, f"G11{kind} needs X and Y, and G112 a pole before it; as in G111 X10 Y20.")
-        base = self._here()[:2] if kind == "0" else [0.0, 0.0] if kind == "1" or self.middle is None else self.middle
+        here = self.machine.said_point()[:2]
+        base = here if kind == "0" else [0.0, 0.0] if kind == "1" or self.middle is None else self.middle
         self.middle, self.polar_angle = (base[0] + said["X"], base[1] + said["Y"]), None
 
     def _to_polar(self, code: str, line: int) -> str:
@@ -92,7 +86,7 @@ class SinumerikPolar(SinumerikShapes):
         x, y = polar(radius, math.radians(angle), u, v)
         form = ""
         if self._motion(code) in (2, 3) and not _FORM.search(code):
-            at = [0.0, 0.0] if self.machine.arc_absolute else self._here()
+            at = [0.0, 0.0] if self.machine.arc_absolute else self.machine.said_point()
             form = f" I{u - at[0]:.12f} J{v - at[1]:.12f}"
         return f"{code} X{x:.12f} Y{y:.12f}{form}"
 
@@ -104,7 +98,7 @@ class SinumerikPolar(SinumerikShapes):
         assert found is not None
         end = value_end(code, found.end())
         angle, rest = self.value(code[found.end() : end], line), code[: found.start()] + code[end:]
-        motion, absolute, at = self._motion(rest), self._absolute(rest), self._here()
+        motion, absolute, at = self._motion(rest), self._absolute(rest), self.machine.said_point()
         places: dict[str, float] = {}
         centre: dict[str, float] = {}
         for letter, way, inside, plain in _PLACE.findall(rest):

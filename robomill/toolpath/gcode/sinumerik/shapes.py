@@ -41,6 +41,8 @@ _BENT = re.compile(r"\b(CIP|CT)\b")
 _MOTION = re.compile(r"\bG0*(?:[0-3]|33|34|35)\b")
 _PLACE = re.compile(r"\b([XYZ]|[IJK]1)[ \t]*(?:=[ \t]*)?(?:(AC|IC)[ \t]*\(([^()]*)\)|([-+]?(?:\d+\.?\d*|\.\d+)))")
 _MODES = re.compile(r"\bG9([01])\b")
+_OTHER = re.compile(r"\bG(?:11[0-2]|7[45])\b")
+"""G words whose X, Y and Z are no end of a motion: poles and fixed points."""
 
 
 class SinumerikShapes(SinumerikWords):
@@ -174,6 +176,8 @@ class SinumerikShapes(SinumerikWords):
             self.bent = said[1]
         elif _MOTION.search(code):
             self.bent = ""
+        elif _OTHER.search(code):
+            return code
         if not self.bent or not re.search(r"\b(?:[XYZ]|[IJK]1)[ \t]*[-+=.\d]", code):
             return _BENT.sub("", code) if said is not None else code
         machine = self.machine

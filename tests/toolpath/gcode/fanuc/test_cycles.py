@@ -257,3 +257,21 @@ def test_every_hole_that_is_left_by_hand_is_said_also_where_its_dwell_is_that_of
     for first, said in (("G88", (3, 2)), ("G82", (4, 1))):
         findings = read(f"{first} X1 Z-1 R1 P500\nG88 X2\n").findings
         assert [(each.line, each.count) for each in findings if each.code == "manual-retract"] == [said]
+
+
+@pytest.mark.parametrize(("plane", "axis", "r", "z"), [("G18", 1, "R-2.", "Y-9."), ("G19", 0, "R-2.", "X-9.")])
+def test_a_tap_of_a_fanuc_goes_along_the_axis_of_its_plane(plane: str, axis: int, r: str, z: str) -> None:
+    """G18 taps along Y, G19 along X; LinuxCNC's permuted axes are its own."""
+    program = read(f"{plane} G99 G84 {r} {z}\n")
+    tapped = program.end[program.thread] * 1e3
+    np.testing.assert_allclose(tapped, np.insert([[0, 10]] * 2, axis, [-9, -2], axis=1), atol=1e-9)
+    assert not [f for f in program.findings if f.code == "tap-axes"]
+
+
+def test_j_of_haas_beside_a_tap_changes_no_place() -> None:
+    """J2 comes out twice as fast; what it is read as is said."""
+    program = read("G99 G84 X10. Z-5. R2. J2\nX20. J1\n")
+    assert [f.line for f in program.findings if f.code == "tap-out"] == [3, 4]
+    assert holes("G99 G84 X10. Z-5. R2. J2\n") == [(10, 0, -5), (10, 0, 2)]
+    with pytest.raises(GCodeError, match="J has no use here"):
+        read("G99 G84 X10. Z-5. R2. J20\n")

@@ -104,6 +104,8 @@ def test_an_arc_of_any_plane_is_the_scaled_arc(plane: int, before: int, centre: 
         ("G51 X0 Y0 Z0 I1. J1. K-1.\nG81 X1 Z-3 R1\n", "Line 3: a cycle is read in G17, and not mirrored along Z"),
         ("G51 X0 Y0 P2.\nG18\nG81 X1 Y-3 R1\n", "Line 4: a cycle is read in G17"),
         ("G16\nG51 P2.\n", "Line 3: G51 inside of G68 or G16"),
+        ("G51 X0 Y0 P2.\nG16\nG1 X9. Y30.\n", "Line 4: G16 while coordinates are scaled or mirrored is not read"),
+        ("G51.1 X0\nG16\nG1 X9.\n", "Line 4: G16 while coordinates are scaled or mirrored is not read"),
         ("G90\nG91 G51 P2.\n", "Line 3: G51 is read in G90 alone"),
         ("G101\n", "Line 2: G101 needs the axes that it mirrors"),
     ],

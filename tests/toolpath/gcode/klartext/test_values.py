@@ -156,7 +156,7 @@ def test_dwells_are_waited() -> None:
         ("CYCL DEF 11.1 SCL 0.9\n", "scales"),
         ("CYCL DEF 10.1 ROT+30\nCYCL DEF 7.1 X+3\n", "a datum shift inside of a rotation"),
         ("CYCL DEF 247 PRESET Q339=1\nCYCL DEF 247 PRESET Q339=2\n", "CYCL DEF 247 chooses a second preset"),
-        ("CYCL DEF 202 BORING Q200=2 Q201=-9\n", r"CYCL DEF 202 BORING is a cycle that is not read"),
+        ("CYCL DEF 204 BACK BORING Q200=2 Q249=5\n", r"CYCL DEF 204 BACK BORING is a cycle that is not read"),
         ("CYCL DEF 4.0 POCKET MILLING\n", r"CYCL DEF 4 POCKET MILLING is a cycle that is not read"),
         ("TRANS DATUM TABLE TABLINE5\n", "TRANS DATUM TABLE TABLINE5 takes its shift from a table"),
         ("TRANS DATUM AXIS X+5 A+30\n", r"TRANS DATUM has 'A.30'"),

@@ -190,3 +190,11 @@ def test_compiled_code_drills_the_same(code, monkeypatch):
     for name in ("line", "kind", "start", "end", "v_f", "dwell"):
         np.testing.assert_array_equal(getattr(plain, name), getattr(compiled, name))
     assert plain.dwell_time == compiled.dwell_time
+
+
+def test_a_fanuc_rises_to_a_higher_r_before_it_feeds() -> None:
+    """G99 left the tool at R2; over a step with R6 it goes to R6 at rapid, and from there at feed."""
+    text = "O1\nG21 G90 S100 M3 F100\nG0 X0 Y0 Z10.\nG99 G81 X5. Z-5. R2.\nX9. Z1. R6.\nG80\nM30\n"
+    program = interpret(text, dialect="fanuc")
+    rows = [("RF"[k], *(np.round(p[[0, 2]] * 1e3, 9)).tolist()) for k, p in zip(program.kind, program.end)]
+    assert rows[5:] == [("R", 9, 2), ("R", 9, 6), ("F", 9, 1), ("R", 9, 6)]

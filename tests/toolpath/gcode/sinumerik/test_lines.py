@@ -1,4 +1,4 @@
-"""AC( ) and IC( ) beside what is scaled."""
+"""AC( ) and IC( ) beside what is scaled; G500 beside G54."""
 
 from __future__ import annotations
 
@@ -19,3 +19,23 @@ def test_steps_and_places_of_rotary_axes_are_those_said_where_lengths_are_scaled
     program = interpret(f"G71 G90 G17 F100\nG0 X3 Y4 Z5 A30 B20 C-7\n{scale}G1 {word}\nM30\n", dialect="sinumerik")
     np.testing.assert_allclose(np.degrees(program.rotary[-1]), angles, atol=1e-9)
     np.testing.assert_allclose(program.end[-1] * 1e3, [3, 4, 5], atol=1e-9)
+
+
+def test_places_behind_g500_are_the_machine_s_until_a_zero_is_chosen_again() -> None:
+    """G500 ends G54: Z400 is no height above the part, and 500 before the first zero is none either."""
+    head, cut = "G71 G90 G17 G500\nG0 Z500 D0\n", "G0 X5 Y6\nZ10\nG1 Z-1 F100\nG0 Z10\n"
+    text = f"{head}G505\n{cut}N90 G500\nG0 Z400\nX600 Y300 ; G505\nG505 G0 X1 Y2\nZ5\nM30\n"
+    program = interpret(text, dialect="sinumerik")
+    away = {int(line): row.tolist() for line, row in zip(program.line, program.away)}
+    lost, known = [False, False, True], [False] * 3
+    assert away == {2: lost, 4: lost, 5: known, 6: known, 7: known, 9: lost, 10: [True] * 3, 11: lost, 12: known}
+    assert [(f.line, "G500" in f.message) for f in program.findings if f.code == "machine-place"] == [(2, True)]
+
+
+def test_a_program_that_knows_no_other_zero_has_its_own_in_g500() -> None:
+    """Comments choose none; a step from a known place is known in G500, too."""
+    program = interpret("G71 G90 G17 G500 ; not G54\nG0 X1 Y2 Z3\nM30\n", dialect="sinumerik")
+    assert not program.away.any()
+    program = interpret("G71 G90 G17 G54\nG0 X1 Y2 Z3\nG500\nG91 Z10\nM30\n", dialect="sinumerik")
+    assert not program.away.any()
+    np.testing.assert_allclose(program.end[-1] * 1e3, [1, 2, 13], atol=1e-9)

@@ -22,6 +22,7 @@ def ends(body: str) -> list[list[float]]:
     [
         ("G111 X10 Y20\nG1 AP=90 RP=5\nAP=180\n", [[10, 25], [5, 20]]),
         ("G0 X3 Y4\nG110 X1 Y1\nG1 AP=0 RP=2\nG112 X10 Y0\nAP=0 RP=1\n", [[3, 4], [6, 5], [15, 5]]),
+        ("G1 X20\nCT X30 Y10\nG111 X10 Y10\nG1 AP=90 RP=10\n", [[20, 0], [30, 10], [10, 20]]),  # no arc to the pole
         ("G111 X0 Y0\nG1 AP=30 RP=10\nAP=IC(60)\n", [[8.660254, 5], [0, 10]]),
         ("R1=2\nG111 X=R1 Y0\nG1 RP=R1*2 AP=R1*90 Z-1\n", [[-2, 0]]),
         ("TRANS X100\nG111 X0 Y0\nG1 AP=90 RP=5\n", [[100, 5]]),
