@@ -37,6 +37,7 @@ from screenshots import served
 LONGEST = 120.0  # s that a run may take before the client gives up
 EDITS_A_PAGE = 4
 WHOLE = "whole "  # the page stands, with nothing left under way
+LOOKED = "(looks)"  # that a page asks for while work of it is under way
 
 
 @dataclass
@@ -78,6 +79,7 @@ class Visitor:
     typed: dict[str, WidgetState] = field(default_factory=dict)
     broken: list[str] = field(default_factory=list)
     looks: dict[str, float] = field(default_factory=dict)
+    looked: list[float] = field(default_factory=list)
 
     async def run(self, fragment: str = "", look: bool = False) -> float:
         """Ask for a run and wait for its end; the seconds it took. A ``look`` is one that the page has asked for."""
@@ -111,7 +113,7 @@ class Visitor:
         while self.looks and time.perf_counter() < began + seconds:
             fragment, every = next(iter(self.looks.items()))
             await asyncio.sleep(every)
-            await self.run(fragment, look=True)
+            self.looked.append(await self.run(fragment, look=True))
             stood = time.perf_counter() - began
         left = began + seconds - time.perf_counter()
         await asyncio.sleep(max(left, 0.0))
@@ -177,6 +179,7 @@ async def person(url: str, number: int, until: float, think: float, times: dict[
                 times[f"{WHOLE}{name or 'start'}"].append(answered + stood)
                 if time.perf_counter() > until:
                     break
+        times[LOOKED] += visitor.looked
         return visitor.broken
 
 
@@ -192,7 +195,8 @@ async def crowd(url: str, sessions: int, seconds: float, think: float) -> tuple[
 
 def table(title: str, times: dict[str, list[float]]) -> None:
     """Print the median, 95 % and longest run of each page and of all edits."""
-    edits = [t for name, found in times.items() if not name.startswith(("open ", "first", WHOLE)) for t in found]
+    others = ("open ", "first", WHOLE, LOOKED)
+    edits = [t for name, found in times.items() if not name.startswith(others) for t in found]
     whole = [t for name, found in times.items() if name.startswith(WHOLE) for t in found]
     print(f"\n{title}\n{'page':24s} {'runs':>5s} {'median':>8s} {'95 %':>8s} {'longest':>8s}   s")
     for name, found in [*sorted(times.items()), ("ALL EDITS", edits), ("ALL WHOLE", whole)]:
