@@ -35,10 +35,12 @@ def mark(element: ElementTree.Element) -> None:
 def clipper(element: ElementTree.Element, known: Mapping[str, ElementTree.Element]) -> ElementTree.Element | None:
     """The clipping path of an element, in the coordinates of the element; None where it is not one that is followed."""
     found = known.get(element.get(CLIP, ""))
-    moved = {element.get(key, "0").strip() for key in ("x", "y")} if element.tag.endswith("use") else set()
-    if found is None or not found.tag.endswith("clipPath") or CLIP in found.attrib or moved - {"0"}:
+    if found is None or not found.tag.endswith("clipPath"):
         return None
-    return found if found.get("clipPathUnits", "userSpaceOnUse") == "userSpaceOnUse" else None
+    moved = {element.get(key, "0").strip() for key in ("x", "y")} - {"0"} if element.tag.endswith("use") else None
+    odd = any(CLIP in each.attrib or str(each.tag).endswith("text") for each in found.iter())
+    by_page = found.get("clipPathUnits", "userSpaceOnUse") == "userSpaceOnUse"
+    return found if by_page and not odd and not moved else None
 
 
 class Clips:

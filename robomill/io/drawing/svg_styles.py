@@ -22,6 +22,8 @@ Declared = tuple[tuple[str, str, bool], ...]
 """Name, value and whether it is important."""
 _BESIDE = re.compile(r"/\*.*?(?:\*/|$)|url\(\s*['\"]?data:[^)]*\)", re.DOTALL)
 _SAYS = re.compile(rf"(?<![\w-])(?:{'|'.join(sorted(STYLED))})\s*:", re.IGNORECASE)
+_PART = re.compile(r"""(?:[^;"'(]+|"[^"]*"?|'[^']*'?|\([^)]*\)?)+""")
+_IMPORTANT = re.compile(r"!\s*important\s*$", re.IGNORECASE)
 Refuse = Callable[[str], Exception]
 
 
@@ -49,7 +51,7 @@ def write_in(root: ElementTree.Element, depth: int, refuse: Refuse) -> None:
 
 def _write(element: ElementTree.Element, sheets: Iterable[tuple[str, str, bool]]) -> None:
     own = element.attrib.pop("style", "")
-    said = (*sheets, *(_declared(own) if _SAYS.search(own) else ()))
+    said = (*sheets, *(_own(own) if _SAYS.search(own) else ()))
     holds = {name: value for important in (False, True) for name, value, so in said if so is important}
     for name in [name for name, value in holds.items() if value in INHERITED]:
         del holds[name]
@@ -104,20 +106,27 @@ def _shown(rules: Iterable[Any]) -> Iterator[Any]:
             yield from (each for each in inside if each.type == "qualified-rule")
 
 
+def _own(style: str) -> Iterator[tuple[str, str, bool]]:
+    """As ``_declared``, of the style of an element, of which there may be very many."""
+    for part in _PART.findall(_BESIDE.sub(" ", style)):
+        name, _, value = part.partition(":")
+        if (name := name.strip().lower()) in STYLED:
+            plain = _IMPORTANT.sub("", value)
+            yield name, _word(plain), plain != value
+
+
 def _declared(style: Any) -> Declared:
-    """What a style, its text or its tokens, says of where a line is, and whether it is drawn."""
-    from tinycss2 import parse_blocks_contents
+    """What the tokens of a rule say of where a line is, and whether it is drawn."""
+    from tinycss2 import parse_blocks_contents, serialize
 
     return tuple(
-        (each.lower_name, _value(each.value), bool(each.important))
+        (each.lower_name, _word(serialize(each.value)), bool(each.important))
         for each in parse_blocks_contents(style)
         if each.type == "declaration" and each.lower_name in STYLED
     )
 
 
-def _value(tokens: Any) -> str:
+def _word(value: str) -> str:
     """A value as it is written, a word of CSS in small letters."""
-    from tinycss2 import serialize
-
-    text = str(serialize(tokens).strip())
+    text = value.strip()
     return text.lower() if text.isalpha() else text

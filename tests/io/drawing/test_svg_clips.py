@@ -6,7 +6,6 @@ import math
 
 import pytest
 
-from robomill.errors import ToolpathError
 from robomill.io.drawing.drawings import drawing_from_bytes
 from tests.io.drawing.made import svg
 
@@ -48,6 +47,14 @@ def seen(body: str) -> tuple[int, int, int]:
             f'<g clip-path="url(#d)">{LINE.format(2, 15, "clip-path=" + chr(34) + "url(#c)" + chr(34))}</g>',
             (0, 0, 1),
         ),
+        # What is clipped itself, or holds letters, is not followed.
+        (
+            LEFT
+            + '<clipPath id="d"><rect width="9" height="80" clip-path="url(#c)"/></clipPath>'
+            + LINE.format(1, 2, 'clip-path="url(#d)"'),
+            (1, 1, 0),
+        ),
+        ('<clipPath id="c"><text>A</text></clipPath>' + LINE.format(1, 2, 'clip-path="url(#c)"'), (1, 1, 0)),
         # A clipping path that is empty hides all, one that is not there nothing is known of.
         ('<clipPath id="c"/>' + LINE.format(1, 2, 'clip-path="url(#c)"'), (0, 0, 1)),
         (LINE.format(1, 2, 'clip-path="url(#no)"'), (1, 1, 0)),
@@ -98,13 +105,8 @@ def test_circles_within_a_circle_are_whole_and_stay_circles() -> None:
         assert read.pieces[0].length == pytest.approx(math.tau * 0.01, rel=1e-3)
 
 
-def test_it_is_told_and_a_path_that_clips_itself_is_refused() -> None:
+def test_what_is_hidden_in_part_is_told() -> None:
     page = f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">{LEFT}'
     page += LINE.format(10, 60, 'clip-path="url(#c)"') + "</svg>"
     found = {finding.code: finding for finding in drawing_from_bytes(page.encode(), "p.svg").findings}
     assert found["drawing-clipped"].level == "warning"
-    with pytest.raises(ToolpathError, match="uses itself"):
-        svg(
-            '<clipPath id="c"><rect width="5" height="5" clip-path="url(#c)"/></clipPath>'
-            '<line x2="5" clip-path="url(#c)"/>'
-        )

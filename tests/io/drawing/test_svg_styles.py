@@ -49,6 +49,9 @@ def test_a_rule_holds_for_what_its_selector_picks(sheet, drawn) -> None:
         (".n{display:none!important}", '<line class="n" style="display:inline" x2="5"/>', 0),
         (".n{display:none!important}", '<line class="n" style="display:inline!important" x2="5"/>', 1),
         (".n{display:inline}", '<line class="n" display="none" x2="5"/>', 1),
+        ("", """<line style="font-family:'a;display:none';fill:url(b;display:none)" x2="5"/>""", 1),
+        ("", '<line style="fill:url(#b);Display : NONE ! Important" x2="5"/>', 0),
+        ("", '<line style="/* display:inline; */display:none" x2="5"/>', 0),
         ("g .n{display:none}", '<g><line id="u" class="n" x2="5"/></g><use href="#u"/>', 0),
         (".n{transform:translate(3px,4px)}", '<line class="n" x2="5"/>', 1),
     ],
@@ -75,3 +78,12 @@ def test_sheets_that_would_take_long_are_refused(body, said) -> None:
 def test_a_font_in_a_sheet_is_nothing_to_read() -> None:
     font = "@font-face{src:url(data:font/woff;base64," + "A" * 1_000_000 + ")}"
     assert len(svg(f"<style>{font} .n{{display:none}}</style>{LINES}").read(1e-3).pieces) == 3
+
+
+@pytest.mark.parametrize("style", ["((" * 1_000_000, "'(" * 1_000_000, "display:inline;" * 100])
+def test_styles_of_many_elements_cost_no_time(style) -> None:
+    began = time.process_time()
+    assert len(
+        svg(f'<line style="display:inline;{style}" x2="5"/>' * (1 if len(style) > 2000 else 600)).read(1e-3).pieces
+    )
+    assert time.process_time() - began < 4.0
