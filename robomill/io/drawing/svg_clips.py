@@ -10,6 +10,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from robomill.arrays import FloatArray
+from robomill.extras import needed
 from robomill.toolpath.contour import Contour
 
 CLIP, REGION = "robomill-clip", "robomill-region"
@@ -47,6 +48,8 @@ class Clips:
     """The regions of a page that its clipping paths leave to see, by the number that ``Viewports`` gave them."""
 
     def __init__(self) -> None:
+        with needed("An SVG drawing"):
+            import shapely  # noqa: F401 (before anything is read)
         self._parts: dict[str, list[Any]] = {}
         self._regions: dict[str, Any] = {}
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 from xml.etree import ElementTree
 
+from robomill.extras import needed
 from robomill.units import format_count
 
 # All that says where a line is; the rest would be handed down to every element below.
@@ -36,7 +37,8 @@ def write_in(root: ElementTree.Element, depth: int, refuse: Refuse) -> None:
     Exception
         What ``refuse`` makes of too much.
     """
-    from cssselect2 import ElementWrapper, Matcher
+    with needed("An SVG drawing"):
+        from cssselect2 import ElementWrapper, Matcher
 
     matcher, rules = Matcher(), list(_rules(root, depth, refuse))
     if not rules:
