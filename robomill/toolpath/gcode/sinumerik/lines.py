@@ -51,6 +51,7 @@ _CODE = re.compile(r"(?:[^;\"]|\"[^\"]*\"|\"(?=[^\"]*$))*+")
 _FOLLOWS = {"G70": False, "G71": False, "G700": True, "G710": True}
 _FEED = re.compile(rf"(?<![A-Za-z_])F(?:1?[ \t]*=)?[ \t]*({_NUMBER})", re.IGNORECASE)
 _ADDRESS = r"[A-DF-Z][-+]?(?:\d+(?:\.\d*)?|\.\d+)"
+_EDGE = re.compile(r"\bD(\d+)\b", re.IGNORECASE)
 _TIGHT = re.compile(rf"(?<![\w.+\-])(?:{_ADDRESS})+[A-DF-Z]?(?![\w.(+\-])")
 _EACH = re.compile(rf"({_ADDRESS})(?=[A-Z])")
 
@@ -109,8 +110,17 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = re.sub(r"\b([XYZABCIJKFS])1?\s*=\s*([-+.\d]+)", r"\1\2", code, flags=re.IGNORECASE)
     code = re.sub(r"\b(?:M17|RET)\b", "M2", code, flags=re.IGNORECASE)
     code = _TOOL.sub(lambda found: named_tool(found[1], number, machine), code)
-    code = re.sub(r"\bD\d+\b", "", code, flags=re.IGNORECASE)
+    code = _EDGE.sub(lambda found: _edge(int(found[1]), number, machine), code)
     return code + comment
+
+
+def _edge(edge: int, number: int, machine: Machine) -> str:
+    """D says which edge of the tool: each has a length and a radius of its own, of which a tool table knows the
+    first."""
+    if edge > 1:
+        text = f"D{edge} is another edge of the tool, with its own length and radius; those of the tool table count"
+        machine.findings.add("tool-edge", "warning", number, text)
+    return ""
 
 
 def chooses_zeros(data: bytes) -> bool:

@@ -39,3 +39,10 @@ def test_a_program_that_knows_no_other_zero_has_its_own_in_g500() -> None:
     program = interpret("G71 G90 G17 G54\nG0 X1 Y2 Z3\nG500\nG91 Z10\nM30\n", dialect="sinumerik")
     assert not program.away.any()
     np.testing.assert_allclose(program.end[-1] * 1e3, [1, 2, 13], atol=1e-9)
+
+
+def test_another_edge_of_a_tool_is_told() -> None:
+    text = "G71 G90 G17 G54\nT1 M6\nG0 X1 Y2 D1\nT2 M6\nG0 Z3 d2\nG0 Z400 D0\nM30\n"
+    program = interpret(text, dialect="sinumerik")
+    assert [(f.line, f.level) for f in program.findings if f.code == "tool-edge"] == [(5, "warning")]
+    np.testing.assert_allclose(program.end * 1e3, [[1, 2, 0], [1, 2, 3], [1, 2, 400]], atol=1e-9)
