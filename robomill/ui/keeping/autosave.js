@@ -12,10 +12,20 @@ const kept = (value, name = 'tab') => {  // the tab's own, through reloads; the 
   } catch { return window[key] = value || window[key] || ''; }
 };
 
-// A doubled tab begins with the name of the one it was made of: it asks whether somebody has it, and takes another then.
-// Of two that ask at the same moment the one with the larger lot does.
+// A doubled tab begins with the name of the one it was made of, and takes another where that one still has it: a name is
+// a lock of the browser, which answers however busy the other tab is. (A page that is left lets go of it a moment late.)
 const WAIT_MS = 250;
-const alone = () => new Promise((resolve) => {
+const own = (tab) => new Promise((resolve) => {
+  const mine = () => { resolve(true); return new Promise(() => {}); };  // as long as the page is there
+  navigator.locks.request(`robomill.tab.${tab}`, { signal: AbortSignal.timeout(WAIT_MS) }, mine).catch(() => resolve(false));
+});
+const alone = async () => {
+  if (!navigator.locks) return asked();  // a page that is not secure
+  if (!await own(kept() || kept(made()))) await own(kept(made()));
+};
+
+// Without locks it asks whether somebody has it. Of two that ask at the same moment the one with the larger lot yields.
+const asked = () => new Promise((resolve) => {
   if (typeof BroadcastChannel === 'undefined') { resolve(); return; }
   const channel = new BroadcastChannel('robomill.tabs'), tab = kept(), lot = made();
   let asking = Boolean(tab);
@@ -43,7 +53,10 @@ export default function ({ data, parentElement, setStateValue }) {
 
 function say(data, parentElement, setStateValue) {
   let tab = kept() || made();
-  if (data.moved && data.moved[0] === `tab-${tab}`) tab = data.moved[1].slice(4);
+  if (data.moved && data.moved[0] === `tab-${tab}`) {
+    tab = data.moved[1].slice(4);
+    if (navigator.locks) own(tab);
+  }
   kept(tab);
   let said = tab;
   if (data.key) {
