@@ -11,11 +11,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from robomill.arrays import FloatArray
 from robomill.errors import ToolpathError
 from robomill.extras import needed
 from robomill.io.drawing.reading import PER_INCH, STUMBLES, Read, Reading, metres
 from robomill.io.drawing.svg_clips import CLIP, REGION, Clips, clipper, mark
-from robomill.io.drawing.svg_styles import STYLED, write_in
+from robomill.io.drawing.svg_styles import STYLED, held, write_in
 from robomill.io.drawing.svg_viewports import (
     ABSOLUTE,
     NOT_DRAWN,
@@ -29,7 +30,7 @@ from robomill.io.drawing.svg_viewports import (
     pixels,
     target_of,
 )
-from robomill.toolpath.contour import Contour
+from robomill.toolpath.sketch import Shape, outline
 from robomill.units import format_count
 
 DEEPEST = 200  # elements in elements, twice as many where some are used by others
@@ -44,7 +45,6 @@ WORDS = ("text", "image", "foreignObject")
 KEPT = STYLED | {"style", "class", "id", "href", XLINK, LAYER, CLIP, "clipPathUnits"}
 LONG = {"d", "points", "style"}  # attributes that may be
 COMMANDS = "MLTHVCSQAZmlthvcsqaz"
-_DISPLAY = re.compile(r"(?:^|;)display:\s*([\w-]+)(?!.*;display:)")
 NO_PATH = re.compile(rf"[^{COMMANDS}eE\d\s,.+-]")
 
 
@@ -114,9 +114,7 @@ class Svg:
             if "href" in element.attrib:  # of two it is the one that holds
                 element.attrib.pop(XLINK, None)
             self._reduce(element)
-            styled = _DISPLAY.search(element.get("style", ""))
-            display = styled[1] if styled else element.get("display", "")
-            if kind_of(element) != "symbol" and display.strip() == "none":
+            if kind_of(element) != "symbol" and held(element, "display") == "none":
                 self.unseen[kind_of(element)] += 1
         _, turned = self._count_of(self.root, known, {}, set())
         if turned > MOST_PLACED:
@@ -225,14 +223,14 @@ class Svg:
             if page is None:  # all of it is not displayed
                 return reading.found
             height = float(page.height) if page.viewbox is not None or "height" in self.root.attrib else 0.0
-            clips, low = Clips(), np.array([0.0, height * scale])
+            clips, zero = Clips(), np.array([0.0, height * scale])
             for element in page.elements():
                 if REGION in getattr(element, "values", {}).get("attributes", {}):
                     clips.open(element.values[REGION])
                 if isinstance(element, svgelements.Shape):
-                    lines = lines_of(abs(svgelements.Path(element)), scale, reading)
-                    contours = (Contour(NO_LAYER, shape, line * [1.0, -1.0] + low) for shape, line in lines)
-                    _take(contours, _named(element), element.values, clips, reading)
+                    found = lines_of(abs(svgelements.Path(element)), scale, reading)
+                    lines = ((shape, line * [1.0, -1.0] + zero) for shape, line in found)
+                    _take(lines, _named(element), element.values, clips, reading)
         except ToolpathError:
             raise
         except (*STUMBLES, RecursionError) as exc:
@@ -249,27 +247,29 @@ def _named(shape: object) -> str:
     return type(shape).__name__.lower().removeprefix("simple")
 
 
-def _take(contours: Iterator[Contour], kind: str, said: Mapping[str, object], clips: Clips, reading: Reading) -> None:
-    """Take the lines of one element of that ``kind``, of which so much is ``said``, as far as it is seen; or what they
-    leave to see of others."""
+def _take(
+    lines: Iterator[tuple[Shape, FloatArray]], kind: str, said: Mapping[str, object], clips: Clips, reading: Reading
+) -> None:
+    """Take the lines (m) of one element of that ``kind``, of which so much is ``said``, as far as it is seen; or what
+    they leave to see of others."""
     visible = str(said.get("visibility", "")).strip() not in ("hidden", "collapse")
     if REGION in said:
         if visible:
             evenodd = said.get("clip-rule") == "evenodd"
-            clips.add(str(said[REGION]), [contour.outline() for contour in contours], evenodd)
+            clips.add(str(said[REGION]), [outline(*line) for line in lines], evenodd)
         return
     if not visible:
         reading.found.unseen[kind] += 1
         return
     numbers = [key.removeprefix(f"{CLIP}-") for key in said if key.startswith(f"{CLIP}-")]
-    for contour in contours:
-        seen = clips.seen(numbers, contour)
+    for shape, points in lines:
+        seen = clips.seen(numbers, shape, points)
         if seen is False:
             reading.found.unseen["clipped line"] += 1
             continue
         if seen is None:
             reading.found.partly[kind] += 1
-        reading.take(str(said.get(LAYER, NO_LAYER)), contour.shape, contour.points)
+        reading.take(str(said.get(LAYER, NO_LAYER)), shape, points)
 
 
 def _put_away(parent: ElementTree.Element, place: int) -> None:

@@ -4,30 +4,27 @@ Lines are not cut where they are clipped: what is hidden wholly is left out, and
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import reduce
 from typing import Any
 from xml.etree import ElementTree
 
 from robomill.arrays import FloatArray
 from robomill.extras import needed
-from robomill.toolpath.contour import Contour
+from robomill.io.drawing.svg_styles import held
+from robomill.toolpath.sketch import Shape, outline
 
 CLIP, REGION = "robomill-clip", "robomill-region"
 UNKNOWN = "?"  # what hides, where that is a mask, or a shape of CSS
 EDGE = 1e-5  # m, to which a line is drawn beside an edge
 _URL = re.compile(r"\s*url\(\s*['\"]?#([^'\")]+)['\"]?\s*\)\s*")
-_STYLE = re.compile(r"(?:^|;)(clip-path|mask):([^;]*)")
 
 
 def mark(element: ElementTree.Element) -> None:
     """Name at an element the clipping path that holds for it, by its id, before its attributes are thinned out."""
-    said = {key: element.get(key, "none") for key in ("clip-path", "mask")} | dict(
-        _STYLE.findall(element.get("style", ""))
-    )
-    clip, mask = (said[key].strip() for key in ("clip-path", "mask"))
+    clip = held(element, "clip-path")
     named = _URL.fullmatch(clip)
-    if mask not in ("none", ""):
+    if held(element, "mask") not in ("none", ""):
         element.set(CLIP, UNKNOWN)
     elif clip not in ("none", ""):
         element.set(CLIP, named[1] if named else UNKNOWN)
@@ -48,8 +45,6 @@ class Clips:
     """The regions of a page that its clipping paths leave to see, by the number that ``Viewports`` gave them."""
 
     def __init__(self) -> None:
-        with needed("An SVG drawing"):
-            import shapely  # noqa: F401 (before anything is read)
         self._parts: dict[str, list[Any]] = {}
         self._regions: dict[str, Any] = {}
 
@@ -59,7 +54,8 @@ class Clips:
 
     def add(self, number: str, rings: Iterable[FloatArray], evenodd: bool) -> None:
         """Add what the rings (r, 2) m of one shape have in them."""
-        from shapely import LinearRing, Polygon, make_valid, symmetric_difference, union_all
+        with needed("An SVG drawing"):
+            from shapely import LinearRing, Polygon, make_valid, symmetric_difference, union_all
 
         ways: tuple[list[Any], list[Any]] = [], []
         for ring in rings:
@@ -70,23 +66,25 @@ class Clips:
         else:  # what is gone around once in each way is outside
             self._parts[number].append(symmetric_difference(*map(union_all, ways)))
 
-    def seen(self, numbers: Iterable[str], contour: Contour) -> bool | None:
-        """Whether a line is seen: all of it, nothing (False), or some of it, as far as is known (None)."""
+    def seen(self, numbers: Sequence[str], shape: Shape, points: FloatArray) -> bool | None:
+        """Whether a line, ``points`` (r, 2) m, is seen through all the regions of these numbers: all of it, nothing
+        (False), or some of it, as far as is known (None)."""
+        known = [self._region(number) for number in numbers if number in self._parts]
+        if not known:
+            return None if numbers else True
         from shapely import LineString
 
-        line, whole = LineString(contour.outline()), True
-        for number in numbers:
-            region = self._region(number)
-            if region is not None and not region.intersects(line):
-                return False
-            whole = whole and region is not None and region.covers(line)
-        return whole or None
+        line = LineString(outline(shape, points))
+        if not all(region.intersects(line) for region in known):
+            return False
+        return (len(known) == len(numbers) and all(region.covers(line) for region in known)) or None
 
     def _region(self, number: str) -> Any:
-        """None for one that is not known."""
-        from shapely import prepare, union_all
+        """The region of a number that has been opened, once it is whole."""
+        with needed("An SVG drawing"):
+            from shapely import prepare, union_all
 
-        if number in self._parts and number not in self._regions:
+        if number not in self._regions:
             self._regions[number] = union_all(self._parts[number]).buffer(EDGE)
             prepare(self._regions[number])
-        return self._regions.get(number)
+        return self._regions[number]

@@ -51,6 +51,12 @@ def write_in(root: ElementTree.Element, depth: int, refuse: Refuse) -> None:
         _write(wrapped.etree_element, [each for *_, said in matcher.match(wrapped) for each in said])
 
 
+def held(element: ElementTree.Element, name: str) -> str:
+    """What holds for an element once ``write_in`` has been there: of its style, else of its attributes; "" for none."""
+    style = dict(part.partition(":")[::2] for part in element.get("style", "").split(";"))
+    return str(style.get(name, element.get(name, ""))).strip()
+
+
 def _write(element: ElementTree.Element, sheets: Iterable[tuple[str, str, bool]]) -> None:
     own = element.attrib.pop("style", "")
     said = (*sheets, *(_own(own) if _SAYS.search(own) else ()))

@@ -311,7 +311,7 @@ class Machine:
     def said_point(self) -> list[float]:
         """Where the tool stands (x, y, z, a, b, c) as a line would say it: without cutter compensation and scale."""
         held, scale = self.compensation, self.scale
-        point = list(self.p) if held is None or held.programmed is None else held.programmed_point(self)
+        point = self.p if held is None or held.programmed is None else held.programmed_point(self)
         if scale is None:
             return list(point)
         return [*(scale.said(axis, point[axis]) for axis in range(3)), *point[3:]]

@@ -25,8 +25,9 @@ _SILENT = re.compile(
 _ROUND_CORNERS = re.compile(r"\bKONT[CT]?\b", re.IGNORECASE)
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
 _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
-_SETTABLE = re.compile(r"\bG5(?:[4-7]|0[5-9]|[1-9]\d)\b", re.IGNORECASE)
-_CHOSEN = re.compile(rb"^[^;\n]*?\bG5(?:[4-7]|0[5-9]|[1-9]\d)\b", re.MULTILINE | re.IGNORECASE)
+_ZEROS = r"\bG5(?:[4-7]|0[5-9]|[1-9]\d)\b"
+_SETTABLE = re.compile(_ZEROS, re.IGNORECASE)
+_CHOSEN = re.compile(rf"^[^;\n]*?{_ZEROS}".encode(), re.MULTILINE | re.IGNORECASE)
 _GOES = re.compile(r"\b[XYZ](?:1?[ \t]*=|[ \t]*[-+.\d])", re.IGNORECASE)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)"
 _EXPONENT = re.compile(rf"({_NUMBER})EX([-+]?\d{{1,3}})\b", re.IGNORECASE)
