@@ -165,14 +165,14 @@ class CutConditions:
         """
         engaged = self.engaged
         for name, text in (("n_s", "the spindle stands still"), ("v_f", "the feed rate is 0")):
-            bad = np.flatnonzero(engaged & (getattr(self, name) <= 0.0))
-            if bad.size:
+            lacking = engaged & (getattr(self, name) <= 0.0)
+            if lacking.any():
                 word = "S and M3 before the cut" if name == "n_s" else "F before the cut"
                 if name == "n_s" and not self.n_s.any():
                     word += ", or a spindle speed (spindle_1_min of the set-up's source)"
                 if self.block_name != "line":
                     word = "the path spindle_1_min" if name == "n_s" else "it feed_mm_min"
-                where = f"{self.place(bad[0])}: {text} while the tool is in the material"
+                where = f"{self.place(int(np.argmax(lacking)))}: {text} while the tool is in the material"
                 raise CuttingError(f"{where}; give {word}.", where=name)
         result = np.zeros(len(self))
         return np.divide(self.v_f, self.n_s * np.asarray(flutes), out=result, where=engaged)

@@ -21,6 +21,7 @@ from robomill.cutting.edge import MOMENTS, EdgeTerm, moments, push
 from robomill.cutting.profile_kernels import heel, nose_pieces
 from robomill.cutting.tool import DISH, PRESSED, Cutter
 from robomill.errors import CuttingError
+from robomill.lazy import cached_property
 
 PANELS = 12  # of a half turn that an engaged part is summed over
 ANGLES, PIECES = 720, 64  # of the turn and of a rounded nose, for a full slot
@@ -56,7 +57,7 @@ class EngagedPart:
     def __len__(self) -> int:
         return len(self.moments)
 
-    @property
+    @cached_property
     def touches(self) -> BoolArray:
         """(m,) bool: where anything is engaged."""
         return np.asarray((self.moments != 0.0).any(axis=(1, 2)))

@@ -155,6 +155,8 @@ class ProcessForce(ForceModel):
 
     def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
         """Spindles that turn the wrong way or nobody knows how fast, drills led sideways, forces unknown."""
+        if not conditions.engaged.any():
+            return ()
         tooling, engaged = self._tooling(conditions), conditions.engaged
         drill, c = tooling.drills, self._fed(conditions)
         reasons = [
@@ -175,6 +177,8 @@ class ProcessForce(ForceModel):
     def _unknown(self, conditions: CutConditions, tooling: Tooling) -> tuple[Unjudged, ...]:
         """Steps whose force has a part that the material does not give: every mill's the radial one; the axial one,
         where the helix pulls, along the axis, on a nose or at the end face."""
+        if not self.row.unknown:
+            return ()
         mills = ~tooling.drills
         nose = (tooling.each("nose_height") > 0.0) | (conditions.sinks > 0.0)
         needs = {"radial": mills, "axial": mills & (tooling.each("pull") != 0.0) & (self.axial | nose)}

@@ -296,17 +296,19 @@ def _wrong(led: SimulationResult) -> tuple[Errors, Errors]:
     """What is left where compliances, or the force, are wrong by 20 % to either side, whichever uses more of the
     tolerance."""
     setup = led.setup
-    if not setup.coupling and not setup.add_sag:  # then the deflection is wrong by as much, whichever it is
+    if not setup.add_sag and not setup.coupling:  # then the deflection is wrong by as much, whichever it is
         assert led.ahead is not None
         more = (WRONG - 1.0) * (led.delta - led.ahead)
-        both = [replace(led, delta=led.delta + sign * more) for sign in (1.0, -1.0)]
-        worse = graver(errors_of(both[0]), errors_of(both[1]), setup)
+        one, other = (errors_of(replace(led, delta=led.delta + sign * more)) for sign in (1.0, -1.0))
+        worse = graver(one, other, setup)
         return worse, worse
     found = []
     for name in ("softer", "stronger"):
         one, other = (errors_of(ran(setup, **{name: by})) for by in (WRONG, 2.0 - WRONG))
         found.append(graver(one, other, setup))
-    return found[0], found[1]
+        if not setup.add_sag:  # nothing but the force bends the arm: C times a wrong F is a wrong C times F
+            break
+    return found[0], found[-1]
 
 
 def _half(led: SimulationResult, known: Knowledge | None) -> float:

@@ -15,18 +15,22 @@ def quantile(dof: int | None, level: float = LEVEL) -> float:
 
     Infinite where nothing was left to judge the noise by.
     """
-    from scipy.special import ndtri, stdtrit
+    from scipy.special import ndtri
 
-    upper = 0.5 + 0.5 * level
+    return float(ndtri(0.5 + 0.5 * level)) if dof is None else float(half_width(1.0, dof, level))
+
+
+def half_width(std: ArrayLike, dof: int | FloatArray | None, level: float = LEVEL) -> FloatArray:
+    """(...) half a two-sided interval for standard deviations (...) that were found with ``dof``, one for all or (...);
+    infinite where nothing was left to judge by."""
+    from scipy.special import stdtrit
+
+    std = np.asarray(std, dtype=np.float64)
     if dof is None:
-        return float(ndtri(upper))
-    return float(stdtrit(dof, upper)) if dof > 0 else float("inf")
-
-
-def half_width(std: ArrayLike, dof: int | None, level: float = LEVEL) -> FloatArray:
-    """(...) half a two-sided interval for standard deviations (...); infinite where nothing was left to judge by."""
-    t, std = quantile(dof, level), np.asarray(std, dtype=np.float64)
-    return np.asarray(t * std) if np.isfinite(t) else np.full_like(std, np.inf)
+        return quantile(None, level) * std
+    spare = np.broadcast_to(np.asarray(dof, dtype=np.float64), std.shape)
+    t = stdtrit(np.where(spare > 0.0, spare, 1.0), 0.5 + 0.5 * level)
+    return np.where(spare > 0.0, t * std, np.inf)
 
 
 def bisquare(u: FloatArray) -> FloatArray:

@@ -20,6 +20,7 @@ from robomill.identification.fit.fitting import Fitted, fit_system
 from robomill.identification.fit.folds import folds_of
 from robomill.identification.fit.model_error import Errors, held, model_error
 from robomill.identification.fit.models import Model
+from robomill.identification.fit.scatter import by_tests
 from robomill.identification.fit.selection import Candidates
 from robomill.identification.fit.suspects import UNASKED
 from robomill.identification.fit.system import System, build_system
@@ -67,6 +68,7 @@ def identify(
         if "force" not in treatment.freed or not tests.aimed.any() or _aimed_well(fitted):
             break
         tests = tests.moved(robot, fitted.found.shift[:3])  # cables aimed from the point found: a law linear about it
+    fitted = by_tests(fitted)
     missed = candidates.missed()
     result = _result(robot, tests, choice, fitted)
     error = headline(relative_by_pose(fitted.system, missed.error, fitted.weights))

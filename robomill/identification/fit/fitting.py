@@ -44,7 +44,9 @@ class Fitted:
         seen[kept] = fit.seen
         null = np.zeros((len(fit.null), p))
         null[:, kept] = fit.null
-        return replace(fit, x=x, free=free, covariance=covariance, seen=seen, null=null)
+        spare = np.full(p, float(fit.dof))
+        spare[kept] = fit.dof if fit.spare is None else fit.spare
+        return replace(fit, x=x, free=free, covariance=covariance, seen=seen, null=null, spare=spare)
 
 
 def fit_system(system: System, robust: bool = False, starts: Sequence[FloatArray] = ()) -> Fitted:

@@ -3,9 +3,9 @@
 Every fit works on the triangular factor R of [A b], a p x p matter however many tests there are; factors of
 parts are stacked to fit a whole (cross-validation leaves parts out that way).
 
-Intervals. The estimate is the bounded one; its covariance and 95 % intervals come from the *free* fit
-(Student's t with e - p degrees of freedom) and are then cut at zero. Cutting an interval to where the truth must
-lie cannot lose the truth, so the coverage stays 95 % for every parameter, on the bound or off it; the
+Intervals. The estimate is the bounded one; its covariance and 95 % intervals come from the *free* fit (Student's t
+with e - p degrees of freedom, or as ``scatter`` finds them) and are then cut at zero. Cutting an interval to where the
+truth must lie cannot lose the truth, so the coverage stays 95 % for every parameter, on the bound or off it; the
 covariance of a fit with the active bounds taken as known would be too sure of itself.
 """
 
@@ -31,7 +31,8 @@ class Fit:
     x (p,) bounded estimate, NaN never (an unseen parameter takes its share of the shortest solution);
     covariance (p, p) of the free fit, NaN rows for what is not seen; sigma: standard deviation of one (weighted)
     equation; seen (p,) bool; null (k, p) scaled directions that no equation sees; free (p,) the unbounded
-    estimate; condition before and after column scaling.
+    estimate; condition before and after column scaling. ``spare`` (p,): the degrees of freedom of each interval, where
+    they are not ``dof``.
     """
 
     x: FloatArray
@@ -42,6 +43,7 @@ class Fit:
     null: FloatArray
     free: FloatArray
     condition: tuple[float, float]
+    spare: FloatArray | None = None
 
     @property
     def stderr(self) -> FloatArray:
@@ -53,7 +55,7 @@ class Fit:
 
         Open where the readings ask for less than zero by more than chance: then nothing is known of that parameter.
         """
-        half = half_width(self.stderr, self.dof, level)
+        half = half_width(self.stderr, self.dof if self.spare is None else self.spare, level)
         denied = ~signed & (self.free + half < 0.0)
         low, high = np.minimum(self.free - half, self.x), np.maximum(self.free + half, self.x)
         high = np.where(denied, np.inf, high)

@@ -43,7 +43,8 @@ class PointFit(NamedTuple):
         fit = self.fit
         cov, null = fit.covariance[:p, :p], fit.null[:, :p]
         null = null[np.linalg.norm(null, axis=1) > 1e-6]
-        return replace(fit, x=fit.x[:p], covariance=cov, seen=fit.seen[:p], null=null, free=fit.free[:p])
+        spare = None if fit.spare is None else fit.spare[:p]
+        return replace(fit, x=fit.x[:p], covariance=cov, seen=fit.seen[:p], null=null, free=fit.free[:p], spare=spare)
 
 
 def monomials(shift: FloatArray, freed: Sequence[Point]) -> tuple[FloatArray, FloatArray]:
