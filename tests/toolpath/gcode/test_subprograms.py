@@ -39,6 +39,28 @@ def test_calls_by_number_and_line_are_followed(text: str, places: list[float]) -
     assert xs(text, "fanuc") == places
 
 
+BESIDE = [
+    # Fanuc, Operator's Manual, subprogram: "X1000.0 M98 P1200" calls behind the movement in X
+    ("X3. M98 P7\nX9.\n", "G91 X1.\nG90\n", [1, 3, 4, 9]),
+    # what is modal beside the call holds from there on
+    ("G91 M98 P7\n", "X1.\nX1.\n", [1, 2, 3]),
+    ("G10 L2 P2 X100. Y0 Z0\nG55 M98 P7\n", "X1.\n", [1, 101]),
+    ("G43 H2 Z5. M98 P7 L2\n", "G91 X1.\nG90\n", [1, 1, 2, 3]),
+    # a move beside M99 is made before the return
+    ("M98 P7\nX9.\n", "X4. ", [1, 4, 9]),
+]
+
+
+@pytest.mark.parametrize(("calls", "called", "places"), BESIDE)
+def test_words_beside_a_call_and_a_return_are_executed_before_it(calls: str, called: str, places: list[float]) -> None:
+    assert xs(f"{HEAD}{calls}M30\nO7\n{called}M99\n%\n", "fanuc") == places
+
+
+def test_a_cycle_beside_a_call_is_refused_where_both_want_a_word() -> None:
+    with pytest.raises(GCodeError, match=r"Line 4: M98 and a cycle on one line both want L or Q"):
+        interpret(HEAD + "G83 Z-4. R1. Q2. M98 P7\nM30\nO7\nX4.\nM99\n%\n", dialect="fanuc")
+
+
 SINUMERIK = [
     ("L100 P2\nX9\nM30\n%_N_L100_SPF\nG91 X1\nG90\nM17\n", [1, 2, 3, 9]),
     ("N20 L0100\nX9\nM30\n%_N_L0100_SPF\n;$PATH=/_N_SPF_DIR\nX4\nRET\n", [1, 4, 9]),
