@@ -44,6 +44,7 @@ _TOOL = re.compile(r"\bT[ \t]*=?[ \t]*\"([^\"]*)\"", re.IGNORECASE)
 _SPINDLE = re.compile(r"\bM1[ \t]*=[ \t]*(\d+)", re.IGNORECASE)
 _TAP = re.compile(r"\bG33[12]\b", re.IGNORECASE)
 _PITCH = re.compile(rf"\bK[ \t]*=?[ \t]*({_NUMBER})", re.IGNORECASE)
+_MESSAGE = re.compile(r"\bMSG[ \t]*\(((?:\"[^\"]*\"|\([^()]*\)|[^()\"])*)\)(?:[ \t]*,[ \t]*[01]\b)?", re.IGNORECASE)
 _FIXED_POINT = re.compile(
     rf"\b(G7[45])((?:[ \t]+(?:[XYZ](?:1[ \t]*=|[ \t]*=)?[ \t]*{_NUMBER}|FP[ \t]*=[ \t]*\d))+)[ \t]*$", re.IGNORECASE
 )
@@ -89,9 +90,10 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = _SWIVEL.sub(
         lambda found: _unswivelled(found, number, machine), _ROUND_CORNERS.sub("", _SILENT.sub("", code))
     )
-    message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
-    if message is not None:
-        code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
+    message = _MESSAGE.search(code)
+    if message is not None:  # other words may stand before it and behind it
+        shown = message[1].strip('" ').replace("(", "[").replace(")", "]").replace('"', "")
+        code, comment = code[: message.start()] + code[message.end() :], f" (MSG,{shown}){comment}"
     code = _FIXED_POINT.sub(lambda found: _fixed_point(found, machine), code)
     code = _feeds(code, number, machine)
     code = _in_machine(code, machine)

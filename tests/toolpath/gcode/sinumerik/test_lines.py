@@ -46,3 +46,19 @@ def test_another_edge_of_a_tool_is_told() -> None:
     program = interpret(text, dialect="sinumerik")
     assert [(f.line, f.level) for f in program.findings if f.code == "tool-edge"] == [(5, "warning")]
     np.testing.assert_allclose(program.end * 1e3, [[1, 2, 0], [1, 2, 3], [1, 2, 400]], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('MSG("DRILL (1)") G1 X4 Y5', "DRILL [1]"),
+        ('N20 G1 X4 MSG("DRILL") Y5 ; Y9', "DRILL"),
+        ('G1 X4 Y5 MSG ("X="<<R1, 1)', "X=<<R1, 1"),
+        ("G1 X4 MSG() Y5", ""),
+    ],
+)
+def test_words_beside_a_message_are_executed(line: str, said: str) -> None:
+    """MSG may stand in a block with others (840D sl, Programming Manual, Fundamentals: MSG); those behind it were lost."""
+    program = interpret(f"G71 G90 G17 F100\nR1=2\n{line}\nX6\nM30\n", dialect="sinumerik")
+    np.testing.assert_allclose(program.end * 1e3, [[4, 5, 0], [6, 5, 0]], atol=1e-9)
+    assert program.messages[0] == (3, said)
