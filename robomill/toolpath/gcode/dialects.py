@@ -88,7 +88,10 @@ def _shows(text: str, signs: tuple[tuple[str, str], ...]) -> bool:
 
 @dataclass(frozen=True)
 class Dialect:
-    """How a program is read; ``guessed`` says that nobody stated it, ``marked`` that it shows in the text at least."""
+    """How a program is read; ``guessed`` says that nobody stated it, ``marked`` that it shows in the text at least.
+
+    G70 and G71 alone mark none: Hurco, NUM, Fagor and others write them, too.
+    """
 
     name: str
     guessed: bool = True
@@ -311,7 +314,7 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
         text = COMMENT.sub("", text)
     for name, signs in (("grbl", _GRBL), ("sinumerik", _SINUMERIK), ("fanuc", _FANUC)):
         if _shows(text, signs):
-            return Dialect(name)
+            return Dialect(name, marked=signs is not _SINUMERIK or _shows(text, _SINUMERIK[:-1]))
     return Dialect("linuxcnc", marked=False)
 
 

@@ -184,12 +184,20 @@ def _feeds(code: str, number: int, machine: Machine) -> str:
     said = [each.upper() for each in _WORDS.findall(code) if each.upper() in _FOLLOWS]
     inch = machine.unit == "in"
     if said:
-        machine.feeds_follow, inch = _FOLLOWS[said[-1]], said[-1] in ("G70", "G700")
-        if said[-1] == "G70":
+        machine.feeds_follow = _FOLLOWS[said[-1]] or machine.feeds_unsure
+        inch = said[-1] in ("G70", "G700")
+        if said[-1] == "G70" and machine.feeds_unsure:
             text = (
-                "G70: feeds still count in mm/min, as on a control whose basic system is metric; G700 counts them in in"
+                "G70: feeds are read in in/min, too, as controls with an inch basic system take them; a Sinumerik "
+                "whose basic system is metric takes them in mm/min: choose that dialect where it does"
             )
-            machine.findings.add("feeds-metric", "info", number, text)
+            machine.findings.add("feeds-inch", "warning", number, text)
+        elif said[-1] == "G70":
+            text = (
+                "G70: feeds still count in mm/min, as on a control whose basic system is metric; where it is inch they "
+                "are 25.4 times as fast: write G700, which counts them in in"
+            )
+            machine.findings.add("feeds-metric", "warning", number, text)
     counts = "in" if inch and machine.feeds_follow else "mm"
     if counts == machine.unit or machine.feed_mode == 930:
         return code

@@ -58,7 +58,27 @@ def test_another_edge_of_a_tool_is_told() -> None:
     ],
 )
 def test_words_beside_a_message_are_executed(line: str, said: str) -> None:
-    """MSG may stand in a block with others (840D sl, Programming Manual, Fundamentals: MSG); those behind it were lost."""
+    """MSG may stand in a block with others (840D sl, Fundamentals: MSG); what is behind it was lost."""
     program = interpret(f"G71 G90 G17 F100\nR1=2\n{line}\nX6\nM30\n", dialect="sinumerik")
     np.testing.assert_allclose(program.end * 1e3, [[4, 5, 0], [6, 5, 0]], atol=1e-9)
     assert program.messages[0] == (3, said)
+
+
+@pytest.mark.parametrize(
+    ("text", "dialect", "feed", "code"),
+    [
+        # 802D sl, G70: feeds stay in the basic system, which this program shows nothing of: Hurco's, say, is inch
+        ("%\nG00 G17 G40 G80 G90 G70\nT1 M6\nG01 X1.0 F10.0\nM02\nE\n", "auto", 254.0, "feeds-inch"),
+        ("G70 G90\nG1 X1 F10\nM30\n", "sinumerik", 10.0, "feeds-metric"),
+        ('G70 G90\nMSG("x")\nG1 X1 F10\nM30\n', "auto", 10.0, "feeds-metric"),
+        ("G700 G90\nG1 X1 F10\nM30\n", "sinumerik", 254.0, ""),
+    ],
+)
+def test_feeds_beside_g70_are_inches_where_nothing_else_shows_a_sinumerik(
+    text: str, dialect: str, feed: float, code: str
+) -> None:
+    program = interpret(text, dialect=dialect)
+    assert program.dialect == "sinumerik"
+    np.testing.assert_allclose(program.end[-1] * 1e3, [25.4, 0, 0], atol=1e-9)
+    assert program.v_f[-1] * 6e4 == pytest.approx(feed)
+    assert [(f.code, f.level) for f in program.findings if "feeds" in f.code] == ([(code, "warning")] if code else [])
