@@ -111,8 +111,8 @@ def doubt_fanuc(findings: Findings, data: bytes, program: Program) -> None:
     rises = _rises_to_r(program)
     if len(rises):
         text = (
-            "the cycle begins below its R: it is read as rising to R first; Fanuc controls go to the hole at the height "
-            "where the tool is, and back to that in G98: write a G0 to above R before it"
+            "the cycle begins below its R: it is read as rising to R first; Fanuc controls go to the hole at the "
+            "height where the tool is, and back to that in G98: write a G0 to above R before it"
         )
         findings.add("cycle-below-r", "warning", int(program.line[rises[0]]), text, len(rises))
     if found := _ATAN.search(_without_comments(data[:SAMPLE])):
