@@ -8,6 +8,7 @@ from itertools import pairwise
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode import codes as modal
+from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.owords import SENTENCES, Call, OWords
 from robomill.toolpath.gcode.rules import flow_rules as rules
 from robomill.toolpath.gcode.rules.cycle_rules import is_cycle
@@ -76,6 +77,21 @@ class Subprograms(OWords):
     def execute(self, block: Block) -> None:
         """Check and execute a block."""
         raise NotImplementedError
+
+    def o_word(self, reader: Reader, index: int) -> None:
+        """Follow the O word of a line; on a Fanuc the number of another program ends the one before it."""
+        place = self.o_words(self.file).places.get(index)
+        word = None if place is None else self.o_words(self.file).words[place]
+        if not self.machine.is_fanuc or word is None or word.keyword != rules.BARE or word.problem:
+            super().o_word(reader, index)
+            return
+        if self.machine.store.level > 0:
+            raise reader.refuse(f"O{self.called_now()} goes on into {word.name}; close it with M99 before that line.")
+        if len(self.machine.recorder):
+            text = f"the program ends without M30 before {word.name}, where it is taken to end"
+            self.machine.findings.add("no-end", "warning", index + 1, text)
+            self.finish(index + 1)
+            self.ended = True
 
     def begin_at_main(self) -> None:
         """Go to the first program that ends for good, where it calls the one that the file begins with: as a control

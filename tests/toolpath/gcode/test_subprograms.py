@@ -56,6 +56,16 @@ def test_words_beside_a_call_and_a_return_are_executed_before_it(calls: str, cal
     assert xs(f"{HEAD}{calls}M30\nO7\n{called}M99\n%\n", "fanuc") == places
 
 
+def test_the_number_of_another_program_ends_the_one_before_it() -> None:
+    """A subprogram without M99 would go on into the next one, and a main program without M30 into its subprograms."""
+    with pytest.raises(GCodeError, match=r"Line 7: O7 goes on into O8; close it with M99 before that line."):
+        interpret(HEAD + "M98 P7\nM30\nO7\nO8\nX4.\nM99\n%\n", dialect="fanuc")
+    text = HEAD + "M98 P7\nX9.\nO7\nX2.\nM99\n%\n"
+    assert xs(text, "fanuc") == [1, 2, 9]
+    found = interpret(text, dialect="fanuc").findings
+    assert [(f.line, f.level) for f in found if f.code == "no-end"] == [(6, "warning")]
+
+
 def test_a_cycle_beside_a_call_is_refused_where_both_want_a_word() -> None:
     with pytest.raises(GCodeError, match=r"Line 4: M98 and a cycle on one line both want L or Q"):
         interpret(HEAD + "G83 Z-4. R1. Q2. M98 P7\nM30\nO7\nX4.\nM99\n%\n", dialect="fanuc")
