@@ -15,7 +15,7 @@ from robomill.toolpath.gcode.corners import BEVEL, LEGS, ROUND, Corner
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.rules.motion_rules import PER_TURN
-from robomill.toolpath.gcode.sinumerik.holes import Hole, Holes, drilling_cycle
+from robomill.toolpath.gcode.sinumerik.holes import Hole, Holes, drilling_cycle, of_percentages
 from robomill.toolpath.gcode.words import Block, normalise
 from robomill.toolpath.plane import turned
 
@@ -107,6 +107,10 @@ class SinumerikWords(Holes):
 
     def _hole(self, kind: str, text: str, line: int) -> Hole:
         given = [self.value(each, line) if each.strip() else math.nan for each in text.split(",")]
+        if kind == "83" and (factors := of_percentages(given)) is not None:
+            text = "CYCLE83: DAM above the first stroke and FRF above 1 are read as percentages, as Operate writes them"
+            self.machine.findings.add("cycle-percent", "warning", line, text)
+            given = factors
         return drilling_cycle(kind, given, self.machine.factor, line)
 
     # --- values
