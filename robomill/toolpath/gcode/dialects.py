@@ -19,6 +19,7 @@ from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_ba
 from robomill.toolpath.gcode.rules.motion_rules import LINE, is_arc
 from robomill.toolpath.gcode.scan import COMMENT
 from robomill.toolpath.gcode.sinumerik.lines import translated
+from robomill.toolpath.gcode.standing import settle
 from robomill.toolpath.gcode.tilted import of_fanuc
 from robomill.toolpath.gcode.words import Block, flattened
 from robomill.units import to_si
@@ -176,6 +177,8 @@ class Dialect:
         """Refuse G words that LinuxCNC knows and that mean something else on this control, and count F as grbl does."""
         if block.twice and self.strict:
             raise block.refuse(block.twice)
+        if machine.moved:
+            settle(machine, block)
         unit = block.g.get(modal.UNITS, machine.unit_code)
         if self.name in ("grbl", "fanuc") and unit != machine.unit_code:
             if machine.feed_mode != 930 and "f" in block.words:

@@ -6,6 +6,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.offsets import frame_of
 from robomill.toolpath.gcode.rules.motion_rules import MINUTE
+from robomill.toolpath.gcode.standing import note_step
 from robomill.toolpath.gcode.tilted import tilt, turned_by, upright
 from robomill.toolpath.gcode.tool_axis import angles_of
 from robomill.units import to_si
@@ -280,6 +281,8 @@ def _places(code: str, machine: Machine) -> str:
         letter, way, value = found[1].upper(), found[2].upper(), float(found[3])
         centre = letter in "IJK"
         at = here["IJK".index(letter) if centre else "XYZABC".index(letter)]
+        if way == "IC" and letter in "XYZ" and "XYZ".index(letter) in machine.moved:
+            note_step(machine, letter)
         places = machine.arc_absolute if centre else absolute
         if (way == "AC") == places:
             return f" {letter}[{found[3]}]"

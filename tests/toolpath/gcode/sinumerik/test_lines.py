@@ -82,3 +82,21 @@ def test_feeds_beside_g70_are_inches_where_nothing_else_shows_a_sinumerik(
     np.testing.assert_allclose(program.end[-1] * 1e3, [25.4, 0, 0], atol=1e-9)
     assert program.v_f[-1] * 6e4 == pytest.approx(feed)
     assert [(f.code, f.level) for f in program.findings if "feeds" in f.code] == ([(code, "warning")] if code else [])
+
+
+@pytest.mark.parametrize(
+    ("body", "end", "said"),
+    [
+        # 840D sl, setting data 42440, 1 as delivered: X1 would lead to 11, where it is read as one step
+        ("TRANS X10\nG91 X1\n", [1, 0, 0], [4]),
+        ("TRANS X10\nX=IC(1)\n", [1, 0, 0], [4]),
+        ("MIRROR X0\nG0 X5\nMIRROR\nG91 Y1 X1\n", [-4, 1, 0], [6]),
+        ("TRANS X10\nG91 Y1\n", [0, 1, 0], []),
+        ("TRANS X10\nX0\nG91 X1\n", [11, 0, 0], []),
+        ("G91 X1\nTRANS\nX1\n", [2, 0, 0], []),
+    ],
+)
+def test_a_step_behind_a_frame_is_said(body: str, end: list[float], said: list[int]) -> None:
+    program = interpret(f"G71 G90 G17 F100\nG0 X0 Y0 Z0\n{body}M30\n", dialect="sinumerik")
+    np.testing.assert_allclose(program.end[-1] * 1e3, end, atol=1e-9)
+    assert [f.line for f in program.findings if f.code == "step-behind-frame"] == said
