@@ -226,6 +226,8 @@ class Dialect:
                 raise block.refuse("G60 with axis words goes there at rapid, from one side; write G0.")
             if code == 500 and not block.words.keys().isdisjoint("xyzabc"):
                 raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")
+            if self.name == "fanuc" and code in (650, 660):
+                raise block.refuse(f"{g_name(code)} stands first on its line; put the other words on a line before it.")
             if code in harmless:
                 for letter in "xyzijk" if code == 220 else "":  # of G22, the limits of the machine
                     block.words.pop(letter, None)
@@ -233,6 +235,8 @@ class Dialect:
             else:
                 raise block.refuse(not_read(code))
         for code in block.unknown_m:
+            if code == 96 and {"p", "q"} <= block.words.keys():
+                raise block.refuse("M96 jumps by an input of the machine (Haas), which is not known; write GOTO.")
             machine.note("unknown-m", "ignored", f"M{code} is not known and is left out")
 
     def _turns(self, machine: Machine, block: Block, code: int) -> bool:
