@@ -46,7 +46,7 @@ class Subprograms(OWords):
         if code is None:
             return False
         if (rest := _beside(block, code)) is not None:
-            if self.machine.modal is not None:
+            if self.machine.modal is not None and all(call.values is None for call in self.foreign.values()):
                 text = (
                     f"M{code} beside other words, and a macro or cycle that every move calls; put it on its own line."
                 )

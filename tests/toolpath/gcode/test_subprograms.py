@@ -46,7 +46,8 @@ BESIDE = [
     ("G91 M98 P7\n", "X1.\nX1.\n", [1, 2, 3]),
     ("G10 L2 P2 X100. Y0 Z0\nG55 M98 P7\n", "X1.\n", [1, 101]),
     ("G43 H2 Z5. M98 P7 L2\n", "G91 X1.\nG90\n", [1, 1, 2, 3]),
-    # a move beside M99 is made before the return
+    # a move beside M99 is made before the return, in what G66 calls, too
+    ("G66 P7\nX9.\nG67\n", "X4. ", [1, 9, 4]),
     ("M98 P7\nX9.\n", "X4. ", [1, 4, 9]),
 ]
 
@@ -64,6 +65,11 @@ def test_the_number_of_another_program_ends_the_one_before_it() -> None:
     assert xs(text, "fanuc") == [1, 2, 9]
     found = interpret(text, dialect="fanuc").findings
     assert [(f.line, f.level) for f in found if f.code == "no-end"] == [(6, "warning")]
+
+
+def test_a_move_beside_a_call_that_a_macro_would_follow_is_refused() -> None:
+    with pytest.raises(GCodeError, match=r"Line 5: M98 beside other words, and a macro or cycle that every move calls"):
+        interpret(HEAD + "G66 P7\nX9. M98 P7\nM30\nO7\nX4.\nM99\n%\n", dialect="fanuc")
 
 
 def test_a_cycle_beside_a_call_is_refused_where_both_want_a_word() -> None:
