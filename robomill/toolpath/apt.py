@@ -36,6 +36,7 @@ from robomill.units import to_si
 _MOVES = frozenset(
     (
         *("ARC", "INDIRP", "TLON", "TLLFT", "TLRGT", "THREAD", "RETRCT", "ROTATE", "ROTABL", "TRACUT", "COPY", "CALL"),
+        *("LOOPST", "LOOPND", "JUMPTO", "IF", "TERMAC", "REPEAT"),
         *("MACRO", "GO", "HELIX", "NURBS", "SPLINE", "GOCLER", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN"),
     )
 )
@@ -61,6 +62,7 @@ _SILENT = frozenset(
     }
 )
 _RATES = ("IPR", "MMPR", "PERREV", "IPM", "MMPM", "PERMIN")
+_INSERTED = re.compile(r"INSERT\b.*[XYZ]\s*[-+]?[.\d]")
 _STANDS = "feed counts per turn, and the spindle stands; SPINDL comes first."
 
 
@@ -248,6 +250,8 @@ def _other(state: _State, findings: Findings, word: str, values: list[str], line
             findings.add("mode-incr", "warning", line, text)
     elif word == "CUTCOM" and values[:1] and values[0].upper() in ("LEFT", "RIGHT", "ON"):
         findings.add("cutcom", "warning", line, "CUTCOM is left out: points are taken as those of the tool's centre")
+    elif _INSERTED.match(word):
+        findings.add("insert", "warning", line, f"{word[:40]!r} is the machine's own code, which is left out")
     elif word == "ORIGIN" and any(numbers_of(values, line, word)):
         findings.add("origin", "info", line, "ORIGIN is left out: points count from where the file counts them")
     elif is_broken(word):

@@ -233,6 +233,9 @@ def _said_of(words: list[str], kind: str, line: int) -> tuple[dict[str, float], 
             named[word] = places.pop()
         elif word in _NAMED:
             value = next(rest, "")
+            if word in named:
+                text = f"CYCLE/{kind} gives {word} more than once (a table of pecks), which is not read"
+                raise GCodeError.at(line, f"{text}; let the CAM system write GOTO.")
             if value != "AUTO":
                 named[word] = numbers_of([value], line, f"CYCLE/{kind} {word}")[0]
         elif NUMBER.match(word):

@@ -289,10 +289,18 @@ def test_the_reader_of_g_code_names_the_one_of_apt(tmp_path: Path) -> None:
         read_gcode(FILE)
 
 
-@pytest.mark.parametrize("word", ["GO/TO,L1", "HELIX/0,0,0,10,5", "NURBS/3", "SPLINE/0,0,0,1,1,1"])
+@pytest.mark.parametrize(
+    "word", ["GO/TO,L1", "HELIX/0,0,0,10,5", "NURBS/3", "SPLINE/0,0,0,1,1,1", "LOOPST", "JUMPTO/A"]
+)
 def test_motions_that_are_not_known_stop_the_reading(word: str) -> None:
     with pytest.raises(GCodeError, match="Line 3: .* moves the tool in a way that is not read"):
         read_apt(f"UNITS/MM\nFROM/0,0,0\n{word}\nFEDRAT/60\nGOTO/1,0,0\nFINI\n")
+
+
+@pytest.mark.parametrize(("word", "said"), [("INSERT G0 X9. Z50.", [3]), ("INSERT M08", []), ("INSERT/ M08", [])])
+def test_code_for_the_machine_that_may_move_it_is_said(word: str, said: list[int]) -> None:
+    path = read_apt(f"UNITS/MM\nFROM/0,0,0\n{word}\nFEDRAT/60\nGOTO/1,0,0\nFINI\n")
+    assert [f.line for f in path.findings if f.code == "insert"] == said
 
 
 def test_cuts_with_a_spindle_that_was_stopped_are_told() -> None:

@@ -114,3 +114,10 @@ def test_pecks_that_come_out_even_end_at_the_bottom_once() -> None:
     """12 mm in steps of 3 are four pecks, though 0.009 / 0.003 is a little more than 3 in binary."""
     path = read_apt(f"{HEAD}FROM/0,0,50\nCYCLE/DEEP,DEPTH,10,MMPM,60,CLEAR,2,STEP,3\nGOTO/1,0,0\nFINI\n")
     np.testing.assert_allclose(path.p[path.cutting, 2] * 1e3, [-1, -4, -7, -10], atol=1e-9)
+
+
+def test_a_table_of_pecks_is_refused() -> None:
+    """Creo writes several STEP and feeds, each for some of the pecks (Peck Table); the last of them counted for all."""
+    cycle = "CYCLE/DEEP,DEPTH,12,STEP,4,STEP,3,IPM,12,STEP,1,IPM,10,CLEAR,1"
+    with pytest.raises(GCodeError, match=r"Line 5: CYCLE/DEEP gives STEP more than once \(a table of pecks\)"):
+        read_apt(f"{HEAD}FROM/0,0,50\n{cycle}\nGOTO/10,0,0\nCYCLE/OFF\nFINI\n")

@@ -37,7 +37,7 @@ class Dxf:
         _look_over(data, name)
         try:
             self.doc = _document(data, name)
-            code = int(self.doc.header.get("$INSUNITS", 0))
+            code = int(self.doc.header.get("$INSUNITS", 0)) if b"$INSUNITS" in data else 0  # ezdxf supposes metres
             self.unit, self.unsaid = UNITS_OF_DXF.get(code, ""), _unsaid(code)
         except ToolpathError:
             raise

@@ -19,6 +19,7 @@ from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_ba
 from robomill.toolpath.gcode.rules.motion_rules import LINE, is_arc
 from robomill.toolpath.gcode.scan import COMMENT
 from robomill.toolpath.gcode.sinumerik.lines import translated
+from robomill.toolpath.gcode.standing import settle
 from robomill.toolpath.gcode.tilted import of_fanuc
 from robomill.toolpath.gcode.words import Block, flattened
 from robomill.units import to_si
@@ -88,7 +89,10 @@ def _shows(text: str, signs: tuple[tuple[str, str], ...]) -> bool:
 
 @dataclass(frozen=True)
 class Dialect:
-    """How a program is read; ``guessed`` says that nobody stated it, ``marked`` that it shows in the text at least."""
+    """How a program is read; ``guessed`` says that nobody stated it, ``marked`` that it shows in the text at least.
+
+    G70 and G71 alone mark none: Hurco, NUM, Fagor and others write them, too.
+    """
 
     name: str
     guessed: bool = True
@@ -173,6 +177,8 @@ class Dialect:
         """Refuse G words that LinuxCNC knows and that mean something else on this control, and count F as grbl does."""
         if block.twice and self.strict:
             raise block.refuse(block.twice)
+        if machine.moved:
+            settle(machine, block)
         unit = block.g.get(modal.UNITS, machine.unit_code)
         if self.name in ("grbl", "fanuc") and unit != machine.unit_code:
             if machine.feed_mode != 930 and "f" in block.words:
@@ -220,6 +226,8 @@ class Dialect:
                 raise block.refuse("G60 with axis words goes there at rapid, from one side; write G0.")
             if code == 500 and not block.words.keys().isdisjoint("xyzabc"):
                 raise block.refuse("G50 with axis words sets a coordinate system, which is not read; remove the line.")
+            if self.name == "fanuc" and code in (650, 660):
+                raise block.refuse(f"{g_name(code)} stands first on its line; put the other words on a line before it.")
             if code in harmless:
                 for letter in "xyzijk" if code == 220 else "":  # of G22, the limits of the machine
                     block.words.pop(letter, None)
@@ -227,6 +235,8 @@ class Dialect:
             else:
                 raise block.refuse(not_read(code))
         for code in block.unknown_m:
+            if code == 96 and {"p", "q"} <= block.words.keys():
+                raise block.refuse("M96 jumps by an input of the machine (Haas), which is not known; write GOTO.")
             machine.note("unknown-m", "ignored", f"M{code} is not known and is left out")
 
     def _turns(self, machine: Machine, block: Block, code: int) -> bool:
@@ -311,7 +321,7 @@ def choose_dialect(text: str, wanted: str) -> Dialect:
         text = COMMENT.sub("", text)
     for name, signs in (("grbl", _GRBL), ("sinumerik", _SINUMERIK), ("fanuc", _FANUC)):
         if _shows(text, signs):
-            return Dialect(name)
+            return Dialect(name, marked=signs is not _SINUMERIK or _shows(text, _SINUMERIK[:-1]))
     return Dialect("linuxcnc", marked=False)
 
 

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 
+from robomill.arrays import IntArray
 from robomill.provenance import Finding, Level
 from robomill.toolpath.findings import Findings
 from robomill.toolpath.gcode.machine import Machine
@@ -32,6 +33,7 @@ def _coordinate(number: bytes) -> re.Pattern[bytes]:
 
 
 _POINTED, _WHOLE = _coordinate(rb"\d{1,9}+\.\d*+"), _coordinate(rb"0*+([1-9]\d{0,8}+)(\.0*+)?+")
+_ATAN = re.compile(rb"\bATAN?\s*\[", re.IGNORECASE)
 _LATHE_TOOL = re.compile(rb"(?<![A-Za-z0-9])[Tt](\d\d)\1(?![\d.])")
 _CHANGES = re.compile(rb"[Mm]0?6(?![\d.])|(?<![A-Za-z#<])[Yy]\s*[-+.\d#\[]")
 QUARTER, SLACK = 90.0, 1e-6
@@ -95,6 +97,42 @@ def doubt_lathe(findings: Findings, data: bytes, program: Program) -> None:
         "is read as one of a mill, so do not trust this path"
     )
     findings.add("lathe", "suspicious", 0, text)
+
+
+def doubt_fanuc(findings: Findings, data: bytes, program: Program) -> None:
+    """Say where a Fanuc control may do otherwise than is read: turns of arcs, cycles from below R, angles of ATAN."""
+    turned = np.flatnonzero(program.turns > 1)
+    if len(turned):
+        text = (
+            "P beside G2 or G3 is read as a number of turns (LinuxCNC); Fanuc and Haas have no such word and make one "
+            "turn: write each turn on its own line"
+        )
+        findings.add("arc-turns", "warning", int(program.line[turned[0]]), text, len(turned))
+    rises = _rises_to_r(program)
+    if len(rises):
+        text = (
+            "the cycle begins below its R: it is read as rising to R first; Fanuc controls go to the hole at the "
+            "height where the tool is, and back to that in G98: write a G0 to above R before it"
+        )
+        findings.add("cycle-below-r", "warning", int(program.line[rises[0]]), text, len(rises))
+    if found := _ATAN.search(_without_comments(data[:SAMPLE])):
+        text = (
+            "ATAN is read as -180 to 180 degrees; a Fanuc control gives these or 0 to 360, as its parameter 6004.0 "
+            "(NAT) says: check what depends on that"
+        )
+        findings.add("atan-range", "info", data.count(b"\n", 0, found.start()) + 1, text)
+
+
+def _rises_to_r(program: Program) -> IntArray:
+    """Moves of cycles that rise to R where the program itself has led the tool below it: their rows."""
+    z, moved = program.end[:, 2] - program.start[:, 2], program.end != program.start
+    sideways = moved[:, :2].any(axis=1)
+    rises = (program.kind == TRAVERSE) & ~sideways & (z > 0.0)
+    rises[1:] &= program.line[1:] != program.line[:-1]
+    across = (program.kind == TRAVERSE) & sideways & ~moved[:, 2] & ~program.away.any(axis=1)
+    follows = np.flatnonzero(across[1:] & (program.line[1:] == program.line[:-1]))
+    led = np.cumsum(moved[:, 2]) > moved[:, 2]  # a height was said before
+    return np.intersect1d(np.flatnonzero(rises & led), follows)
 
 
 def doubt(machine: Machine, program: Program) -> None:

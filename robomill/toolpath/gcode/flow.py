@@ -151,7 +151,7 @@ def scan(lines: Lines, calls: Calls) -> Structure:
         words.append(word)
         past = word.past
         scanner.put(word, len(words) - 1)
-        word.handed = bool(word.problem) or text[0] == "/" or len(raw) > MAX_LINE
+        word.handed = bool(word.problem) or keyword == rules.BARE or text[0] == "/" or len(raw) > MAX_LINE
     for word in words:
         if word.keyword == rules.CALL:
             word.start = structure.subs.get(word.label, -1)

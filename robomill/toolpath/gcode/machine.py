@@ -73,9 +73,10 @@ class Machine:
     ``tilt_due`` is one that waits for G53.1, and ``stuck`` why no move may come before; ``left`` are A, B, C (degrees)
     at which it began, if not at 0, and ``leans`` says that it has ended and nothing has turned the tool back.
 
-    ``feeds_follow`` says that feeds count in the unit of lengths (a Sinumerik's G70 and G71 change lengths alone),
-    ``feed_in_block`` that F beside a word of units counts in the new ones; ``sharp`` that compensation goes around
-    outside corners without an arc (G451).
+    ``feeds_follow`` says that feeds count in the unit of lengths (a Sinumerik's G70 and G71 change lengths alone,
+    unless ``feeds_unsure``: nothing else shows such a control), ``feed_in_block`` that F beside a word of units counts
+    in the new ones; ``sharp`` that compensation goes around outside corners without an arc (G451), ``moved`` which axes
+    a frame has moved under the tool.
 
     ``t_changes`` says that T changes the tool at once, without M6; ``kept_d`` is the D that a G41 without one means,
     None for the tool in the spindle. ``leaving`` is how far aside of the
@@ -97,6 +98,7 @@ class Machine:
     kept_d: float | None = None
     zero_ended: bool | None = None
     leaving: list[float] | None = None
+    feeds_unsure, moved = False, frozenset[int]()
 
     def __init__(self, tools: Tools | None) -> None:
         asked = WeakMethod(self.provided)  # no ring that only the garbage collector would undo
@@ -180,7 +182,7 @@ class Machine:
         held = self.compensation is not None or self.recorder.held is not None
         other = self.diameter_mode or self.polar_words or self.modal is not None or self.scale is not None
         counted = self.feeds_follow or self.unit_code == 210
-        lost = any(self.away) or self.zero_ended or self.stuck or self.leans or self.leaving is not None
+        lost = any(self.away) or self.moved or self.zero_ended or self.stuck or self.leans or self.leaving is not None
         return counted and not (held or other or self.rounding or lost)
 
     def set_units(self, code: int) -> None:

@@ -17,6 +17,7 @@ _NAMED = {
         code: f"G{code // 10} makes holes on {places} (Haas) or is a lathe's cycle, which is not read; {_OUT}."
         for code, places in ((700, "a circle"), (710, "an arc"), (720, "a line"))
     },
+    630: "G63 taps with a compensating chuck (Sinumerik), which is not read; write G1 down, and G1 up with M4.",
     470: f"G47 engraves text (Haas), which is not read; {_OUT}.",
     510: f"G51 scales coordinates, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
     511: f"G51.1 mirrors coordinates, {_READ} Fanuc-like controls alone; {_CHOOSE}.",

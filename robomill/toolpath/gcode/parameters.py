@@ -71,6 +71,8 @@ class Store(NamedTuple):
     """So many columns are names that the machine provides; the next one is ``n_args``."""
     towards_zero: int
     """1 where FIX and MOD cut towards 0, as Fanuc, Sinumerik and Heidenhain do; LinuxCNC's cut downwards."""
+    by_bits: int
+    """1 where AND, OR and XOR combine whole numbers bit by bit, as Fanuc's do: 6 AND 1 is 0."""
 
 
 class Parameters:
@@ -88,7 +90,7 @@ class Parameters:
         values, settings = array("d", [0.0]) * STACK, array("d", [0.0]) * MAX_SETTINGS
         self._scratch = (values, marks, figures, keys, settings, array("d", [0.0]) * WIDTH, array("d", [0.0]) * 6)
         self._room, self._provided, self._level = 0, 0, array("q", [0])
-        self._towards_zero = 0
+        self._towards_zero = self._by_bits = 0
         self._views: Store | None = None
         names = (*RETURNED, *names)
         self._make_room(max(64, 2 * len(names)))
@@ -106,6 +108,11 @@ class Parameters:
         self._towards_zero = 1
         self.arrays = self._store()
 
+    def combine_bits(self) -> None:
+        """AND, OR and XOR go bit by bit from here on."""
+        self._by_bits = 1
+        self.arrays = self._store()
+
     # --- memory
     def _store(self) -> Store:
         names: Any = (self._named, self._slots, self._letters, self._ends)
@@ -117,6 +124,7 @@ class Parameters:
             self._room,
             self._provided,
             self._towards_zero,
+            self._by_bits,
         )
         self._views = None
         return Store(*fields)
@@ -125,8 +133,8 @@ class Parameters:
         """The same memory, as arrays for compiled code; what holds them has to let go before a name is added."""
         if self._views is None:
             fields: Any = self.arrays
-            views: Any = (np.frombuffer(values, values.typecode) for values in fields[:-3])
-            self._views = Store(*views, *fields[-3:])
+            views: Any = (np.frombuffer(values, values.typecode) for values in fields[:-4])
+            self._views = Store(*views, *fields[-4:])
         return self._views
 
     def _make_room(self, room: int) -> None:

@@ -15,7 +15,14 @@ from robomill.toolpath.findings import NO_UNITS
 from robomill.toolpath.gcode.chords import to_toolpath
 from robomill.toolpath.gcode.cutters import never_changes
 from robomill.toolpath.gcode.dialects import SAMPLE, Dialect, choose_dialect
-from robomill.toolpath.gcode.doubts import doubt, doubt_all_points, doubt_lathe, doubt_points, doubt_second_table
+from robomill.toolpath.gcode.doubts import (
+    doubt,
+    doubt_all_points,
+    doubt_fanuc,
+    doubt_lathe,
+    doubt_points,
+    doubt_second_table,
+)
 from robomill.toolpath.gcode.fanuc.macro_calls import begin_empty
 from robomill.toolpath.gcode.foreign import language_of
 from robomill.toolpath.gcode.grbl import check_grbl
@@ -131,6 +138,7 @@ def interpret(
     if chosen.name == "fanuc":
         doubt_all_points(machine.findings, data, program)
         doubt_lathe(machine.findings, data, program)
+        doubt_fanuc(machine.findings, data, program)
         return replace(program, findings=machine.findings.freeze())
     return program
 
@@ -145,7 +153,7 @@ def _machine(tools: Tools | None, dialect: Dialect, lines: Lines) -> Machine:
     if machine.other_control:
         machine.store.cut_towards_zero()
     if dialect.name == "sinumerik":
-        machine.further = "G5{:02}"
+        machine.further, machine.feeds_unsure = "G5{:02}", not dialect.marked
         machine.zero_ended = False if chooses_zeros(lines.data) else None
         machine.t_changes = never_changes(lines.data)
     if dialect.name == "fanuc":

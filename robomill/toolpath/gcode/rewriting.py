@@ -97,7 +97,7 @@ class Rewriter:
         self.lines += text_lines[: executed[0].index if executed else 0]
         for each in executed:
             again = each.index in numbered
-            text = re.sub(r"^(\s*/?\s*)N\d+\s*", r"\1", each.text) if again else each.text
+            text = re.sub(r"^(\s*/?\s*)N\d+\s*", r"\1", each.uncalled) if again else each.uncalled
             numbered.add(each.index)
             moves = range(each.first, each.last)
             if len(moves) or self._kept(text, before, each.modes):

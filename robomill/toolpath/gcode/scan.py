@@ -17,6 +17,7 @@ _PART = re.compile(
 COMMENT = re.compile(rf"{_REMARK}|;[^\n]*")
 """What a line says to people."""
 COMMENT_BYTES = re.compile(COMMENT.pattern.encode())
+_CALLS, _OF_CALLS = frozenset({"M97", "M98", "M198", "M99"}), frozenset("PLQH")
 _PARAMETER = re.compile("#"), re.compile(r"#|\bR\d")
 _BLOCK = re.compile(r"\s*/?\s*N?\d")
 _SCALED = re.compile(r"\s*((?:N\d+\s*)?)(A?)(?:MIRROR|SCALE)\b", re.IGNORECASE)
@@ -101,6 +102,17 @@ def notes(line: str, dialect: str) -> list[str]:
     """What a line says to people, as a line of its own; brackets are none on a Sinumerik, where they hold values."""
     found = [each[0] for each in COMMENT.finditer(line) if dialect != "sinumerik" or each[0][0] == ";"]
     return [" ".join(found)] if found else []
+
+
+def uncalled(line: str) -> str:
+    """A line without its call by M97, M98 or M198, or its M99, where other words stand beside that; else as it is."""
+    tokens = (scan(line) or []) if "9" in line else []
+    if not any(token.code in _CALLS for token in tokens):
+        return line
+    letters = _OF_CALLS - {"H"} if any(token.code == "G43" for token in tokens) else _OF_CALLS
+    gone = {i for i, token in enumerate(tokens) if token.code in _CALLS or token.letter in letters}
+    left = [token for i, token in enumerate(tokens) if i not in gone]
+    return joined(without(tokens, gone)) if any(token.letter and token.letter != "N" for token in left) else line
 
 
 def varies(line: str, dialect: str) -> bool:

@@ -51,3 +51,27 @@ def stand_at_home(machine: Machine, block: Block) -> set[int]:
         text = "G92 or G10 L20 behind G28, G30 or G53 is read as where the tool stands there, from part zero"
         machine.note("begins-at", "info", text)
     return homes
+
+
+def note_moved(machine: Machine, before: list[float]) -> None:
+    """A frame (TRANS, ROT, SCALE ...) has moved the zero of axes: a line says otherwise where the tool stands than
+    ``before``."""
+    now = machine.said_point()
+    machine.moved |= {axis for axis in range(3) if abs(now[axis] - before[axis]) > 1e-9}
+
+
+def settle(machine: Machine, block: Block) -> None:
+    """Say where a line goes by a step along an axis whose zero a frame has moved; a place settles where it is."""
+    said = {axis for axis in machine.moved if XYZABC[axis] in block.words}
+    if said and not machine.is_absolute(block):
+        note_step(machine, XYZABC[min(said)])
+    machine.moved -= said
+
+
+def note_step(machine: Machine, letter: str) -> None:
+    """A step behind a frame, which a control may add to what the frame moves (840D sl, setting data 42440)."""
+    text = (
+        f"{letter.upper()} is a step behind a frame that has moved its zero: it is read as that step alone; "
+        f"a Sinumerik adds what the frame moves, unless its setting 42440 is 0: give {letter.upper()} as a place first"
+    )
+    machine.note("step-behind-frame", "warning", text)

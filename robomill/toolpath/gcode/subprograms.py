@@ -2,12 +2,16 @@
 
 import math
 import re
+from dataclasses import replace
 from itertools import pairwise
 
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
+from robomill.toolpath.gcode import codes as modal
+from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.owords import SENTENCES, Call, OWords
 from robomill.toolpath.gcode.rules import flow_rules as rules
+from robomill.toolpath.gcode.rules.cycle_rules import is_cycle
 from robomill.toolpath.gcode.scan import COMMENT
 from robomill.toolpath.gcode.words import Block
 
@@ -25,6 +29,8 @@ _OVER = re.compile(r"M[ \t]*99(?![\d.])(?![ \t]*P)|^[ \t]*[O:]\d", re.IGNORECASE
 _PROGRAM = re.compile(r"^[ \t]*[O:][ \t]*0*(\d{1,9})[ \t;\r]*(?:\([^\n]*)?$", re.MULTILINE | re.IGNORECASE)
 _ENDS = re.compile(r"M[ \t]*0*(2|30|99)(?!\d)", re.IGNORECASE)
 CALLS = (97, 98, 198)
+_OF_CALLS = frozenset("plqh")
+"""Words that say what is called, where it begins and how often."""
 LOCALS = 33
 """Variables #1 to #33 of Macro B belong to the macro that is being run."""
 
@@ -39,6 +45,13 @@ class Subprograms(OWords):
         code = next((c for c in (*block.unknown_m, *block.m.values()) if c in (*CALLS, 99)), None)
         if code is None:
             return False
+        if (rest := _beside(block, code)) is not None:
+            if self.machine.modal is not None and all(call.values is None for call in self.foreign.values()):
+                text = (
+                    f"M{code} beside other words, and a macro or cycle that every move calls; put it on its own line."
+                )
+                raise block.refuse(text)
+            self.execute(rest)
         if code == 99:
             self._return(block)
             return True
@@ -60,6 +73,25 @@ class Subprograms(OWords):
             start, repeats = self._begun(block, at + 1, repeats)
         self._enter(block, str(number), start, repeats)
         return True
+
+    def execute(self, block: Block) -> None:
+        """Check and execute a block."""
+        raise NotImplementedError
+
+    def o_word(self, reader: Reader, index: int) -> None:
+        """Follow the O word of a line; on a Fanuc the number of another program ends the one before it."""
+        place = self.o_words(self.file).places.get(index)
+        word = None if place is None else self.o_words(self.file).words[place]
+        if not self.machine.is_fanuc or word is None or word.keyword != rules.BARE or word.problem:
+            super().o_word(reader, index)
+            return
+        if self.machine.store.level > 0:
+            raise reader.refuse(f"O{self.called_now()} goes on into {word.name}; close it with M99 before that line.")
+        if len(self.machine.recorder):
+            text = f"the program ends without M30 before {word.name}, where it is taken to end"
+            self.machine.findings.add("no-end", "warning", index + 1, text)
+            self.finish(index + 1)
+            self.ended = True
 
     def begin_at_main(self) -> None:
         """Go to the first program that ends for good, where it calls the one that the file begins with: as a control
@@ -235,3 +267,21 @@ class Subprograms(OWords):
         lines = self.main.lines
         found = ((each[1] or each[2], lines.index_at(each.start())) for each in _HEADER.finditer(lines.data))
         return {name.decode("ascii", "replace").upper(): at + 1 for name, at in found}
+
+
+def _beside(block: Block, code: int) -> Block | None:
+    """What a line says beside its call, or beside M99; None where that is all.
+
+    It is executed first: ``X1000. M98 P1200`` calls behind the move (Fanuc, Operator's Manual: subprogram).
+    """
+    called = _OF_CALLS - {"h"} if modal.LENGTH in block.g else _OF_CALLS
+    if is_cycle(block.g.get(modal.MOTION, -1)) and not block.words.keys().isdisjoint("lq"):
+        raise block.refuse(f"M{code} and a cycle on one line both want L or Q; put them on two lines.")
+    words = {letter: value for letter, value in block.words.items() if letter not in called}
+    m = {group: each for group, each in block.m.items() if each != code}
+    unknown = [each for each in block.unknown_m if each != code]
+    if not (words or m or unknown or block.g or block.unknown_g or block.settings):
+        return None
+    left = replace(block, words=words, m=m, unknown_m=unknown)
+    block.words = {letter: value for letter, value in block.words.items() if letter in called}
+    return left

@@ -142,6 +142,14 @@ SUPPORT: tuple[Support, ...] = (
         dialect="fanuc",
     ),
     _row(
+        "G72 with a cycle",
+        "holes in a row (Haas)",
+        "F9 G0 Z9\nG99 G81 Z-5 R2 L0\nG72 X3 I5 J90 L2",
+        (3, 5, 2),
+        8,
+        dialect="fanuc",
+    ),
+    _row(
         "G100 T",
         "fetches a tool and brings it to a place (Brother)",
         "G100 T2 X5 Y4 G43 Z3 L1 H2 S9 M3",

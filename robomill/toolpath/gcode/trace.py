@@ -16,6 +16,7 @@ from robomill.toolpath.gcode.program import Program, Rows
 from robomill.toolpath.gcode.reading import _machine, _program
 from robomill.toolpath.gcode.rules import flow_rules
 from robomill.toolpath.gcode.rules.motion_rules import INVERSE_TIME, PER_TURN, rotate
+from robomill.toolpath.gcode.scan import uncalled
 from robomill.toolpath.text import as_plain_bytes
 from robomill.toolpath.tools import Tools
 
@@ -73,6 +74,11 @@ class Executed:
     first: int
     last: int
     modes: Modes
+
+    @property
+    def uncalled(self) -> str:
+        """The line without the call beside its other words."""
+        return uncalled(self.text)
 
 
 _SAME_MODES = re.compile(

@@ -266,6 +266,16 @@ def test_a_unit_that_no_part_is_drawn_in_is_asked_about_by_its_number(code) -> N
     assert drawing_from_bytes(data(doc), "a.dxf", "mm").extents[1][0] == pytest.approx(5e-3)
 
 
+@pytest.mark.parametrize("head", ["", "0\nSECTION\n2\nHEADER\n0\nENDSEC\n"])
+def test_a_file_without_a_header_does_not_say_its_unit(head) -> None:
+    """As small programs write it, with ENTITIES alone; the unit that ezdxf supposes then (metres) is nobody's."""
+    line = "0\nLINE\n8\n0\n10\n0\n20\n0\n11\n5\n21\n0\n"
+    text = f"{head}0\nSECTION\n2\nENTITIES\n{line}0\nENDSEC\n0\nEOF\n".encode()
+    with pytest.raises(UnitAskedError, match="the drawing does not say its unit"):
+        drawing_from_bytes(text, "a.dxf")
+    assert drawing_from_bytes(text, "a.dxf", "mm").extents[1][0] == pytest.approx(5e-3)
+
+
 def test_what_is_off_frozen_or_invisible_is_told_and_part_zero_is_that_of_what_is_seen() -> None:
     """What a block on a frozen layer holds is on that layer, whatever its own says: it hides all of it."""
     doc = ezdxf.new("R2000", units=4)

@@ -165,3 +165,17 @@ def test_the_direction_of_a_tool_is_a_direction_in_g91_too() -> None:
     one, other = read_gcode(places), read_gcode(steps)
     np.testing.assert_allclose(other.p, one.p, atol=1e-12)
     np.testing.assert_allclose(other.k, one.k, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("line", "dialect", "says"),
+    [
+        # Haas, M96: a jump to line P where input Q is off
+        ("M96 P5 Q8", "fanuc", "M96 jumps by an input of the machine"),
+        ("G90 G65 P9 X1.", "fanuc", "G65 stands first on its line"),
+        ("G63 Z-5", "sinumerik", "G63 taps with a compensating chuck"),
+    ],
+)
+def test_what_no_reading_follows_is_refused_by_what_it_does(line: str, dialect: str, says: str) -> None:
+    with pytest.raises(GCodeError, match=f"Line 2: {says}"):
+        interpret(f"G90 F100\n{line}\nG1 X1.\nN5 Y1.\nM30\n", dialect=dialect)

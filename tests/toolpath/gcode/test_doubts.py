@@ -148,3 +148,26 @@ def test_dwells_of_more_than_a_minute_on_average_are_doubted(dwells: tuple[float
     text = "".join(f"G4 P{each}\n" for each in dwells)
     program = interpret(f"G21 G90 F100\nG1 X1\n{text}G1 X2\nM2\n", dialect="linuxcnc")
     assert ("long-dwell" in {f.code for f in program.findings}) == said
+
+
+@pytest.mark.parametrize(
+    ("body", "dialect", "code", "line"),
+    [
+        # LinuxCNC's P on an arc is no word of a Fanuc's
+        ("G0 X5. Y0\nG3 I-5. Z-3. P3\n", "fanuc", "arc-turns", 3),
+        ("G0 X5. Y0\nG3 I-5. Z-3.\n", "fanuc", "", 0),
+        ("G0 X5. Y0\nG3 I-5. Z-3. P3\n", "linuxcnc", "", 0),
+        # Fanuc, canned cycles: operation 1 goes to X and Y at the initial level, 2 to R, 6 back to the initial level
+        ("G0 X0 Y0 Z1.\nG98 G81 X9. Z-5. R2.\nX20.\n", "fanuc", "cycle-below-r", 3),
+        ("G0 X0 Y0 Z1.\nG98 G81 Z-5. R2.\n", "fanuc", "", 0),
+        ("G0 X0 Y0 Z3.\nG98 G81 X9. Z-5. R2.\nX20.\nX30. R2.5\n", "fanuc", "", 0),
+        ("G0 X0 Y0 Z3.\nG98 G81 X9. Z-5. R2.\nX20.\nX30. R5.\n", "fanuc", "cycle-below-r", 5),
+        ("G0 X0 Y0\nG98 G81 X9. Z-5. R2.\nX20.\n", "fanuc", "", 0),  # how high the tool stands nobody has said
+        ("G0 Z1.\nG91 G28 X0 Y0 Z5.\nG90\n", "fanuc", "", 0),
+        ("#1=ATAN[-1]/[1]\nG1 X#1\n", "fanuc", "atan-range", 2),
+    ],
+)
+def test_what_a_fanuc_control_may_do_otherwise_is_said(body: str, dialect: str, code: str, line: int) -> None:
+    found = interpret(f"G21 G90 G17 F100\n{body}M30\n", dialect=dialect).findings
+    said = [(f.code, f.line) for f in found if f.code in ("arc-turns", "cycle-below-r", "atan-range")]
+    assert said == ([(code, line)] if code else [])

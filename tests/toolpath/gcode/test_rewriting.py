@@ -39,6 +39,11 @@ UNROLLED = {
         "fanuc",
         "O1000\nG21 G90\nG0 X0 Y0 Z5\nM98 P200 L2\nG0 Z20\nM30\nO200\nG91\nG1 Z-2 F300\nG1 X10\nG1 Z2\nG90\nM99\n",
     ),
+    "words beside calls": (
+        "fanuc",
+        "O1000\nG21 G90\nG0 X0 Y0 Z5\nG0 X5 M98 P200 L2\nG91 M98 P300\nX1\nG90 G0 Z20\nM30\nO200\nG91\nG1 Z-2 F300\n"
+        "G1 X10\nG1 Z2\nG90\nM99\nO300\nG0 Z-6\nG1 X4\nX4 M99\n",
+    ),
     "loop": (
         "auto",
         "G21 G90\n#1=0\nG0 X0 Y0 Z5\nG1 Z-2 F300\no1 while [#1 LT 3]\n#1=[#1+1]\nG1 X[#1*9] Y#1\no1 endwhile\nM2\n",

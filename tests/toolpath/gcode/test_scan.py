@@ -2,7 +2,7 @@
 
 import pytest
 
-from robomill.toolpath.gcode.scan import joined, scan, unscaled, without
+from robomill.toolpath.gcode.scan import joined, scan, uncalled, unscaled, without
 
 LINES = [
     "N10 G01 X-1.5Y+.25 Z 3. F100 (a comment; with X9) M8 ; and Y1",
@@ -61,3 +61,18 @@ def test_a_comment_within_a_comment_holds_no_words() -> None:
     tokens = scan("G1 X40 (finish (slot) X9) F1500") or []
     assert [token.letter for token in tokens if token.letter] == ["G", "X", "F"]
     assert [token.text for token in tokens if token.is_comment] == ["(finish (slot) X9)"]
+
+
+@pytest.mark.parametrize(
+    ("line", "left"),
+    [
+        ("N5 G0 X10. M98 P200 L2 (so)", "N5 G0 X10. (so)"),
+        ("G43 H1 Z5. M98 P200", "G43 H1 Z5."),
+        ("X4. M99", "X4."),
+        ("N5 M98 P200 L2", "N5 M98 P200 L2"),
+        ("G4 P500", "G4 P500"),
+        ("M99 P20", "M99 P20"),
+    ],
+)
+def test_words_beside_a_call_are_left_without_it(line: str, left: str) -> None:
+    assert uncalled(line) == left

@@ -39,6 +39,44 @@ def test_calls_by_number_and_line_are_followed(text: str, places: list[float]) -
     assert xs(text, "fanuc") == places
 
 
+BESIDE = [
+    # Fanuc, Operator's Manual, subprogram: "X1000.0 M98 P1200" calls behind the movement in X
+    ("X3. M98 P7\nX9.\n", "G91 X1.\nG90\n", [1, 3, 4, 9]),
+    # what is modal beside the call holds from there on
+    ("G91 M98 P7\n", "X1.\nX1.\n", [1, 2, 3]),
+    ("G10 L2 P2 X100. Y0 Z0\nG55 M98 P7\n", "X1.\n", [1, 101]),
+    ("G43 H2 Z5. M98 P7 L2\n", "G91 X1.\nG90\n", [1, 1, 2, 3]),
+    # a move beside M99 is made before the return, in what G66 calls, too
+    ("G66 P7\nX9.\nG67\n", "X4. ", [1, 9, 4]),
+    ("M98 P7\nX9.\n", "X4. ", [1, 4, 9]),
+]
+
+
+@pytest.mark.parametrize(("calls", "called", "places"), BESIDE)
+def test_words_beside_a_call_and_a_return_are_executed_before_it(calls: str, called: str, places: list[float]) -> None:
+    assert xs(f"{HEAD}{calls}M30\nO7\n{called}M99\n%\n", "fanuc") == places
+
+
+def test_the_number_of_another_program_ends_the_one_before_it() -> None:
+    """A subprogram without M99 would go on into the next one, and a main program without M30 into its subprograms."""
+    with pytest.raises(GCodeError, match=r"Line 7: O7 goes on into O8; close it with M99 before that line."):
+        interpret(HEAD + "M98 P7\nM30\nO7\nO8\nX4.\nM99\n%\n", dialect="fanuc")
+    text = HEAD + "M98 P7\nX9.\nO7\nX2.\nM99\n%\n"
+    assert xs(text, "fanuc") == [1, 2, 9]
+    found = interpret(text, dialect="fanuc").findings
+    assert [(f.line, f.level) for f in found if f.code == "no-end"] == [(6, "warning")]
+
+
+def test_a_move_beside_a_call_that_a_macro_would_follow_is_refused() -> None:
+    with pytest.raises(GCodeError, match=r"Line 5: M98 beside other words, and a macro or cycle that every move calls"):
+        interpret(HEAD + "G66 P7\nX9. M98 P7\nM30\nO7\nX4.\nM99\n%\n", dialect="fanuc")
+
+
+def test_a_cycle_beside_a_call_is_refused_where_both_want_a_word() -> None:
+    with pytest.raises(GCodeError, match=r"Line 4: M98 and a cycle on one line both want L or Q"):
+        interpret(HEAD + "G83 Z-4. R1. Q2. M98 P7\nM30\nO7\nX4.\nM99\n%\n", dialect="fanuc")
+
+
 SINUMERIK = [
     ("L100 P2\nX9\nM30\n%_N_L100_SPF\nG91 X1\nG90\nM17\n", [1, 2, 3, 9]),
     ("N20 L0100\nX9\nM30\n%_N_L0100_SPF\n;$PATH=/_N_SPF_DIR\nX4\nRET\n", [1, 4, 9]),

@@ -1,6 +1,7 @@
 """Canned cycles as Fanuc and Haas count them: K or L times, no time at all, without a dwell, and fine boring (G76).
 
-Haas's G70 and G71 drill the cycle in force around a circle whose centre the tool stands at, or that their line says;
+Haas's G70 and G71 drill the cycle in force around a circle whose centre the tool stands at, or that their line says,
+G72 in a row that begins there (Yaskawa, YASNAC PC NC, Programming Manual, 4.1.2: hole machining pattern cycles);
 Brother's G100 fetches a tool.
 """
 
@@ -20,7 +21,7 @@ from robomill.toolpath.plane import axes, polar
 _THOUSANDTHS = 100.0
 """Nobody pecks so deep: controls count a Q without a point in steps of 0.001 mm (0.0001 in)."""
 MOST_BOLTS = 10_000
-_SHIFT, _CLAMP, _FETCH = 920, 500, 1000
+_SHIFT, _CLAMP, _FETCH, _ROW = 920, 500, 1000, 720
 _FINE_BORING, _BORING, _BACK_BORING = 760, 860, 870
 
 
@@ -48,11 +49,12 @@ def clamps(machine: Machine, block: Block) -> None:
 
 
 def bolt_holes(machine: Machine, block: Block, code: int) -> bool:
-    """G70 I radius J angle L holes, G71 with K, the angle between them; False for other words, and without a cycle.
+    """G70 I radius J angle L holes, G71 with K, the angle between them; a negative I goes round clockwise. G72 I J L: a
+    row of L holes from there on, I apart at an angle of J. False for other words, and without a cycle.
 
     On the line that begins the cycle they are drilled once that is in force, and none where the tool stands.
     """
-    words, needs = block.words, {700: {"i", "j", "l"}, 710: {"i", "j", "k", "l"}}.get(code)
+    words, needs = block.words, {700: {"i", "j", "l"}, 710: {"i", "j", "k", "l"}, _ROW: {"i", "j", "l"}}.get(code)
     begins = is_cycle(block.g.get(modal.MOTION, -1))
     if needs is None or not needs <= words.keys() or not (begins or is_cycle(machine.motion)):
         return False
@@ -60,9 +62,15 @@ def bolt_holes(machine: Machine, block: Block, code: int) -> bool:
     if machine.plane != 17 or not machine.is_absolute(block) or not 1 <= count <= MOST_BOLTS:
         raise block.refuse(f"G{code // 10} is read in G17 and G90, for 1 to {MOST_BOLTS} holes.")
     u, v = words.pop("x", machine.p[0]), words.pop("y", machine.p[1])
-    radius, angle, between = words.pop("i"), words.pop("j"), words.pop("k", 360.0 / count)
+    size, angle, between = words.pop("i"), words.pop("j"), words.pop("k", 360.0 / count)
     del words["l"]
-    block.bolts = [polar(radius, math.radians(angle + k * between), u, v) for k in range(count)]
+    if code == _ROW:
+        block.bolts = [polar(k * size, math.radians(angle), u, v) for k in range(count)]
+    else:
+        if size < 0.0 and between < 0.0:
+            raise block.refuse(f"G{code // 10} has I and K below 0, which both turn its way round; give I above 0.")
+        between = math.copysign(1.0, size) * between
+        block.bolts = [polar(abs(size), math.radians(angle + k * between), u, v) for k in range(count)]
     if begins:
         words["l"] = 0.0
     else:

@@ -37,6 +37,7 @@ def begin_empty(machine: Machine) -> None:
     """Variables are empty as a Fanuc control begins; those of the control itself are asked for."""
     machine.is_fanuc, machine.variable = True, system_variable
     machine.store.vacate((*EMPTY, SYSTEM))
+    machine.store.combine_bits()
 
 
 def is_empty(machine: Machine, number: int) -> bool:

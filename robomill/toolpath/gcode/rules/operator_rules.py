@@ -75,7 +75,18 @@ def combined(s, operator: int, a: float, b: float):
         rest = (abs(a) if s.towards_zero else a) % abs(b) if b != 0.0 else math.nan
         rest = -rest if s.towards_zero and a < 0.0 else rest
         return (0 if math.isfinite(rest) else NO_VALUE), rest
+    if s.by_bits and operator in (AND, OR, XOR):
+        return _by_bits(operator, whole(a), whole(b))
     return 0, 1.0 if _holds(operator, a, b) else 0.0
+
+
+def _by_bits(operator: int, a: float, b: float):
+    if not (abs(a) < _MOST and abs(b) < _MOST):  # or no whole number
+        return NO_VALUE, 0.0
+    first, second = int(a), int(b)
+    if operator == AND:
+        return 0, float(first & second)
+    return 0, float(first | second) if operator == OR else float(first ^ second)
 
 
 def _power(a: float, b: float):

@@ -10,6 +10,8 @@ from robomill.toolpath.gcode.rules.motion_rules import MINUTE, dwell, feed_speed
 from robomill.toolpath.gcode.words import Block
 
 MAX_PECKS = 10_000
+_OF_OLDER = 17
+"""Values of CYCLE83 before SINUMERIK Operate."""
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,26 @@ def drilling_cycle(kind: str, given: list[float], factor: float, line: int) -> H
     seconds = 0.0 if math.isnan(wait) else max(wait, 0.0)
     hole = Hole(retract, clear, bottom, seconds, feeds[0], feeds[1], (), pitch, turns=turns)
     return _pecked(hole, given, reference, factor, line) if kind == "83" else hole
+
+
+def of_percentages(given: list[float]) -> list[float] | None:
+    """What CYCLE83 is given where its DAM and FRF are percentages, as SINUMERIK Operate writes them (90 and 90): as the
+    factors that they are; None where they are none. Operate gives more values than the older cycle has, and no stroke
+    can be less by more than the first one is deep."""
+    if len(given) <= _OF_OLDER:
+        return None
+    first = abs(given[6]) if math.isnan(given[5]) else abs(given[1] - given[5])
+    less, slower = given[7], given[10]
+    falls, slows = first < less <= 100.0, 1.0 < slower <= 100.0
+    if not (falls or slows):
+        return None
+    return [
+        *given[:7],
+        -less / 100.0 if falls else less,
+        *given[8:10],
+        slower / 100.0 if slows else slower,
+        *given[11:],
+    ]
 
 
 def _tapped(given: list[float], factor: float, line: int) -> tuple[float, tuple[float, float]]:

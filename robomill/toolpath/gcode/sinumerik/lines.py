@@ -6,6 +6,7 @@ from robomill.errors import GCodeError
 from robomill.toolpath.gcode.machine import Machine
 from robomill.toolpath.gcode.offsets import frame_of
 from robomill.toolpath.gcode.rules.motion_rules import MINUTE
+from robomill.toolpath.gcode.standing import note_step
 from robomill.toolpath.gcode.tilted import tilt, turned_by, upright
 from robomill.toolpath.gcode.tool_axis import angles_of
 from robomill.units import to_si
@@ -44,6 +45,7 @@ _TOOL = re.compile(r"\bT[ \t]*=?[ \t]*\"([^\"]*)\"", re.IGNORECASE)
 _SPINDLE = re.compile(r"\bM1[ \t]*=[ \t]*(\d+)", re.IGNORECASE)
 _TAP = re.compile(r"\bG33[12]\b", re.IGNORECASE)
 _PITCH = re.compile(rf"\bK[ \t]*=?[ \t]*({_NUMBER})", re.IGNORECASE)
+_MESSAGE = re.compile(r"\bMSG[ \t]*\(((?:\"[^\"]*\"|\([^()]*\)|[^()\"])*)\)(?:[ \t]*,[ \t]*[01]\b)?", re.IGNORECASE)
 _FIXED_POINT = re.compile(
     rf"\b(G7[45])((?:[ \t]+(?:[XYZ](?:1[ \t]*=|[ \t]*=)?[ \t]*{_NUMBER}|FP[ \t]*=[ \t]*\d))+)[ \t]*$", re.IGNORECASE
 )
@@ -89,9 +91,10 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     code = _SWIVEL.sub(
         lambda found: _unswivelled(found, number, machine), _ROUND_CORNERS.sub("", _SILENT.sub("", code))
     )
-    message = re.match(r"(.*?)\bMSG\s*\((.*)\)", code, re.IGNORECASE)
-    if message is not None:
-        code = f"{message[1]} (MSG,{message[2].strip(chr(34)).replace('(', '[').replace(')', ']')})"
+    message = _MESSAGE.search(code)
+    if message is not None:  # other words may stand before it and behind it
+        shown = message[1].strip('" ').replace("(", "[").replace(")", "]").replace('"', "")
+        code, comment = code[: message.start()] + code[message.end() :], f" (MSG,{shown}){comment}"
     code = _FIXED_POINT.sub(lambda found: _fixed_point(found, machine), code)
     code = _feeds(code, number, machine)
     code = _in_machine(code, machine)
@@ -182,12 +185,20 @@ def _feeds(code: str, number: int, machine: Machine) -> str:
     said = [each.upper() for each in _WORDS.findall(code) if each.upper() in _FOLLOWS]
     inch = machine.unit == "in"
     if said:
-        machine.feeds_follow, inch = _FOLLOWS[said[-1]], said[-1] in ("G70", "G700")
-        if said[-1] == "G70":
+        machine.feeds_follow = _FOLLOWS[said[-1]] or machine.feeds_unsure
+        inch = said[-1] in ("G70", "G700")
+        if said[-1] == "G70" and machine.feeds_unsure:
             text = (
-                "G70: feeds still count in mm/min, as on a control whose basic system is metric; G700 counts them in in"
+                "G70: feeds are read in in/min, too, as controls with an inch basic system take them; a Sinumerik "
+                "whose basic system is metric takes them in mm/min: choose that dialect where it does"
             )
-            machine.findings.add("feeds-metric", "info", number, text)
+            machine.findings.add("feeds-inch", "warning", number, text)
+        elif said[-1] == "G70":
+            text = (
+                "G70: feeds still count in mm/min, as on a control whose basic system is metric; where it is inch they "
+                "are 25.4 times as fast: write G700, which counts them in in"
+            )
+            machine.findings.add("feeds-metric", "warning", number, text)
     counts = "in" if inch and machine.feeds_follow else "mm"
     if counts == machine.unit or machine.feed_mode == 930:
         return code
@@ -270,6 +281,8 @@ def _places(code: str, machine: Machine) -> str:
         letter, way, value = found[1].upper(), found[2].upper(), float(found[3])
         centre = letter in "IJK"
         at = here["IJK".index(letter) if centre else "XYZABC".index(letter)]
+        if way == "IC" and letter in "XYZ" and "XYZ".index(letter) in machine.moved:
+            note_step(machine, letter)
         places = machine.arc_absolute if centre else absolute
         if (way == "AC") == places:
             return f" {letter}[{found[3]}]"

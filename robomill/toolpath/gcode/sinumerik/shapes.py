@@ -13,6 +13,7 @@ from robomill.toolpath.gcode.offsets import turn_back
 from robomill.toolpath.gcode.program import ARC, TRAVERSE
 from robomill.toolpath.gcode.rules.motion_rules import rotate
 from robomill.toolpath.gcode.sinumerik.words import Hole, SinumerikWords, parts
+from robomill.toolpath.gcode.standing import note_moved
 from robomill.toolpath.gcode.words import Block
 from robomill.toolpath.plane import doubled_area, polar, through, turned
 
@@ -94,16 +95,20 @@ class SinumerikShapes(SinumerikWords):
             factors["XYZ".index(letter)] *= factor
         if machine.tilted is not None:
             raise GCodeError.at(line, f"{name} in a swivelled plane is not read; end that before: CYCLE800().")
+        before = machine.said_point()
         if not adds:
             turn_back(machine)
         machine.set_scale(Scale(tuple(factors)) if any(f != 1.0 for f in factors) else None)  # type: ignore[arg-type]
+        note_moved(machine, before)
 
     def _frame(self, name: str, text: str, line: int) -> None:
+        before = self.machine.said_point()
         if self.machine.scale is not None:
             if name[0] == "A":
                 raise GCodeError.at(line, f"{name} inside of MIRROR or SCALE is not read; give it before them.")
             self.machine.set_scale(None)
         super()._frame(name, text, line)
+        note_moved(self.machine, before)
 
     # --- holes
     def _holes(self, name: str, text: str, line: int) -> None:

@@ -15,7 +15,8 @@ from robomill.toolpath.gcode.corners import BEVEL, LEGS, ROUND, Corner
 from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.rules.motion_rules import PER_TURN
-from robomill.toolpath.gcode.sinumerik.holes import Hole, Holes, drilling_cycle
+from robomill.toolpath.gcode.sinumerik.holes import Hole, Holes, drilling_cycle, of_percentages
+from robomill.toolpath.gcode.standing import note_moved
 from robomill.toolpath.gcode.words import Block, normalise
 from robomill.toolpath.plane import turned
 
@@ -107,6 +108,10 @@ class SinumerikWords(Holes):
 
     def _hole(self, kind: str, text: str, line: int) -> Hole:
         given = [self.value(each, line) if each.strip() else math.nan for each in text.split(",")]
+        if kind == "83" and (factors := of_percentages(given)) is not None:
+            text = "CYCLE83: DAM above the first stroke and FRF above 1 are read as percentages, as Operate writes them"
+            self.machine.findings.add("cycle-percent", "warning", line, text)
+            given = factors
         return drilling_cycle(kind, given, self.machine.factor, line)
 
     # --- values
@@ -283,10 +288,12 @@ class SinumerikWords(Holes):
         else:
             x, y, z = (said.get(letter, 0.0) for letter in "XYZ")
             shift = [*turned(x, y, math.radians(angle), *shift[:2]), shift[2] + z]
+        before = self.machine.said_point()
         if not any(shift) and angle == 0.0:
             turn_back(self.machine)
         else:
             see_frame(self.machine, shift, angle)
+        note_moved(self.machine, before)
 
 
 def _of_two(found: re.Match[str], line: int) -> str:

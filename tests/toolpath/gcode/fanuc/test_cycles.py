@@ -145,6 +145,21 @@ def test_holes_on_a_circle_about_where_the_tool_is_or_the_line_says() -> None:
         read("G70 I1 J0 L2\n")
 
 
+def test_holes_in_a_row_begin_where_the_line_says_and_a_negative_radius_goes_round_the_other_way() -> None:
+    """YASNAC PC NC, G72: L places, I apart, on a line at J that begins at X, Y; a negative I goes to the other side."""
+    cycle = "G99 G81 Z-5 R2 L0\n"
+    assert holes(f"{cycle}G72 X5 Y1 I10 J0 L3\n") == [(5, 1, -5), (15, 1, -5), (25, 1, -5)]
+    assert holes(f"G0 X5\n{cycle}G72 I-10 J90 L2\n") == [(5, 0, -5), (5, -10, -5)]
+    assert holes("G0 X5\nG99 G81 Z-5 R2 G72 I10 J90 L2\n") == [(5, 0, -5), (5, 10, -5)]
+    # a circle of I-10 is that of I10, clockwise from its first angle
+    assert holes(f"{cycle}G71 I-10 J0 K90 L2\n") == [(10, 0, -5), (0, -10, -5)]
+    assert holes(f"{cycle}G70 I-10 J0 L4\n") == [(10, 0, -5), (0, -10, -5), (-10, 0, -5), (0, 10, -5)]
+    with pytest.raises(GCodeError, match=r"Line 4: G71 has I and K below 0"):
+        read(f"{cycle}G71 I-10 J0 K-90 L2\n")
+    with pytest.raises(GCodeError, match=r"Line 3: G72 makes holes on a line .Haas. or is a lathe"):
+        read("G72 I10 J0 L2\n")
+
+
 def test_the_next_place_is_gone_to_at_the_height_where_the_tool_is() -> None:
     program = read("G99 G81 X1 Z-5 R2\nG98 X3\n")
     heights = [(round(x * 1e3, 9), round(z * 1e3, 9)) for x, _, z in program.end.tolist()]

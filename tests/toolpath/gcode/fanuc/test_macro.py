@@ -47,6 +47,17 @@ def test_controls_cut_towards_zero_and_linuxcnc_downwards() -> None:
     assert (interpret("G71\nG0 X=TRUNC(-1.7)\nM30\n", dialect="sinumerik").end[:, 0] * 1e3).tolist() == [-1]
 
 
+def test_fanuc_s_logical_operators_go_bit_by_bit() -> None:
+    """Fanuc, Custom Macro B: AND, OR and XOR are of binary numbers, bit by bit; LinuxCNC's of true and false."""
+    body = "#1=6 AND 3\nX#1\n#1=6 OR 3\nX#1\n#1=6 XOR 3\nX#1\n"
+    body += "IF[[#1 AND 2]EQ 0]GOTO 9\nX99.\nN9 X[[1 EQ 1] AND [2 GT 1]]\n"
+    assert xs(body, "fanuc") == [2, 7, 5, 1]
+    linuxcnc = "G21\nG0 X[6 AND 3]\nX[6 XOR 3]\nM2\n"
+    assert (interpret(linuxcnc, dialect="linuxcnc").end[:, 0] * 1e3).tolist() == pytest.approx([1, 0])
+    with pytest.raises(GCodeError, match=r"Line 4: "):
+        xs("X[2.5 AND 1]\n", "fanuc")
+
+
 @pytest.mark.parametrize("value", [-1.0, -0.7, -0.2, 0.0, 0.2, 0.7, 1.0])
 def test_a_control_cuts_to_the_whole_number_nearer_to_zero_or_farther_from_it(value: float) -> None:
     nearer, farther = math.trunc(value), math.copysign(math.ceil(abs(value)), value)

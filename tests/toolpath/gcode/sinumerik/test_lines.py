@@ -46,3 +46,57 @@ def test_another_edge_of_a_tool_is_told() -> None:
     program = interpret(text, dialect="sinumerik")
     assert [(f.line, f.level) for f in program.findings if f.code == "tool-edge"] == [(5, "warning")]
     np.testing.assert_allclose(program.end * 1e3, [[1, 2, 0], [1, 2, 3], [1, 2, 400]], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('MSG("DRILL (1)") G1 X4 Y5', "DRILL [1]"),
+        ('N20 G1 X4 MSG("DRILL") Y5 ; Y9', "DRILL"),
+        ('G1 X4 Y5 MSG ("X="<<R1, 1)', "X=<<R1, 1"),
+        ("G1 X4 MSG() Y5", ""),
+    ],
+)
+def test_words_beside_a_message_are_executed(line: str, said: str) -> None:
+    """MSG may stand in a block with others (840D sl, Fundamentals: MSG); what is behind it was lost."""
+    program = interpret(f"G71 G90 G17 F100\nR1=2\n{line}\nX6\nM30\n", dialect="sinumerik")
+    np.testing.assert_allclose(program.end * 1e3, [[4, 5, 0], [6, 5, 0]], atol=1e-9)
+    assert program.messages[0] == (3, said)
+
+
+@pytest.mark.parametrize(
+    ("text", "dialect", "feed", "code"),
+    [
+        # 802D sl, G70: feeds stay in the basic system, which this program shows nothing of: Hurco's, say, is inch
+        ("%\nG00 G17 G40 G80 G90 G70\nT1 M6\nG01 X1.0 F10.0\nM02\nE\n", "auto", 254.0, "feeds-inch"),
+        ("G70 G90\nG1 X1 F10\nM30\n", "sinumerik", 10.0, "feeds-metric"),
+        ('G70 G90\nMSG("x")\nG1 X1 F10\nM30\n', "auto", 10.0, "feeds-metric"),
+        ("G700 G90\nG1 X1 F10\nM30\n", "sinumerik", 254.0, ""),
+    ],
+)
+def test_feeds_beside_g70_are_inches_where_nothing_else_shows_a_sinumerik(
+    text: str, dialect: str, feed: float, code: str
+) -> None:
+    program = interpret(text, dialect=dialect)
+    assert program.dialect == "sinumerik"
+    np.testing.assert_allclose(program.end[-1] * 1e3, [25.4, 0, 0], atol=1e-9)
+    assert program.v_f[-1] * 6e4 == pytest.approx(feed)
+    assert [(f.code, f.level) for f in program.findings if "feeds" in f.code] == ([(code, "warning")] if code else [])
+
+
+@pytest.mark.parametrize(
+    ("body", "end", "said"),
+    [
+        # 840D sl, setting data 42440, 1 as delivered: X1 would lead to 11, where it is read as one step
+        ("TRANS X10\nG91 X1\n", [1, 0, 0], [4]),
+        ("TRANS X10\nX=IC(1)\n", [1, 0, 0], [4]),
+        ("MIRROR X0\nG0 X5\nMIRROR\nG91 Y1 X1\n", [-4, 1, 0], [6]),
+        ("TRANS X10\nG91 Y1\n", [0, 1, 0], []),
+        ("TRANS X10\nX0\nG91 X1\n", [11, 0, 0], []),
+        ("G91 X1\nTRANS\nX1\n", [2, 0, 0], []),
+    ],
+)
+def test_a_step_behind_a_frame_is_said(body: str, end: list[float], said: list[int]) -> None:
+    program = interpret(f"G71 G90 G17 F100\nG0 X0 Y0 Z0\n{body}M30\n", dialect="sinumerik")
+    np.testing.assert_allclose(program.end[-1] * 1e3, end, atol=1e-9)
+    assert [f.line for f in program.findings if f.code == "step-behind-frame"] == said

@@ -141,6 +141,18 @@ def test_the_last_two_pecks_of_a_degression_are_alike() -> None:
     assert found == [-5, -8, -10, -12, -13.5, -15]
 
 
+def test_percentages_of_operate_are_read_as_such() -> None:
+    """5 mm at 90 % of the feed, then 4.5, 4.05 and 3.645 mm; DAM of the older cycle is an amount, however deep."""
+    operate = "CYCLE83(50,0,1,,20,,5,90,0,0,90,1,0,1.2,1.4,0,1.6,10,1,11211111)"
+    program = interpret(f"{HEAD}G0 Z60\n{operate}\nM30\n", dialect="sinumerik")
+    cuts = program.at_feed
+    np.testing.assert_allclose(program.end[cuts, 2] * 1e3, [-5, -9.5, -13.55, -17.195, -20], atol=1e-9)
+    np.testing.assert_allclose(program.v_f[cuts] * 6e4, [90, 100, 100, 100, 100])
+    assert [(f.line, f.level) for f in program.findings if f.code == "cycle-percent"] == [(3, "warning")]
+    found = [z for kind, z in heights("G0 Z50\nCYCLE83(20,0,2,-10,,,2,3,0,0,1,1)\n") if kind == "F"]
+    assert found[:2] == [-2, -5]
+
+
 def test_g331_taps_in_step_with_the_spindle_that_it_turns() -> None:
     """10 turns a second of 1.25 mm are 12.5 mm/s, down to Z and up again; a negative pitch is left-handed."""
     for sign, counter in (("", False), ("-", True)):
