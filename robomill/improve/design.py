@@ -358,9 +358,12 @@ def _reason(result: SimulationResult, found: Judged, x: FloatArray, ratios: Floa
     if rest > tolerance:
         return f"what no joint does alone leaves {format_si(rest, 'mm')} of {limit} ({where})"
     if each[most] > tolerance and x[most] * ratios[most, 1] < 1.0 + SETTLED:
-        stiff = format_short(ratios[most, 1], "1", 2)
+        most_stiff = ratios[most, 1]
+        stiff = (
+            "and stays as it is" if most_stiff == 1.0 else f"though {format_short(most_stiff, '1', 2)} times as stiff"
+        )
         number = result.setup.robot.joint_numbers[most]
         left = format_si(each[most], "mm")
-        return f"joint {number} alone leaves {left} of {limit} though {stiff} times as stiff ({where})"
+        return f"joint {number} alone leaves {left} of {limit} {stiff} ({where})"
     left = format_si(float(np.linalg.norm(error)), "mm")
     return f"{left} of {limit} are left however stiff the joints are within their bounds ({where})"
