@@ -184,8 +184,8 @@ class Places:
     ``out``, along the tool. ``alone`` (m,) bool are those where a ramp ends and the cut goes straight on, or it is not
     as far to the next one as the tool is pushed: sent on along the feed there, it would have to go back. ``falling``
     (m,) bool are ramps of a run without coupling, whose end is not felt before it touches, and then at once. ``early``
-    (m,) bool are those near the part, over a way down, that the tool goes to faster than it goes down: as a rapid, or
-    with a higher feed."""
+    (m,) bool are those near the part, over a way down or in what is open already, that the tool goes to faster than it
+    goes on: as a rapid, or with a higher feed."""
 
     path: Toolpath
     place: IntArray
@@ -241,12 +241,12 @@ class Places:
         return self._arriving(c)
 
     def _arriving(self, c: FloatArray) -> FloatArray:
-        """c (m, 3) m with rapids that arrive where the cut begins, but no deeper than they were told to where it goes
-        down from there: what pushes the tool up in the part does not yet, and a rapid would run into it."""
+        """c (m, 3) m with rapids that arrive where the cut begins, but no deeper than they were told to over the part
+        or in it: what pushes the tool up in there does not yet, and a rapid would run into what it stands over."""
         arrives = arrivals(self.path)
         c = self._not_early(c)
         c[arrives] = c[arrives + 1]
-        return self._not_early(c)  # a ramp begins where its own correction is: a link leads down to there
+        return self._not_early(c)  # x
 
     def _not_early(self, c: FloatArray) -> FloatArray:
         """c (m, 3) m without what leads down where that is too ``early``."""
@@ -317,8 +317,8 @@ def _early(run: SimulationResult, then: IntArray, steep: BoolArray) -> BoolArray
     near = path.p[:, 2] < run.setup.stock_block.upper[2] + NEAR * most
     arrives = arrivals(path)
     early = np.zeros(len(path), dtype=bool)
-    early[arrives] = near[arrives] & (down | (then >= 0))[arrives + 1]
-    early[arrives + 1] = early[arrives] & down[arrives + 1]  # a ramp is led to from there, a plunge need not be
+    early[arrives] = near[arrives] & ((down | (then >= 0))[arrives + 1] | run.over_stock[arrives])
+    early[arrives + 1] = early[arrives] & down[arrives + 1]  # other cuts are led to from there, a plunge need not be
     slows = down[1:] & down[:-1] & (path.v_f[1:] < path.v_f[:-1]) & near[:-1] & ~run.over_stock[:-1]
     begins = stretches(down)[:, 0]
     for i in np.flatnonzero(slows).tolist():

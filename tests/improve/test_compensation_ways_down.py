@@ -144,3 +144,18 @@ def test_a_rapid_over_a_ramp_stops_where_it_was_told_to_and_a_link_leads_down_fr
     x, _, z = tip[run.path.cutting & run.conditions.engaged].T
     on_ramp = (x > -15e-3) & (x < 19e-3)
     assert np.abs(z[on_ramp] - (0.2e-3 - 0.055 * (x[on_ramp] + 20e-3))).max() < 0.02 * found.before.max
+
+
+def test_a_rapid_onto_a_finished_floor_stops_there_and_one_beside_the_stock_is_led() -> None:
+    """150 N up lift the tool by 0.36 mm as it cuts: it goes down by that at feed, not at rapid into the floor."""
+    text = "G21 G90\nS12000 M3\nG0 X-60 Y0 Z5\nG0 Z-2\nG1 X60 F1200\nG0 Z5\nG0 X0\nG0 Z-2\nG1 Y10 F600\nG0 Z10\nM30\n"
+    force = rm.PathForce(feed_normal=60.0, axial=150.0)
+    stock = rm.Stock(lower_mm=[-50, -60, -20], upper_mm=[50, 60, 0])
+    found = rm.compensate(rm.load_setup(SLOT).replace(source=rm.GCodeSource(text), force=force, stock=stock))
+    path = rm.read_gcode(found.text)
+    low = [p[2] for p, cutting in zip(path.p, path.cutting, strict=True) if not cutting and p[2] < -1e-3]
+    assert low[0] == pytest.approx(-2.3026e-3, abs=2e-6)  # beside the stock
+    assert low[1] == pytest.approx(-2e-3, abs=1e-9)
+    tip, run = tip_of(found.setup, found.text)
+    y, z = tip[run.path.cutting & (np.abs(run.path.p[:, 0]) < 1e-3)].T[1:]
+    assert np.abs(z[(y > 4.5e-3) & (y < 9.5e-3)] + 2e-3).max() < 0.01 * found.before.max
