@@ -6,7 +6,7 @@ from typing import Any
 
 from robomill.cli import given
 from robomill.cli.saying import Written, say
-from robomill.errors import ProjectError
+from robomill.errors import ProjectError, RobomillError
 
 
 def run_compensate(arguments: Any) -> int:
@@ -31,10 +31,21 @@ def run_compensate(arguments: Any) -> int:
 
 def _check_kept(place: Path, setup: str, source: Any) -> None:
     """Refuse to write over the program that is corrected, wherever the set-up has it from."""
+    said, place = place, place.resolve()  # of a folder that is made on the way, and left again, nothing is there yet
     if not place.is_file():
         return
     folder = Path(setup) if Path(setup).is_dir() else Path(setup).parent
     beside = folder / source.name
     same = beside.is_file() and place.samefile(beside)
-    if same or place.read_bytes() == getattr(source, "text", "").encode("utf-8", "surrogateescape"):
-        raise ProjectError(f"--out {place}: the program to be corrected stands there and would be lost; give another.")
+    if same or _text(place) == getattr(source, "text", ""):
+        raise ProjectError(f"--out {said}: the program to be corrected stands there and would be lost; give another.")
+
+
+def _text(place: Path) -> str | None:
+    """What stands there as programs are read, whatever its encoding; None of what is no program."""
+    from robomill.io.programs import read_program
+
+    try:
+        return read_program(place).text
+    except RobomillError:
+        return None

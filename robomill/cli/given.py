@@ -84,7 +84,7 @@ def _check_name(given: str, place: Path, written: Any) -> None:
 def _same(place: Path, read: Path) -> bool:
     """Whether a place to write to is a file that is read, whatever it is called there; a device may be both."""
     try:
-        return read.is_file() and place.samefile(read)
+        return read.is_file() and (place.resolve() == read.resolve() or place.samefile(read))
     except (OSError, ValueError):
         return False
 

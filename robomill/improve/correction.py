@@ -30,6 +30,7 @@ AGREED = 0.5e-6  # m: corrections that change by no more have settled
 NEARLY, LONG = 5e-6, 12  # m: after so many runs it is enough if no correction changes by more
 MOST, PATIENCE = 40, 5  # runs, and after how many a place that comes no closer is given up
 UPRIGHT = 2e-6  # m: along a plunge corrections that differ by no more are one
+NEAR = 2.0  # times the largest deflection over the stock: corrected, nothing further off comes to lie in it
 MITRE = 2.0  # times the larger deflection of two cuts that meet: no corner is moved further
 SLOWEST = 0.1  # least share of a change that is taken where corrections overshoot
 
@@ -182,7 +183,9 @@ class Places:
     way down, the first one of the level cut that goes on from there, else -1; ``steep`` (m,) bool are plunges, and ways
     ``out``, along the tool. ``alone`` (m,) bool are those where a ramp ends and the cut goes straight on, or it is not
     as far to the next one as the tool is pushed: sent on along the feed there, it would have to go back. ``falling``
-    (m,) bool are ramps of a run without coupling, whose end is not felt before it touches, and then at once."""
+    (m,) bool are ramps of a run without coupling, whose end is not felt before it touches, and then at once. ``early``
+    (m,) bool are those near the part, over a way down or in what is open already, that the tool goes to faster than it
+    goes on: as a rapid, or with a higher feed."""
 
     path: Toolpath
     place: IntArray
@@ -191,6 +194,7 @@ class Places:
     out: BoolArray
     alone: BoolArray
     falling: BoolArray
+    early: BoolArray
 
     @classmethod
     def along(cls, run: SimulationResult) -> "Places":
@@ -204,7 +208,8 @@ class Places:
         alone = np.isin(place, place[ramps[~room[ramps] | on[ramps]]])
         slope = run.conditions.along
         falling = path.cutting & ~steep & (slope < -DISH) & (not run.setup.coupling)
-        return cls(path, place, then, steep, path.cutting & steep & (slope > 0.0), alone, falling)
+        out = path.cutting & steep & (slope > 0.0)
+        return cls(path, place, then, steep, out, alone, falling, _early(run, then, steep & ~out))
 
     def ends(self) -> IntArray:
         """Samples at which a level cut goes on from a plunge, or another way than its ramp and with room for that."""
@@ -236,10 +241,18 @@ class Places:
         return self._arriving(c)
 
     def _arriving(self, c: FloatArray) -> FloatArray:
-        """c (m, 3) m with rapids that arrive where the cut begins."""
+        """c (m, 3) m with rapids that arrive where the cut begins, but no deeper than they were told to over the part
+        or in it: what pushes the tool up in there does not yet, and a rapid would run into what it stands over."""
         arrives = arrivals(self.path)
+        c = self._not_early(c)
         c[arrives] = c[arrives + 1]
-        return c
+        return self._not_early(c)  # x
+
+    def _not_early(self, c: FloatArray) -> FloatArray:
+        """c (m, 3) m without what leads down where that is too ``early``."""
+        k, early = self.path.k, self.early
+        lower = np.where(early, np.minimum(np.einsum("mi,mi->m", c, k), 0.0), 0.0)
+        return np.asarray(c - lower[:, None] * k)
 
     def held_outside(self, c: FloatArray, pushed: BoolArray, outside: BoolArray) -> FloatArray:
         """c (m, 3) m with that of the next sample of the cut that is ``pushed`` (m,), else of the last one, where the
@@ -295,6 +308,22 @@ class Places:
         together = -np.einsum("mij,mj->mi", U[number[linked]], d[at])
         c[at] = np.where(self.alone[at, None], own[at], together)
         return np.asarray(c)
+
+
+def _early(run: SimulationResult, then: IntArray, steep: BoolArray) -> BoolArray:
+    """``Places.early`` along a ``run``, of plunges that are ``steep`` (m,) and ways down with a cut ``then`` (m,)."""
+    path, down = run.path, run.path.cutting & steep
+    most = float(np.nanmax(np.linalg.norm(run.delta, axis=1), initial=0.0))
+    near = path.p[:, 2] < run.setup.stock_block.upper[2] + NEAR * most
+    arrives = arrivals(path)
+    early = np.zeros(len(path), dtype=bool)
+    early[arrives] = near[arrives] & ((down | (then >= 0))[arrives + 1] | run.over_stock[arrives])
+    early[arrives + 1] = early[arrives] & down[arrives + 1]  # other cuts are led to from there, a plunge need not be
+    slows = down[1:] & down[:-1] & (path.v_f[1:] < path.v_f[:-1]) & near[:-1] & ~run.over_stock[:-1]
+    begins = stretches(down)[:, 0]
+    for i in np.flatnonzero(slows).tolist():
+        early[begins[np.searchsorted(begins, i, "right") - 1] : i + 1] = True
+    return early
 
 
 def _meeting(inverse: FloatArray, own: FloatArray, number: IntArray) -> FloatArray:

@@ -13,14 +13,20 @@ from robomill.compliance.deflection import shares_along
 from robomill.errors import SetupError
 from robomill.frames import Columns
 from robomill.improve.asked_joints import SETTLED, checked_bounds, checked_weight, words_of_joints
-from robomill.improve.judged import Judged, Measure, check_improvable, check_joints_known, judged
+from robomill.improve.judged import (
+    Judged,
+    Measure,
+    check_improvable,
+    check_joints_known,
+    check_numbered,
+    judged,
+)
 from robomill.improve.least_cost import Errors, Least, least_cost, least_share
 from robomill.improve.sensitivity import stiffened
 from robomill.lazy import cached_property
 from robomill.progress import step
 from robomill.provenance import Provenance
 from robomill.quantities import quantities
-from robomill.simulation.judging.verdict_words import NO_NUMBER
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
 from robomill.simulation.setup import SimulationSetup
@@ -328,9 +334,7 @@ def asked_for(setup: SimulationSetup, tolerance: float | None, tolerance_mm: flo
 
 def _check(result: SimulationResult, measure: Measure) -> None:
     """Refuse a cut without numbers that a stiffer joint could make better."""
-    verdict = result.verdict
-    if verdict.level in NO_NUMBER:
-        raise SetupError(f"There is no number to design for: {verdict.sentence}")
+    check_numbered(result, "design for")
     if not len(judged(result, measure).sample):
         raise SetupError(f"The cut leaves no {measure} to judge; take another measure.", where="measure")
 
@@ -354,9 +358,12 @@ def _reason(result: SimulationResult, found: Judged, x: FloatArray, ratios: Floa
     if rest > tolerance:
         return f"what no joint does alone leaves {format_si(rest, 'mm')} of {limit} ({where})"
     if each[most] > tolerance and x[most] * ratios[most, 1] < 1.0 + SETTLED:
-        stiff = format_short(ratios[most, 1], "1", 2)
+        most_stiff = ratios[most, 1]
+        stiff = (
+            "and stays as it is" if most_stiff == 1.0 else f"though {format_short(most_stiff, '1', 2)} times as stiff"
+        )
         number = result.setup.robot.joint_numbers[most]
         left = format_si(each[most], "mm")
-        return f"joint {number} alone leaves {left} of {limit} though {stiff} times as stiff ({where})"
+        return f"joint {number} alone leaves {left} of {limit} {stiff} ({where})"
     left = format_si(float(np.linalg.norm(error)), "mm")
     return f"{left} of {limit} are left however stiff the joints are within their bounds ({where})"

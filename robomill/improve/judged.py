@@ -11,6 +11,7 @@ from robomill.arrays import FloatArray, IntArray
 from robomill.errors import SetupError
 from robomill.improve.makers import made
 from robomill.simulation.judging.gauge import Readings
+from robomill.simulation.judging.verdict_words import NO_NUMBER
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.setup import SimulationSetup, check_setup
 from robomill.toolpath.source import wanted_of
@@ -56,6 +57,13 @@ def check_improvable(setup: Any) -> None:
         return
     name = made_of.name
     raise SetupError(f"This program is corrected already: ask this of the program that it was made of, {name}.")
+
+
+def check_numbered(run: SimulationResult, to: str) -> None:
+    """Raises SetupError, with what there is no number ``to``, where not all of a cut is judged: also where the rest is
+    out of tolerance already, for that can be mended, and what is not known would then be green."""
+    if run.verdict.level in NO_NUMBER or run.not_judged.any() or run.rapids:
+        raise SetupError(f"There is no number to {to}: {run.verdict.sentence}")
 
 
 def check_joints_known(setup: SimulationSetup, to: str) -> None:

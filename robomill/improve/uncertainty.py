@@ -15,13 +15,12 @@ from robomill.identification.knowledge import Knowledge
 from robomill.identification.result import IdentificationResult
 from robomill.improve.draws import Tornado, Uncertainty
 from robomill.improve.expansion import Expansion, expand
-from robomill.improve.judged import MEASURES, Measure, check_joints_known
+from robomill.improve.judged import MEASURES, Measure, check_joints_known, check_numbered
 from robomill.improve.placed import errors_of
 from robomill.improve.screening import share_of
 from robomill.improve.unsure import Spread, Unsure, unsure_of
 from robomill.progress import step
 from robomill.provenance import Finding
-from robomill.simulation.judging.verdict_words import NO_NUMBER
 from robomill.simulation.origin.doubts import OTHERS, known_notes
 from robomill.simulation.result import SimulationResult
 from robomill.simulation.run import simulate
@@ -102,8 +101,7 @@ def uncertainty(
     elif known is None and asked_for.compliance is None:
         known = setup.known
     run = simulate(setup)
-    if run.verdict.level in NO_NUMBER:
-        raise SetupError(f"There is no number to be sure of: {run.verdict.sentence}")
+    check_numbered(run, "be sure of")
     unsure = unsure_of(setup, asked_for, known)
     wanted = samples or (FULL if setup.coupling else MANY)
     change, again = unsure.drawn(wanted, int(seed))

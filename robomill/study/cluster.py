@@ -19,6 +19,7 @@ PATIENCE_S = 30.0  # without any worker
 AHEAD = 3  # pieces of work a thread, so that nobody waits
 PIECE_S, LARGEST = 0.5, 256  # what a piece should take, and points that it has at most
 LOOK_S = 2.0  # between looks at who is there
+LOGGERS = ("distributed", "distributed.client")
 
 
 def run_on_cluster(
@@ -45,14 +46,17 @@ def run_on_cluster(
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """What Dask logs of comings and goings is told here in sentences."""
-    logger = logging.getLogger("distributed")
-    before = logger.level
-    logger.setLevel(logging.CRITICAL)
+    """What Dask logs of comings and goings is told here in sentences. Its client has a logger with a level of its own,
+    which the one above it does not change."""
+    loggers = [logging.getLogger(name) for name in LOGGERS]
+    before = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL + 1)
     try:
         yield
     finally:
-        logger.setLevel(before)
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)
 
 
 def same(task: Task) -> Task:

@@ -35,12 +35,28 @@ def test_the_source_is_never_written_over(capsys: pytest.CaptureFixture[str], tm
     program = (folder / "path.nc").read_text()
     copy = tmp_path / "copy.nc"
     copy.write_text(program)
-    for place in (folder / "path.nc", folder / "setup.toml", copy):
+    for place in (folder / "path.nc", folder / "setup.toml", folder / "x" / ".." / "setup.toml", copy):
         assert main(["compensate", str(folder / "setup.toml"), "--out", str(place)]) == 2
         assert "give another" in capsys.readouterr().err
     assert (folder / "path.nc").read_text() == copy.read_text() == program
     assert main(["compensate", str(folder), "--out", str(folder)]) == 2
     assert "folder" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf", "(gefr\u00e4st)\n".encode("latin-1")])
+@pytest.mark.parametrize("way", ["sub/path.nc", "new/../sub/path.nc"])
+def test_the_source_is_kept_whatever_its_encoding_and_however_its_place_is_named(
+    way: str, mark: bytes, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """A folder that is not there yet is made, and left again by the same name: then its program is no longer there."""
+    text = (SLOT / "setup.toml").read_text().replace('"path.nc"', '"sub/path.nc"')
+    (tmp_path / "setup.toml").write_text(text)
+    (tmp_path / "sub").mkdir()
+    program = mark + (SLOT / "path.nc").read_bytes()
+    (tmp_path / "sub" / "path.nc").write_bytes(program)
+    assert main(["compensate", str(tmp_path / "setup.toml"), "--out", str(tmp_path / way)]) == 2
+    assert "would be lost" in capsys.readouterr().err
+    assert (tmp_path / "sub" / "path.nc").read_bytes() == program
 
 
 @pytest.mark.parametrize(

@@ -100,3 +100,62 @@ def test_a_plunge_into_what_is_open_already_meets_nothing_where_the_deflected_to
     assert crossing.any()
     assert np.abs(run.gauge.walls.error[crossing]).max() < 0.02e-3
     assert np.abs(run.gauge.walls.error).max() < 0.1e-3
+
+
+@pytest.mark.parametrize(
+    "way",
+    [
+        "G0 Z0.2\nG1 Z-3 F200",
+        "G1 Z0.2 F3000\nG1 Z-3 F200",
+        "G81 Z-3 R0.2 F200\nG80",
+        "G83 Z-3 R0.2 Q1 F200\nG80",
+        "G0 Z0.2\nG1 X20 Z-3 F200\nX30",
+    ],
+)
+def test_no_rapid_is_led_into_the_part_by_what_only_pushes_in_there(way: str) -> None:
+    """The thrust of the end teeth pushes the tool up by 0.8 mm, so it is sent deeper by that: but not before it is in
+    the part, with a rapid from 0.2 mm above to 0.6 mm within."""
+    text = f"G21 G90\nS12000 M3\nG0 X3 Y2 Z10\n{way}\nG0 Z20\nM2\n"
+    setup = rm.load_setup(SLOT / "setup_process.toml").replace(source=rm.GCodeSource(text))
+    found = rm.compensate(setup)
+    assert found.before.max > 0.3e-3
+    fast = [
+        np.round(each.p[~each.cutting | (each.v_f > 0.01), 2], 9)
+        for each in (rm.read_gcode(t) for t in (text, found.text))
+    ]
+    for z in fast[1]:
+        assert np.min(np.abs(fast[0] - z)) < 1e-6 or z > fast[0].min() - 1e-6
+    assert fast[1].min() >= fast[0].min() - 1e-6
+    assert found.after.max < 0.012 * found.before.max
+    if "X20" not in way:  # of a ramp a test of its own says more
+        tip, run = tip_of(setup, found.text)
+        assert tip[run.path.cutting & run.conditions.engaged, 2].min() == pytest.approx(-3e-3, abs=10e-6)
+
+
+def test_a_rapid_over_a_ramp_stops_where_it_was_told_to_and_a_link_leads_down_from_there() -> None:
+    """The force is stated, and so is there from the first step on: 0.64 mm up."""
+    text = "G21 G90\nS12000 M3\nG0 X-20 Y0 Z10\nG0 Z0.2\nG1 X20 Z-2 F600\nX30\nG0 Z20\nM2\n"
+    force = rm.PathForce(feed_normal=80.0, axial=300.0)
+    found = rm.compensate(rm.load_setup(SLOT).replace(source=rm.GCodeSource(text), force=force))
+    path = rm.read_gcode(found.text)
+    assert path.p[1:][~path.cutting[1:], 2].min() == pytest.approx(0.2e-3, abs=1e-9)
+    assert found.after.max < 0.01 * found.before.max
+    tip, run = tip_of(found.setup, found.text)
+    x, _, z = tip[run.path.cutting & run.conditions.engaged].T
+    on_ramp = (x > -15e-3) & (x < 19e-3)
+    assert np.abs(z[on_ramp] - (0.2e-3 - 0.055 * (x[on_ramp] + 20e-3))).max() < 0.02 * found.before.max
+
+
+def test_a_rapid_onto_a_finished_floor_stops_there_and_one_beside_the_stock_is_led() -> None:
+    """150 N up lift the tool by 0.36 mm as it cuts: it goes down by that at feed, not at rapid into the floor."""
+    text = "G21 G90\nS12000 M3\nG0 X-60 Y0 Z5\nG0 Z-2\nG1 X60 F1200\nG0 Z5\nG0 X0\nG0 Z-2\nG1 Y10 F600\nG0 Z10\nM30\n"
+    force = rm.PathForce(feed_normal=60.0, axial=150.0)
+    stock = rm.Stock(lower_mm=[-50, -60, -20], upper_mm=[50, 60, 0])
+    found = rm.compensate(rm.load_setup(SLOT).replace(source=rm.GCodeSource(text), force=force, stock=stock))
+    path = rm.read_gcode(found.text)
+    low = [p[2] for p, cutting in zip(path.p, path.cutting, strict=True) if not cutting and p[2] < -1e-3]
+    assert low[0] == pytest.approx(-2.3026e-3, abs=2e-6)  # beside the stock
+    assert low[1] == pytest.approx(-2e-3, abs=1e-9)
+    tip, run = tip_of(found.setup, found.text)
+    y, z = tip[run.path.cutting & (np.abs(run.path.p[:, 0]) < 1e-3)].T[1:]
+    assert np.abs(z[(y > 4.5e-3) & (y < 9.5e-3)] + 2e-3).max() < 0.01 * found.before.max

@@ -43,8 +43,43 @@ def run_along(path: rm.Toolpath, conditions: SimpleNamespace, delta: np.ndarray,
     feed = np.column_stack([x, np.zeros(len(x))])
     axis = np.tile([0.0, 0.0, 1.0], (len(x), 1))
     R_MF = np.stack([feed, np.cross(axis, feed), axis], axis=-1)
-    setup = SimpleNamespace(T_MW=np.eye(4), coupling=coupling)
-    return SimpleNamespace(path=path, conditions=conditions, delta=delta, R_MF=R_MF, setup=setup)
+    block = SimpleNamespace(upper=np.zeros(3))
+    setup = SimpleNamespace(T_MW=np.eye(4), coupling=coupling, stock_block=block)
+    over = path.p[:, 2] < 0.0
+    return SimpleNamespace(path=path, conditions=conditions, delta=delta, R_MF=R_MF, setup=setup, over_stock=over)
+
+
+def hole(heights: list[float], feeds: list[float], push: float = PUSHED) -> tuple[rm.Toolpath, Places]:
+    """Straight down over the origin to ``heights`` mm, 0 a rapid, where all is pushed up by ``push`` m."""
+    p = np.array([[0.0, 0.0, z] for z in heights]) * 1e-3
+    path = rm.Toolpath.from_points(p, np.array(feeds), cutting=np.array(feeds) > 0.0)
+    steep = np.ones(len(p), dtype=bool)
+    conditions = SimpleNamespace(along=-np.ones(len(p)), mostly_axial=steep)
+    return path, Places.along(run_along(path, conditions, np.tile([0.0, 0.0, push], (len(p), 1))))
+
+
+@pytest.mark.parametrize(
+    ("heights", "feeds", "early"),
+    [
+        ([9, 0.1, 0.1, -1], [0, 0, 0.03, 0.03], [0, 1, 1, 0]),  # a rapid to just above the part
+        ([9, 5, 5, -1], [0, 0, 0.03, 0.03], [0, 0, 0, 0]),  # to far above it: it stays above it
+        ([9, -1, -1, -2], [0, 0, 0.03, 0.03], [0, 1, 1, 0]),  # to the bottom of a hole
+        ([9, 9, 5, 0.1, -1], [0, 0.1, 0.1, 0.1, 0.03], [0, 1, 1, 1, 0]),  # fast, then slowly: all of the fast way
+        ([9, 9, 5, 0.1, -1], [0, 0.03, 0.03, 0.03, 0.03], [0, 0, 0, 0, 0]),
+        ([9, 9, -1, -2], [0, 0.1, 0.1, 0.03], [0, 0, 0, 0]),  # it cuts with both: what pushes it has to be undone
+    ],
+)
+def test_what_a_hole_is_gone_to_fast_is_led_beside_it_and_not_down(
+    heights: list[float], feeds: list[float], early: list[int]
+) -> None:
+    path, places = hole(heights, feeds)
+    assert places.early.tolist() == [bool(each) for each in early]
+    c = np.tile([3e-5, 0.0, -1e-4], (len(path), 1))
+    found = places.upright(c)
+    assert (found[:, 0] == 3e-5).all()
+    arrives = [i for i in range(len(early) - 1) if feeds[i] == 0.0 < feeds[i + 1] and heights[i] == heights[i + 1]]
+    kept = [bool(each) or (i in arrives and bool(early[i + 1])) for i, each in enumerate(early)]
+    np.testing.assert_allclose(found[:, 2], np.where(kept, 0.0, -1e-4), atol=1e-18)
 
 
 @pytest.mark.parametrize("seed", range(6))

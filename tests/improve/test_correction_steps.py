@@ -94,7 +94,7 @@ def straight(cutting: list[int], place: list[int], steep: list[int] | None = Non
         step_length=1e-3 * np.diff(place, prepend=place[0] - 1),
     )
     down = np.zeros(m, dtype=bool) if steep is None else np.array(steep, dtype=bool)
-    return Places(path, np.array(place), np.full(m, -1), down, *np.zeros((3, m), dtype=bool))  # type: ignore[arg-type]
+    return Places(path, np.array(place), np.full(m, -1), down, *np.zeros((4, m), dtype=bool))  # type: ignore[arg-type]
 
 
 def test_where_the_tool_is_outside_it_has_the_correction_of_the_next_sample_that_is_pushed_else_of_the_last() -> None:

@@ -181,3 +181,10 @@ def test_what_cannot_be_met_is_neared_by_the_joints_that_play_a_role_there_alone
     found = nearest(errors, np.array([1.0, 2.0, 0.5]), low, high)
     np.testing.assert_allclose(found.x, [0.25, 1.0, 2.0], rtol=2e-3)
     assert errors.shares(found.x).max() == pytest.approx(3.25, rel=2e-4)
+
+
+def test_a_joint_that_may_not_be_stiffened_is_blamed_as_it_is() -> None:
+    """100 N push joint 3 alone by C_3 h^2 F: 12.30e-7 rad/(N m), its elbow h = 1.094 m above the tip, 0.147 mm."""
+    found = rm.design(rm.load_setup("paper_flute").replace(step=10e-3), tolerance_mm=0.12, bounds=(1.0, 1.0))
+    assert not found.feasible
+    assert found.reason.startswith("joint 3 alone leaves 0.147 mm of 0.12 mm and stays as it is (line ")

@@ -50,3 +50,17 @@ def test_the_tip_and_the_way_along_the_feed_go_as_they_do() -> None:
     assert along.all()
     np.testing.assert_allclose(all_.along(moved)[-len(along) :, 0], moved[result.judged, 0])
     np.testing.assert_allclose(all_.tolerance[-len(along) :], 0.2e-3)
+
+
+@pytest.mark.parametrize("tolerance_mm", [0.3, 0.1])
+def test_a_cut_of_which_not_all_is_judged_is_no_number_however_far_out_the_rest_is(tolerance_mm: float) -> None:
+    """A force along the path says nothing of the plunge. Out of tolerance the verdict is red for the rest; joints that
+    keep the rest in it do not keep what nobody knows, and no probability is known of it."""
+    text = "G21 G90\nS12000 M3\nG0 X-40 Y0 Z5\nG1 Z-2 F300\nG1 X40 F1200\nG0 Z10\nM30\n"
+    cut = rm.load_setup("paper_flute").replace(source=rm.GCodeSource(text), tolerance_mm=tolerance_mm, step=4e-3)
+    run = rm.simulate(cut)
+    assert run.verdict.level == ("out" if tolerance_mm < 0.2 else "unjudged")
+    assert run.not_judged.any()
+    for asked, says in ((rm.design, "no number to design for"), (rm.uncertainty, "no number to be sure of")):
+        with pytest.raises(rm.RobomillError, match=f"{says}.*line 4.*says nothing of a plunge"):
+            asked(cut)

@@ -96,6 +96,26 @@ def test_a_worker_that_ends_loses_nothing_and_rows_are_those_of_this_machine(
     assert both[0] == both[1]
 
 
+def test_a_scheduler_that_dies_is_one_sentence_on_the_command_line(dask: Dask, tmp_path: Path) -> None:
+    """Dask's client, which seeks it for a while and is then closed, logs how it came out of that with a traceback."""
+    dask.work(1)
+    lines = [
+        'format = "robomill-study"\nversion = 1\nsetup = "paper_flute"',
+        '[design]\nkind = "sobol"\npoints = 400',
+        '[parameters."force.feed_normal_N"]\nlow = 50.0\nhigh = 150.0',
+    ]
+    (tmp_path / "study.toml").write_text("\n".join(lines))
+    words = ["study", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out"), "--scheduler", dask.address]
+    run = subprocess.Popen([sys.executable, "-m", "robomill", *words], stderr=subprocess.PIPE, env=ENV)
+    parts, began = tmp_path / "out" / "parts", time.monotonic()
+    while not (parts.is_dir() and any(parts.iterdir())) and time.monotonic() - began < 60.0:
+        time.sleep(0.05)
+    dask.scheduler.send_signal(signal.SIGKILL)
+    _, said = run.communicate(timeout=120)
+    assert run.returncode == 2
+    assert re.fullmatch(rb"robomill: The Dask scheduler at [^\n]* is gone[^\n]*goes on from there\.\n", said), said
+
+
 def test_a_scheduler_that_dies_loses_nothing_and_the_study_goes_on_here(dask: Dask, tmp_path: Path) -> None:
     study, killed = drawn(150), []
     dask.work(1)
