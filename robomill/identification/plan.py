@@ -177,6 +177,9 @@ def next_best(
     path = [float(np.sqrt(np.trace(weight @ Q))) if aim.path and weight is not None else np.nan for Q in (before, P)]
     errors = [np.sqrt(np.diag(Q)) / scale for Q in (before, P)]
     errors[0][~np.isfinite(result.parameter_stderr)] = np.inf
+    told = np.sqrt(np.nan_to_num(np.diag(result.covariance)))  # loads that err make a fit less sure than its noise does
+    known = (told > 0.0) & np.isfinite(errors[0]) & (errors[0] > 0.0)
+    errors = [error * np.divide(told, errors[0], out=np.ones_like(told), where=known) for error in errors]
     half = [half_width(error, result.dof + 3 * added) for added, error in zip((0, count), errors, strict=True)]
     theta = candidates.theta[picked]
     return Plan(

@@ -68,7 +68,7 @@ def identify(
         if "force" not in treatment.freed or not tests.aimed.any() or _aimed_well(fitted):
             break
         tests = tests.moved(robot, fitted.found.shift[:3])  # cables aimed from the point found: a law linear about it
-    fitted = by_tests(fitted)
+    fitted, told = by_tests(fitted)
     missed = candidates.missed()
     result = _result(robot, tests, choice, fitted)
     error = headline(relative_by_pose(fitted.system, missed.error, fitted.weights))
@@ -83,6 +83,7 @@ def identify(
         result,
         findings=(
             *result.findings,
+            *told,
             *model_findings(robot, inquest),
             *point_findings(points),
             *(each.finding() for each in (offer, bends) if each is not None),

@@ -44,8 +44,9 @@ class Fitted:
         seen[kept] = fit.seen
         null = np.zeros((len(fit.null), p))
         null[:, kept] = fit.null
-        spare = np.full(p, float(fit.dof))
-        spare[kept] = fit.dof if fit.spare is None else fit.spare
+        spare = None if fit.spare is None else np.full(p, float(fit.dof))
+        if spare is not None:
+            spare[kept] = fit.spare
         return replace(fit, x=x, free=free, covariance=covariance, seen=seen, null=null, spare=spare)
 
 
