@@ -52,10 +52,11 @@ class Equations(NamedTuple):
 
 
 def by_tests(fitted: Fitted) -> tuple[Fitted, tuple[Finding, ...]]:
-    """The same fit, its covariance and the degrees of freedom of its intervals by the scatter of its tests where their
-    loads seem to err, and that it is said."""
+    """The same fit, the covariance of its compliances and the degrees of freedom of their intervals by the scatter of
+    its tests where their loads seem to err, and that it is said. Points of the tool stay as sure as they were: what a
+    model lacks looks like such loads, too, and is known by points that disagree."""
     fit = fitted.found.fit
-    if fit.dof <= 0 or fit.sigma <= 0.0:
+    if fit.dof <= 0 or fit.sigma <= 0.0 or not fit.seen.any():
         return fitted, ()
     equations = Equations.of(fitted)
     off = off_by(equations)
@@ -63,12 +64,13 @@ def by_tests(fitted: Fitted) -> tuple[Fitted, tuple[Finding, ...]]:
         return fitted, ()
     factor, spare = np.ones(len(fit.x)), np.full(len(fit.x), float(fit.dof))
     factor[fit.seen], spare[fit.seen] = scatter(equations)
-    judged = spare >= FEWEST
+    judged = (spare >= FEWEST) & (np.arange(len(spare)) < fitted.small.A.shape[1])
     factor, spare = np.where(judged, factor, 1.0), np.where(judged, spare, float(fit.dof))
     fit = replace(fit, covariance=fit.covariance * np.outer(factor, factor), spare=spare)
     text = (
-        f"what the fit leaves lies along what the tool moved, as if loads were off by about {format_si(off, '%', 1)}: "
-        "each test counts as one draw, which makes the intervals wider; weigh or calibrate what pulls."
+        f"what the fit leaves lies along what the tool moved, as if loads were off by about {format_si(off, '%', 1)} "
+        "(or the model lacked something that grows with them): each test counts as one draw, which makes the intervals "
+        "wider; calibrate what measures the load."
     )
     told = (Finding("info", text, code="loads-err"),)
     return replace(fitted, found=fitted.found._replace(fit=fit)), told

@@ -137,7 +137,7 @@ def found_points(
                 frozen(found.fit.covariance[own, own]),
                 frozen(stated[point].mean(axis=0)),
                 robot.T_tool,
-                found.fit.dof if found.fit.spare is None else int(found.fit.spare[own].min()),
+                found.fit.dof,
             )
         )
     return tuple(result)
