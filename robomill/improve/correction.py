@@ -246,7 +246,7 @@ class Places:
         arrives = arrivals(self.path)
         c = self._not_early(c)
         c[arrives] = c[arrives + 1]
-        return self._not_early(c)  # x
+        return self._not_early(c)
 
     def _not_early(self, c: FloatArray) -> FloatArray:
         """c (m, 3) m without what leads down where that is too ``early``."""

@@ -10,15 +10,18 @@ from scipy.optimize import brentq
 
 from robomill.simulation.coupling import (
     AROUND,
+    CLOSE,
     LONGEST,
     MOST,
     NARROW,
     TOLERANCE,
+    TURNS,
     _between,
     _bounds,
     _by_bracket,
     _by_broyden,
     _by_height,
+    _by_shares,
     settle,
 )
 
@@ -334,3 +337,19 @@ def test_between_two_ends_it_is_looked_where_interpolation_truncation_and_projec
     for wrong in ((a, -over), (a, 0.0)):
         assert _between(wrong, (b, under), room, length) == half
     assert _between((a, over), (b, 0.0), room, length) == half
+
+
+def test_shares_that_hold_the_tool_at_once_are_taken_from_one_look_around():
+    """The force jumps in all three directions at ``goal``: places around it to all sides hold the tool between them."""
+    goal, asked = np.array([3e-6, -2e-6, 1e-6]), []
+
+    def bends(x):
+        asked.append(x)
+        return x - 1e-4 * np.sign(x - goal)
+
+    found = _by_shares(bends, goal + 0.1e-6, CLOSE, TURNS)
+    assert found.agreed
+    assert len(asked) == found.evaluations == len(AROUND)
+    held = sum((weight * (bends(place) - place) for place, weight in found.mix), start=np.zeros(3))
+    np.testing.assert_allclose(held, 0.0, atol=TOLERANCE)
+    assert np.abs(found.x - goal).max() <= CLOSE + 0.1e-6
