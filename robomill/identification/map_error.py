@@ -8,7 +8,7 @@ a cell of a grid that is so along every axis at once: bilinear interpolation mis
 
 import numpy as np
 
-from robomill.arrays import FloatArray
+from robomill.arrays import BoolArray, FloatArray, IntArray
 
 PART_BETWEEN = 0.25
 BEYOND_CHANCE = 6.63  # of minus twice the logarithm of a likelihood: less than once in a hundred without a share
@@ -86,12 +86,26 @@ def between_points(p: FloatArray, C: FloatArray, stderr: FloatArray) -> FloatArr
     no point shows a bend.
     """
     own = np.nan_to_num(stderr) ** 2
-    axes = [np.unique(np.round(x / GRID)) * GRID for x in p.T]
-    if axes and np.prod([len(axis) for axis in axes]) == len(p):
+    if p.shape[1] == 0:
+        return np.zeros((3, 3))
+    if (axes := _grid(p)) is not None:
         order = np.lexsort(np.round(p / GRID).T[::-1])
         shape = (*(len(axis) for axis in axes), 3, 3)
         return _along_lines(axes, C[order].reshape(shape), own[order].reshape(shape))
     return _about_points(p, C, own)
+
+
+def shows_bend(p: FloatArray) -> bool:
+    """Whether points p (k, d) m show how bent a map is along all axes on which they vary: three on each line of a grid,
+    elsewhere one that others surround."""
+    axes = _grid(p)
+    return all(len(axis) > 2 for axis in axes) if axes is not None else _surrounded(p) is not None
+
+
+def _grid(p: FloatArray) -> list[FloatArray] | None:
+    """The lines (d) of the grid that points p (k, d) m fill; None where they lie anyhow."""
+    axes = [np.unique(np.round(x / GRID)) * GRID for x in p.T]
+    return axes if np.prod([len(axis) for axis in axes]) == len(p) else None
 
 
 def _along_lines(axes: list[FloatArray], C: FloatArray, own: FloatArray) -> FloatArray:
@@ -114,18 +128,25 @@ def _along_lines(axes: list[FloatArray], C: FloatArray, own: FloatArray) -> Floa
 
 def _about_points(p: FloatArray, C: FloatArray, own: FloatArray) -> FloatArray:
     """The same of points that lie anyhow: their plane averages the bends along d axes, which add up between them."""
-    from scipy.spatial import cKDTree
-
-    k, d = p.shape
-    if d == 0 or k < 2 * d + 1:
+    found, d = _surrounded(p), p.shape[1]
+    if found is None:
         return np.zeros((3, 3))
-    near = cKDTree(p).query(p, k=2 * d + 1)[1][:, 1:]
-    plane = np.concatenate([np.ones((k, 2 * d, 1)), p[near] - p[:, None]], axis=2)  # offset and slopes at the point
-    weight = np.linalg.pinv(plane)[:, 0]
-    surrounded = (weight > 0.0).all(axis=1) & np.isclose(weight.sum(axis=1), 1.0)
-    if not surrounded.any():
-        return np.zeros((3, 3))
-    weight, near = weight[surrounded], near[surrounded]
+    surrounded, weight, near = found
     gap = C[surrounded] - np.einsum("kw,kwij->kij", weight, C[near])
     by_noise = own[surrounded] + np.einsum("kw,kwij->kij", weight**2, own[near])
     return d * PART_BETWEEN * np.sqrt(np.clip(np.mean(gap**2 - by_noise, axis=0), 0.0, None))
+
+
+def _surrounded(p: FloatArray) -> tuple[BoolArray, FloatArray, IntArray] | None:
+    """Which points p (k, d) m their nearest neighbours surround, and of those (q, 2 d) the weights by which these make
+    the plane there, and their numbers; None where there is no such point."""
+    from scipy.spatial import cKDTree
+
+    k, d = p.shape
+    if k < 2 * d + 1:
+        return None
+    near = np.asarray(cKDTree(p).query(p, k=2 * d + 1)[1][:, 1:], dtype=np.int64)
+    plane = np.concatenate([np.ones((k, 2 * d, 1)), p[near] - p[:, None]], axis=2)  # offset and slopes at the point
+    weight = np.linalg.pinv(plane)[:, 0]
+    around = np.asarray((weight > 0.0).all(axis=1) & np.isclose(weight.sum(axis=1), 1.0))
+    return (around, weight[around], near[around]) if around.any() else None

@@ -18,7 +18,7 @@ from robomill.arrays import FloatArray, IntArray, as_floats, frozen, made_array
 from robomill.errors import LoadTestError
 from robomill.frames import Columns
 from robomill.identification.load_test import MEASURED, LoadTests
-from robomill.identification.map_error import GRID, between_points, errors_of_tests, noise_by_asymmetry
+from robomill.identification.map_error import GRID, between_points, errors_of_tests, noise_by_asymmetry, shows_bend
 from robomill.kinematics.transforms import axis_from_tilt, world_from_pose
 from robomill.lazy import cached_property
 from robomill.progress import checkpoint
@@ -196,6 +196,12 @@ class MeasuredField(Tabled):
                 f"{_point(self.p[k])}): there a force would move the tip against itself."
             )
             found.append(Finding("suspicious", text, count=int(negative.sum()), code="not-positive"))
+        if len(self._used) and not shows_bend(self.p[:, self._used]):
+            text = (
+                "No measured point lies between two others along each axis, so how far a straight line between points "
+                "misses is not known: 95 % intervals leave it out; measure points in the middle."
+            )
+            found.append(Finding("warning", text, code="bend-not-seen"))
         if float(np.ptp(self.AB, axis=0).max()) > 1e-6:
             text = (
                 "The points were measured at different tool orientations; the map does not interpolate between those."

@@ -11,6 +11,7 @@ from robomill.identification.map_error import (
     errors_of_tests,
     noise_by_asymmetry,
     noise_of_tests,
+    shows_bend,
 )
 
 
@@ -126,3 +127,25 @@ def test_what_the_noise_of_each_point_makes_of_a_gap_is_taken_off_it():
     C = np.abs(x)[:, :, None] * np.ones((3, 3))
     gap = PART_BETWEEN * np.sqrt(1.0 - 0.2**2 - (0.3**2 + 0.5**2) / 4.0)
     assert between_points(x, C, own[:, None, None] * np.ones((3, 3, 3))) == pytest.approx(gap)
+
+
+@pytest.mark.parametrize(
+    ("counts", "shown"),
+    [((3,), True), ((2,), False), ((3, 3), True), ((3, 2), False), ((2, 2), False), ((4, 3, 3), True)],
+)
+def test_a_bend_is_shown_where_a_point_of_each_axis_lies_between_others(counts, shown):
+    """By a field that is bent along every axis: what is said to be missed leaves none out just where it is shown."""
+    lines = [np.linspace(0.0, 0.1 * n, n) for n in counts]
+    p = np.stack([x.ravel() for x in np.meshgrid(*lines, indexing="ij")], axis=1)
+    assert shows_bend(p) is shown
+    each = [
+        between_points(p, np.multiply.outer(p[:, i] ** 2, np.ones((3, 3))), np.zeros((len(p), 3, 3)))
+        for i in range(len(counts))
+    ]
+    assert all(found.all() for found in each) is shown
+
+
+def test_points_that_lie_anyhow_show_a_bend_where_others_surround_one():
+    corners = np.array([[0.0, 0.0], [1.0, 0.1], [0.1, 1.0], [1.1, 1.0]])
+    assert not shows_bend(corners)
+    assert shows_bend(np.vstack([corners, [[0.55, 0.52]]]))
