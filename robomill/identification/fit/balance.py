@@ -45,14 +45,21 @@ def balanced(system: System, group: IntArray | None = None) -> System:
 
 def _distinct(system: System, group: IntArray) -> tuple[System, IntArray]:
     """The equations each once, and their groups: a copy is no second reading, and makes no scatter surer."""
-    table = np.column_stack([system.A, system.b, system.noise, group])
-    told = (table * np.sqrt(np.arange(2.0, table.shape[1] + 2.0))).sum(axis=1)  # one number a row, of copies the same
-    if len(np.unique(told)) == len(told):
+    first = each_once(system, group)
+    if len(first) == len(group):
         return system, group
-    first = np.sort(np.unique(table, axis=0, return_index=True)[1])
     names = ("A", "b", "noise", "test", "component", "pose")
     terms = None if system.terms is None else system.terms[first]
     return replace(system, **{name: getattr(system, name)[first] for name in names}, terms=terms), group[first]
+
+
+def each_once(system: System, group: IntArray) -> IntArray:
+    """(k,) the equations of each ``group`` (e,) without copies of earlier ones, in their order."""
+    table = np.column_stack([system.A, system.b, system.noise, group])
+    told = (table * np.sqrt(np.arange(2.0, table.shape[1] + 2.0))).sum(axis=1)  # one number a row, of copies the same
+    if len(np.unique(told)) == len(told):
+        return np.arange(len(told))
+    return np.sort(np.unique(table, axis=0, return_index=True)[1])
 
 
 def _differ(size: FloatArray, spare: FloatArray) -> bool:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robomill.arrays import BoolArray, FloatArray, IntArray
+from robomill.identification.fit.balance import each_once
 from robomill.identification.fit.fitting import Fitted, columns, linear_readings
 from robomill.provenance import Finding
 from robomill.units import format_si
@@ -36,13 +37,15 @@ class Equations(NamedTuple):
 
     @classmethod
     def of(cls, fitted: Fitted) -> Equations:
-        """Those of a fit that leaves something."""
+        """Those of a fit that leaves something, each once: a copy is no second draw."""
         fit, system = fitted.found.fit, fitted.small
         wide = columns(system, fitted.found)
         weight = (np.ones(len(system.b)) if fitted.weights is None else np.sqrt(fitted.weights)) / system.noise
         X = wide[:, fit.seen] * weight[:, None]
         left = linear_readings(system, fitted.found, wide) * weight - X @ fit.free[fit.seen]
-        return cls(X, left, (system.A @ fit.x[: system.A.shape[1]]) * weight, system.test)
+        moved = (system.A @ fit.x[: system.A.shape[1]]) * weight
+        once = each_once(system, system.component)
+        return cls(X[once], left[once], moved[once], system.test[once])
 
     @property
     def inverse(self) -> FloatArray:

@@ -134,3 +134,13 @@ def test_identify_tells_them() -> None:
     planned = next_best(ROBOT, tests, found)
     assert planned.before == pytest.approx(found.stderr, rel=1e-9)
     assert (planned.after <= planned.before).all()
+
+
+def test_copies_of_tests_are_no_second_draws() -> None:
+    tests = readings(np.random.default_rng(10), 6, 0.03, 1e-6)
+    once, twice = (fit_system(build_system(ROBOT, each, Model("joints"))) for each in (tests, tests.joined(tests)))
+    assert off_by(Equations.of(twice)) == pytest.approx(off_by(Equations.of(once)), rel=1e-6)
+    (one, told), (two, _) = by_tests(once), by_tests(twice)
+    assert told
+    assert two.fit.spare == pytest.approx(one.fit.spare, rel=1e-6)
+    assert two.fit.stderr == pytest.approx(one.fit.stderr * np.sqrt(one.fit.dof / two.fit.dof), rel=1e-6)
