@@ -155,9 +155,10 @@ class ProcessForce(ForceModel):
 
     def unjudged(self, conditions: CutConditions) -> tuple[Unjudged, ...]:
         """Spindles that turn the wrong way or nobody knows how fast, drills led sideways, forces unknown."""
-        if not conditions.engaged.any():
+        engaged = conditions.engaged
+        if not engaged.any():
             return ()
-        tooling, engaged = self._tooling(conditions), conditions.engaged
+        tooling = self._tooling(conditions)
         drill, c = tooling.drills, self._fed(conditions)
         reasons = [
             (

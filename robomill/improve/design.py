@@ -13,14 +13,7 @@ from robomill.compliance.deflection import shares_along
 from robomill.errors import SetupError
 from robomill.frames import Columns
 from robomill.improve.asked_joints import SETTLED, checked_bounds, checked_weight, words_of_joints
-from robomill.improve.judged import (
-    Judged,
-    Measure,
-    check_improvable,
-    check_joints_known,
-    check_numbered,
-    judged,
-)
+from robomill.improve.judged import Judged, Measure, check_improvable, check_joints_known, check_numbered, judged
 from robomill.improve.least_cost import Errors, Least, least_cost, least_share
 from robomill.improve.sensitivity import stiffened
 from robomill.lazy import cached_property

@@ -15,19 +15,17 @@ def quantile(dof: int | None, level: float = LEVEL) -> float:
 
     Infinite where nothing was left to judge the noise by.
     """
-    from scipy.special import ndtri
-
-    return float(ndtri(0.5 + 0.5 * level)) if dof is None else float(half_width(1.0, dof, level))
+    return float(half_width(1.0, dof, level))
 
 
 def half_width(std: ArrayLike, dof: int | FloatArray | None, level: float = LEVEL) -> FloatArray:
     """(...) half a two-sided interval for standard deviations (...) that were found with ``dof``, one for all or (...);
     infinite where nothing was left to judge by."""
-    from scipy.special import stdtrit
+    from scipy.special import ndtri, stdtrit
 
     std = np.asarray(std, dtype=np.float64)
     if dof is None:
-        return quantile(None, level) * std
+        return np.asarray(ndtri(0.5 + 0.5 * level) * std)
     spare = np.broadcast_to(np.asarray(dof, dtype=np.float64), std.shape)
     t = stdtrit(np.where(spare > 0.0, spare, 1.0), 0.5 + 0.5 * level)
     return np.where(spare > 0.0, t * std, np.inf)

@@ -19,9 +19,9 @@ from robomill.toolpath.gcode.offsets import place_by_numbers
 from robomill.toolpath.gcode.owords import File
 from robomill.toolpath.gcode.rules.line_rules import MAX_LINE
 from robomill.toolpath.gcode.rules.motion_rules import keep_motion
+from robomill.toolpath.gcode.scan import CALLS
 from robomill.toolpath.gcode.sinumerik.lines import parted, spaced
 from robomill.toolpath.gcode.stretches import Stretches
-from robomill.toolpath.gcode.subprograms import CALLS
 from robomill.toolpath.gcode.words import Block, apply_settings, normalise, read_words, skip_number
 
 MAX_STEPS = 1_000_000

@@ -17,7 +17,9 @@ _PART = re.compile(
 COMMENT = re.compile(rf"{_REMARK}|;[^\n]*")
 """What a line says to people."""
 COMMENT_BYTES = re.compile(COMMENT.pattern.encode())
-_CALLS, _OF_CALLS = frozenset({"M97", "M98", "M198", "M99"}), frozenset("PLQH")
+CALLS = (97, 98, 198)
+"""M codes that call a subprogram."""
+_CALLS = frozenset(f"M{code}" for code in (*CALLS, 99))
 _PARAMETER = re.compile("#"), re.compile(r"#|\bR\d")
 _BLOCK = re.compile(r"\s*/?\s*N?\d")
 _SCALED = re.compile(r"\s*((?:N\d+\s*)?)(A?)(?:MIRROR|SCALE)\b", re.IGNORECASE)
@@ -104,12 +106,17 @@ def notes(line: str, dialect: str) -> list[str]:
     return [" ".join(found)] if found else []
 
 
+def letters_of_call(beside_length: bool) -> frozenset[str]:
+    """Letters that say what is called, where it begins and how often; beside G43 its H is the number of a length."""
+    return frozenset("PLQ" if beside_length else "PLQH")
+
+
 def uncalled(line: str) -> str:
     """A line without its call by M97, M98 or M198, or its M99, where other words stand beside that; else as it is."""
     tokens = (scan(line) or []) if "9" in line else []
     if not any(token.code in _CALLS for token in tokens):
         return line
-    letters = _OF_CALLS - {"H"} if any(token.code == "G43" for token in tokens) else _OF_CALLS
+    letters = letters_of_call(any(token.code == "G43" for token in tokens))
     gone = {i for i, token in enumerate(tokens) if token.code in _CALLS or token.letter in letters}
     left = [token for i, token in enumerate(tokens) if i not in gone]
     return joined(without(tokens, gone)) if any(token.letter and token.letter != "N" for token in left) else line

@@ -12,7 +12,7 @@ from robomill.toolpath.gcode.expressions import Reader
 from robomill.toolpath.gcode.owords import SENTENCES, Call, OWords
 from robomill.toolpath.gcode.rules import flow_rules as rules
 from robomill.toolpath.gcode.rules.cycle_rules import is_cycle
-from robomill.toolpath.gcode.scan import COMMENT
+from robomill.toolpath.gcode.scan import CALLS, COMMENT, letters_of_call
 from robomill.toolpath.gcode.words import Block
 
 _LINE_NUMBER = re.compile(rb"^[/ \t]*N[ \t]*0*(\d{1,9})(?![\d.])", re.MULTILINE | re.IGNORECASE)
@@ -28,9 +28,6 @@ _N = re.compile(r"^[ \t/]*(?:N\d+[ \t]*)?")
 _OVER = re.compile(r"M[ \t]*99(?![\d.])(?![ \t]*P)|^[ \t]*[O:]\d", re.IGNORECASE)
 _PROGRAM = re.compile(r"^[ \t]*[O:][ \t]*0*(\d{1,9})[ \t;\r]*(?:\([^\n]*)?$", re.MULTILINE | re.IGNORECASE)
 _ENDS = re.compile(r"M[ \t]*0*(2|30|99)(?!\d)", re.IGNORECASE)
-CALLS = (97, 98, 198)
-_OF_CALLS = frozenset("plqh")
-"""Words that say what is called, where it begins and how often."""
 LOCALS = 33
 """Variables #1 to #33 of Macro B belong to the macro that is being run."""
 
@@ -274,7 +271,7 @@ def _beside(block: Block, code: int) -> Block | None:
 
     It is executed first: ``X1000. M98 P1200`` calls behind the move (Fanuc, Operator's Manual: subprogram).
     """
-    called = _OF_CALLS - {"h"} if modal.LENGTH in block.g else _OF_CALLS
+    called = {letter.lower() for letter in letters_of_call(modal.LENGTH in block.g)}
     if is_cycle(block.g.get(modal.MOTION, -1)) and not block.words.keys().isdisjoint("lq"):
         raise block.refuse(f"M{code} and a cycle on one line both want L or Q; put them on two lines.")
     words = {letter: value for letter, value in block.words.items() if letter not in called}
