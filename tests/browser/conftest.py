@@ -1,10 +1,9 @@
-"""The app in a real browser: one server for the folder, one Chromium for each file (while Playwright runs, its thread
-has a running event loop, and other folders start their own)."""
+"""The app in a real browser: one server and one Chromium for the folder."""
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Generator, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
@@ -28,33 +27,49 @@ def url() -> Iterator[str]:
         yield address
 
 
-@pytest.fixture(scope="module")
-def started() -> Iterator[Callable[[str], Any]]:
-    """The browser of a language, "" for its own: it stays until another is asked for, and so does what it has read of
-    Streamlit, which takes a fresh one seconds."""
-    sync_api = pytest.importorskip("playwright.sync_api")
-    if not Path(CHROMIUM).exists():
-        pytest.skip("no Chromium: apt-get install -y chromium")
-    with sync_api.sync_playwright() as playwright, ExitStack() as held:
-        running: dict[str, Any] = {}
+class Browsers:
+    """One Chromium for all files of the folder, in the language that was asked for last: a fresh one takes seconds to
+    start, and seconds more to read what it is served. While Playwright runs, its thread has a running event loop, and
+    other folders start their own."""
 
-        def browser(language: str = "") -> Any:
-            if language not in running:
-                held.close()
-                running.clear()
-                running[language] = playwright.chromium.launch_persistent_context(
-                    held.enter_context(tempfile.TemporaryDirectory(ignore_cleanup_errors=True)),
+    def __init__(self) -> None:
+        self._held = ExitStack()
+        self._running: dict[str, Any] = {}
+
+    def browser(self, language: str) -> Any:
+        """The browser of a language, "" for its own."""
+        if language not in self._running:
+            self.close()
+            sync_api = pytest.importorskip("playwright.sync_api")
+            if not Path(CHROMIUM).exists():
+                pytest.skip("no Chromium: apt-get install -y chromium")
+            self._running[language] = self._held.enter_context(
+                self._held.enter_context(sync_api.sync_playwright()).chromium.launch_persistent_context(
+                    self._held.enter_context(tempfile.TemporaryDirectory(ignore_cleanup_errors=True)),
                     executable_path=CHROMIUM,
                     args=[*ARGUMENTS, f"--lang={language}"] if language else ARGUMENTS,
                     locale=language or None,
                     viewport=WIDE,
                     accept_downloads=True,
                 )
-                held.callback(running[language].close)
-                running[language].set_default_timeout(60_000)
-            return running[language]
+            )
+            self._running[language].set_default_timeout(60_000)
+        return self._running[language]
 
-        yield browser
+    def close(self) -> None:
+        """End it, and Playwright with it."""
+        self._running.clear()
+        self._held.close()
+
+
+BROWSERS = Browsers()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """It ends with the last test of the folder."""
+    if nextitem is None or Path(__file__).parent not in nextitem.path.parents:
+        BROWSERS.close()
 
 
 @pytest.fixture
@@ -64,9 +79,9 @@ def language() -> str:
 
 
 @pytest.fixture
-def browser(started: Callable[[str], Any], language: str) -> Iterator[Any]:
+def browser(language: str) -> Iterator[Any]:
     """A browser that remembers nobody's work, for several pages; they are closed behind it."""
-    context = started(language)
+    context = BROWSERS.browser(language)
     yield context
     seen = [urlsplit(page.url) for page in context.pages]
     last = context.new_page()

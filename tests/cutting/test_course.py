@@ -53,7 +53,7 @@ def test_peak_of_one_straight_tooth_in_a_slot():
 @pytest.mark.parametrize("climb", [True, False])
 @pytest.mark.parametrize("a_e", [0.05e-3, 0.1e-3, 0.2e-3, 0.5e-3, 2e-3, 3.7e-3])
 def test_peak_of_a_finishing_pass_is_where_a_tooth_comes_or_goes(a_e, climb, hand, helix):
-    """Brute force: the edges of all teeth as points, at every hundredth of a degree; a straight one cuts its thickest
+    """Brute force: the edges of all teeth as points, at every thirtieth of a degree; a straight one cuts its thickest
     chip as it meets the outside of the part, an instant before or after which there is none."""
     R, a_p, flutes = 4e-3, 2e-3, 3
     mill = MILL.replace(flutes=flutes, helix_angle=math.radians(helix), hand=hand, helix=hand)
@@ -62,7 +62,7 @@ def test_peak_of_a_finishing_pass_is_where_a_tooth_comes_or_goes(a_e, climb, han
     arc = CutConditions.steady(0.03, 200.0, a_p, arc=(first, last))
     force = MechanisticForce(mill, REF190)
     peak, mean = force.peak(arc), force.components(arc)[0]
-    turn, heights = np.arange(0.0, 360.0 / flutes, 0.01), (np.arange(100) + 0.5) * a_p / 100
+    turn, heights = np.arange(0.0, 360.0 / flutes, 1 / 30), (np.arange(100) + 0.5) * a_p / 100
     sense, course = (1.0 if hand == "right" else -1.0), np.zeros((len(turn), 3))
     for tooth in range(flutes):
         lagging = np.radians(turn[:, None] + 360.0 / flutes * tooth) - heights * math.tan(mill.helix_angle) / R
@@ -123,16 +123,16 @@ def test_peak_is_at_least_the_mean_and_helix_smooths_it():
 
 
 def test_many_teeth_in_many_cuts_take_bounded_memory():
-    """All cuts with all teeth at once would take more than a gigabyte."""
+    """All cuts with all teeth at once would take much more."""
     force = MechanisticForce(MILL.replace(flutes=MOST_FLUTES), REF190)
-    conditions = CutConditions.steady(0.03, 200.0, np.linspace(1e-3, 2e-3, 600))
+    conditions = CutConditions.steady(0.03, 200.0, np.linspace(1e-3, 2e-3, 200))
     tracemalloc.start()
     try:
         peak = force.peak(conditions)
         most = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    assert most < 300e6
+    assert most < 1.5e8, most
     assert len(np.unique(peak.high[:, 1])) > 100
     alone = force.peak(CutConditions.steady(0.03, 200.0, 1e-3))
     np.testing.assert_allclose(peak.high[0], alone.high[0], rtol=2e-3)
