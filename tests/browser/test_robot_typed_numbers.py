@@ -11,7 +11,7 @@ from screenshots import idle, until
 pytestmark = pytest.mark.browser
 
 
-@pytest.fixture(scope="module", params=["en-US", "de-DE"])
+@pytest.fixture(scope="module", params=["en-US", "de-DE", "fr-FR"])
 def language(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
