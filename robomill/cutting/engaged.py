@@ -49,11 +49,6 @@ class EngagedPart:
         object.__setattr__(self, "moments", frozen(self.moments))
         object.__setattr__(self, "sectors", frozen(self.sectors, np.float16))
 
-    def at(self, index: IntArray) -> EngagedPart:
-        """The part at some of the steps (k,)."""
-        known = None if self.known is None else self.known[index]
-        return EngagedPart(self.exponents, self.moments[index], self.sectors[index], known)
-
     def __len__(self) -> int:
         return len(self.moments)
 
@@ -71,12 +66,17 @@ class EngagedPart:
             f"Engaged part: it was summed for the exponents {self.exponents}; the force law has {exponent:g}."
         )
 
-    def force(self, terms: tuple[EdgeTerm, ...], cutter: Cutter, c: ArrayLike) -> FloatArray:
-        """Mean force ON the tool over a revolution, (m, 3) N: feed, feed-normal, axial; ``c`` (m,) m feed per tooth."""
-        c = np.asarray(c, dtype=np.float64)
-        force = np.zeros((len(self), 3))
+    def force(
+        self, terms: tuple[EdgeTerm, ...], cutter: Cutter, c: ArrayLike, index: IntArray | None = None
+    ) -> FloatArray:
+        """Mean force ON the tool over a revolution at the steps ``index`` (k,) (None: all), (k, 3) N: feed,
+        feed-normal, axial; ``c`` (k,) m feed per tooth."""
+        c, some = np.asarray(c, dtype=np.float64), slice(None) if index is None else index
+        force = np.zeros((len(self) if index is None else len(index), 3))
         for term in terms:
-            force += np.stack(push(term, cutter, self.of(term.exponent).T * c**term.exponent), axis=-1)
+            sums = self.of(term.exponent)[some].T * c**term.exponent
+            for axis, each in enumerate(push(term, cutter, sums)):
+                force[:, axis] += each
         return np.asarray(force * (cutter.flutes / (2.0 * np.pi)))
 
 

@@ -28,6 +28,14 @@ from robomill.units import format_short, format_si
 
 #: Share of a drill's tangential force that pushes along its axis, times the sine of half its point angle.
 DRILL_THRUST = 0.5
+WHY = {
+    "spindle_speed": "the spindle's speed follows the diameter (G96) and is not read, so the chip is not known",
+    "shank": "a shank that rubs above the flutes has no force model",
+    "chip": f"a tooth that is fed less than {format_si(RUBS, 'um', 0)} rubs and has no chip",
+    "feed_per_tooth": "teeth fed farther than their radius have no force model",
+    "drill_sideways": "a drill led sideways has no force model",
+}
+"""Why a step in the material has no force, by its code."""
 
 
 def _share(part: str) -> Any:
@@ -160,18 +168,14 @@ class ProcessForce(ForceModel):
             return ()
         tooling = self._tooling(conditions)
         drill, c = tooling.drills, self._fed(conditions)
-        reasons = [
-            (
-                "spindle_speed",
-                ~np.isfinite(conditions.n_s),
-                "the spindle's speed follows the diameter (G96) and is not read, so the chip is not known",
-            ),
-            ("shank", beyond_flutes(conditions, tooling), "a shank that rubs above the flutes has no force model"),
-            ("chip", c < RUBS, f"a tooth that is fed less than {format_si(RUBS, 'um', 0)} rubs and has no chip"),
-            ("feed_per_tooth", c > tooling.each("radius"), "teeth fed farther than their radius have no force model"),
-            ("drill_sideways", drill & (conditions.across > DISH), "a drill led sideways has no force model"),
-        ]
-        found = (Unjudged.at(code, engaged & where, why) for code, where, why in reasons)
+        reasons = {
+            "spindle_speed": ~np.isfinite(conditions.n_s),
+            "shank": beyond_flutes(conditions, tooling),
+            "chip": c < RUBS,
+            "feed_per_tooth": c > tooling.each("radius"),
+            "drill_sideways": drill & (conditions.across > DISH),
+        }
+        found = (Unjudged.at(code, engaged & where, WHY[code]) for code, where in reasons.items())
         lacking = self._unknown(conditions, tooling)
         return (*against_hand(conditions, tooling), *chain.from_iterable(found), *lacking)
 
@@ -281,7 +285,7 @@ def _mean_of(
     index, c = steps
     terms = edge_terms(material, cutter)
     if conditions.part is not None:
-        return conditions.part.at(index).force(terms, cutter, c)
+        return conditions.part.force(terms, cutter, c, index)
     a_p, along = conditions.a_p[index], conditions.along[index]
     arc = (np.clip(phi[index], 0.0, np.pi) for phi in (conditions.phi_st, conditions.phi_ex))
     force = mean_force(terms, cutter, c, a_p, *arc)

@@ -117,7 +117,7 @@ class _Walk:
 
         def meets(delta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
             if (key := delta.tobytes()) not in seen:
-                shift = to_part(np.nan_to_num(delta))
+                shift = to_part(np.where(np.isnan(delta), 0.0, delta))
                 fed = None if goes is None else goes.to(p[i] + shift)
                 row, sectors = self.march.meet(i, p[i - 1] + shift, p[i] + shift, fed)
                 seen[key] = row, sectors, pushed(row, sectors)

@@ -38,7 +38,6 @@ def test_a_part_touches_where_any_of_its_sums_is_not_zero():
     moments[1, 1, 6] = 1e-12
     part = EngagedPart((1.0, 0.0), moments, np.zeros((3, 1, 4)))
     np.testing.assert_array_equal(part.touches, [False, True, False])
-    np.testing.assert_array_equal(part.at(np.array([1, 1])).touches, [True, True])
     np.testing.assert_array_equal(part.of(0.0)[1], [0, 0, 0, 0, 0, 0, 1e-12, 0])
     with pytest.raises(CuttingError, match=r"\(1.0, 0.0\); the force law has 0.74"):
         part.of(0.74)

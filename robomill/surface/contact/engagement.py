@@ -45,6 +45,6 @@ def engagement(exponents: tuple[float, ...], rows: FloatArray, sectors: np.ndarr
     """Rows and sectors of what steps meet (see ``March``), by name."""
     count = len(exponents)
     moments = rows[:, : MOMENTS * count].reshape(len(rows), count, MOMENTS)
-    phi_st, phi_ex, a_p, a_e, reach, _, lost = (frozen(column) for column in rows[:, MOMENTS * count :].T)
+    phi_st, phi_ex, a_p, a_e, reach, _, lost = frozen(rows[:, MOMENTS * count :].T)
     known = np.asarray(lost == 0.0)  # a gap between layers of material that was closed may be met by any later step
     return Engagement(phi_st, phi_ex, a_p, a_e, reach, EngagedPart(exponents, moments, sectors, known))

@@ -273,10 +273,10 @@ class March:
         run, first = np.cumsum(begins, dtype=np.int64), 0
         while first < len(self.steps):
             checkpoint(first / len(self.steps), "What each step meets")
-            n = np.arange(first, self._stop_after(first))
-            some, first = slice(n[0], n[-1] + 1), int(n[-1]) + 1
-            rows[self.steps[some]], sectors[self.steps[some]] = self._march(
-                state, n, self._ends[some], (run[some], begins[some], self._stops[some]), (True, True)
+            n = slice(first, self._stop_after(first))
+            first = n.stop
+            rows[self.steps[n]], sectors[self.steps[n]] = self._march(
+                state, n, self._ends[n], (run[n], begins[n], self._stops[n]), (True, True)
             )
         return rows, sectors, bool(state[0].dexels.lost[0])
 
@@ -301,14 +301,14 @@ class March:
     def _one(
         self, i: int, ends: FloatArray, do: tuple[bool, bool], fed: tuple[FloatArray, float] | None = None
     ) -> tuple[FloatArray, np.ndarray]:
-        n = self._number[[i]]
+        n = int(self._number[i])
         alone = np.ones(1, dtype=bool)
-        return self._march(self._stepwise, n, ends[None], (n + 1, alone, alone), do, fed)
+        return self._march(self._stepwise, slice(n, n + 1), ends[None], (np.array([n + 1]), alone, alone), do, fed)
 
     def _march(
         self,
         state: tuple[Any, Any],
-        n: IntArray,
+        n: slice,
         ends: FloatArray,
         runs: tuple[IntArray, BoolArray, BoolArray],
         do: tuple[bool, bool],
@@ -318,8 +318,8 @@ class March:
         from robomill.surface.contact.march_kernels import Steps, as_halves, march
 
         world, room = state
-        found = np.zeros((len(n), MOMENTS * len(self.exponents) + REST))
-        sectors = np.zeros((len(n), 4 * len(room.sectors)), dtype=np.float32)
+        found = np.zeros((len(ends), MOMENTS * len(self.exponents) + REST))
+        sectors = np.zeros((len(ends), 4 * len(room.sectors)), dtype=np.float32)
         # as it really goes: back along a steeper way, an end that sinks by little would not have met its floor
         tips = ends[:, 3:] + (self._ahead[n] if fed is None else self._just[n][:, None] * fed[0])
         steps = Steps(
@@ -336,6 +336,6 @@ class March:
             self._links[n].astype(np.int64),
         )
         march(world, room, steps, found, sectors, do)
-        halves = np.empty((len(n), len(room.sectors), 4), dtype=np.float16)
+        halves = np.empty((len(ends), len(room.sectors), 4), dtype=np.float16)
         as_halves(sectors.ravel(), sectors.view(np.int32).ravel(), halves.view(np.int16).ravel())
         return found, halves
