@@ -23,6 +23,7 @@ Spin = float | Literal["least_motion", "fixed"]
 LEAST_MOTION: Literal["least_motion"] = "least_motion"
 SPINS = (LEAST_MOTION, "fixed")
 THINNED = 200  # poses of a path by which its spins are compared
+AHEAD = 256  # poses at most that are tried at once behind one that was not found
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,10 +247,17 @@ def _walked(
 ) -> tuple[FloatArray, BoolArray]:
     """(theta (m, n), found (m,)) of a run of poses, each from the one before; ``whole`` ends at the first not found."""
     theta, found = np.empty((len(T_MT), robot.n)), np.zeros(len(T_MT), dtype=bool)
-    for i in range(len(T_MT)):
-        checkpoint(i / len(T_MT))
-        theta[i : i + 1], found[i : i + 1] = solve_numerically(robot, T_MT[i : i + 1], near, mode)
-        near = theta[i : i + 1] if found[i] else near
-        if whole and not found[i]:
+    begin, ahead = 0, 1
+    while begin < len(T_MT):
+        checkpoint(begin / len(T_MT))
+        some = slice(begin, begin + ahead)  # several where none was found: the same one comes before all of them
+        theta[some], found[some] = solve_numerically(robot, T_MT[some], near, mode)
+        hits = np.flatnonzero(found[some])
+        if hits.size:
+            begin, ahead = begin + int(hits[0]) + 1, 1
+            near = theta[begin - 1 : begin]
+        elif whole:
             break
+        else:
+            begin, ahead = begin + ahead, min(2 * ahead, AHEAD)
     return theta, found

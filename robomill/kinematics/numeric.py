@@ -4,6 +4,7 @@ The damping follows the error (Sugihara, IEEE T-RO 27 (2011) 984: half the squar
 are careful far away and Newton's near the solution.
 """
 
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
@@ -23,6 +24,7 @@ STARTS = 64  # starts a pose is given before it counts as not found
 LIBRARY = 8192  # random configurations from which the nearest serve as starts
 COMPARED = 8  # starts of which small arms take the solution nearest to the reference
 NEAREST = 32  # starts of which any arm takes it where the nearest solution is asked for
+TOGETHER = 512  # descents at once where poses are few: starts beside each other cost hardly more than one
 STEPS = 40
 TIGHT = 1e-11  # m and rad: where iteration stops, well inside the residual that counts
 PATIENCE = 6  # steps in which the error must have halved
@@ -69,7 +71,8 @@ def _solve_block(
     remote = _motion if nearest else _remoteness
     starts: FloatArray | None = None
     possible = _within_stretch(robot, T_MT)
-    for attempt in range(STARTS):
+    attempt, many = 0, 1
+    while attempt < STARTS:
         compare = attempt < compared
         open_ = np.flatnonzero(possible if compare else (error > TIGHT) & possible)
         if not open_.size:
@@ -78,15 +81,25 @@ def _solve_block(
             starts, first = _starts(robot, T_MT[open_], mode), open_
             if nearest:
                 starts = _in_order(robot, starts, reference[open_])
-        rows = np.searchsorted(first, open_)
-        trial, remains = descend(robot, T_MT[open_], starts[rows, attempt], mode)
-        trial = turn(robot, trial, reference[open_]) if nearest else trial
-        better = np.where(error[open_] > TIGHT, remains < error[open_], False)
-        if compare:
-            nearer = remote(trial, reference[open_]) < remote(theta[open_], reference[open_])
-            better |= (remains <= TIGHT) & (error[open_] <= TIGHT) & nearer
-        theta[open_[better]], error[open_[better]] = trial[better], remains[better]
+        rows, past = np.searchsorted(first, open_), min(attempt + many, compared if compare else STARTS)
+        for trial, remains in _descents(robot, T_MT[open_], starts[rows, attempt:past], mode):
+            trial = turn(robot, trial, reference[open_]) if nearest else trial
+            better = np.where(error[open_] > TIGHT, remains < error[open_], False)
+            if compare:
+                nearer = remote(trial, reference[open_]) < remote(theta[open_], reference[open_])
+                better |= (remains <= TIGHT) & (error[open_] <= TIGHT) & nearer
+            theta[open_[better]], error[open_[better]] = trial[better], remains[better]
+        attempt, many = past, max(TOGETHER // len(open_), 1)
     return theta, error <= TIGHT
+
+
+def _descents(
+    robot: Robot, T_MT: FloatArray, starts: FloatArray, mode: Mode
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """(theta (m, n), error (m,)) from each of the starts (m, k, n), one after the other."""
+    m, k, n = starts.shape
+    theta, error = descend(robot, np.tile(T_MT, (k, 1, 1)), starts.swapaxes(0, 1).reshape(-1, n), mode)
+    return zip(theta.reshape(k, m, n), error.reshape(k, m), strict=True)
 
 
 def _in_order(robot: Robot, starts: FloatArray, reference: FloatArray) -> FloatArray:

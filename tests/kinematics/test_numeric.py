@@ -272,3 +272,43 @@ def test_starts_are_those_that_miss_a_pose_by_least_in_what_counts_of_it(arm, mo
             miss += ((there[:, :3, c] - T[:3, c]) ** 2).sum(axis=1) / 4
         least = known[np.argsort(miss)[: len(starts)]]
         np.testing.assert_array_equal(starts, least)
+
+
+@pytest.mark.parametrize("missed", [(), (0, 1, 2), (4,), (5, 6, 7, 8, 9, 10), range(6, 24), range(24)])
+def test_a_walk_past_poses_that_are_not_reached_goes_on_from_the_last_one_that_was(arm, missed):
+    """Pose by pose, each from the last one that was found: so it is however many are tried at once behind a gap."""
+    way = numeric.bent_home(arm) + np.linspace(0.0, 1.0, 24)[:, None] * [0.5, -0.4, 0.3, 0.2, -0.3, 0.4]
+    T_MT, missed = rm.tool_pose(arm, way), list(missed)
+    T_MT[missed, :3, 3] *= 1.15 * numeric.stretch(arm) / np.linalg.norm(T_MT[missed, :3, 3], axis=1, keepdims=True)
+    T_MT[missed[::2], :3, 3] *= 0.85  # within the arm's length, if hardly so
+    near, alone, found = numeric.bent_home(arm)[None], np.empty((24, 6)), np.empty(24, dtype=bool)
+    for i in range(24):
+        alone[i], found[i] = (each[0] for each in numeric.solve_numerically(arm, T_MT[[i]], near, "pose"))
+        near = alone[[i]] if found[i] else near
+    walked = rm.inverse_kinematics(arm, T_MT, near="path", spin="fixed")
+    np.testing.assert_array_equal(walked.reached, found)
+    assert not found[missed].all() or not missed
+    assert found[np.setdiff1d(np.arange(24), missed)].all()
+    np.testing.assert_allclose(walked.theta[found], alone[found], atol=1e-9)
+
+
+def test_starts_that_are_tried_together_are_taken_in_their_order(arm, monkeypatch):
+    """The first that arrives is taken, not one behind it: as if they were tried one after the other."""
+    T_MT = rm.tool_pose(arm, configurations(arm, 12, 8))
+    near = np.full((1, 6), 2.2)
+    together = numeric.solve_numerically(arm, T_MT, near, "axis")
+    monkeypatch.setattr(numeric, "TOGETHER", 1)
+    alone = numeric.solve_numerically(arm, T_MT, near, "axis")
+    assert alone[1].any()
+    np.testing.assert_array_equal(together[1], alone[1])
+    np.testing.assert_allclose(together[0][alone[1]], alone[0][alone[1]], atol=1e-9)
+
+
+def test_a_pose_that_is_not_reached_is_given_up_in_few_descents(arm, monkeypatch):
+    T_MT = rm.tool_pose(arm, configurations(arm, 1))
+    T_MT[:, :3, 3] *= 0.97 * numeric.stretch(arm) / np.linalg.norm(T_MT[:, :3, 3])
+    sizes, descend = [], numeric.descend
+    monkeypatch.setattr(numeric, "descend", lambda *given: sizes.append(len(given[1])) or descend(*given))
+    _, found = numeric.solve_numerically(arm, T_MT, numeric.bent_home(arm)[None], "pose")
+    assert not found.any()
+    assert sizes == [1, 1, numeric.STARTS - 1]
