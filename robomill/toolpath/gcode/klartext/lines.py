@@ -355,7 +355,8 @@ class Klartext(KlartextTools):
             if kind != "L" and code[0] == "C":
                 raise GCodeError.at(line, "CHF is read between two straight cuts (L) alone.")
             feed = self.number(found[3], line) / self.tenth if found[3] else 0.0
-            self.machine.corner = Corner(ROUND if code[0] == "R" else LEGS, self.number(found[2], line), feed)
+            size = self.number(found[2], line) * self.similar("RND or CHF", line)
+            self.machine.corner = Corner(ROUND if code[0] == "R" else LEGS, size, feed)
             self.pc = after
 
     # --- labels

@@ -60,6 +60,8 @@ class Holes(MacroCalls):
         machine.need_compensation_off(block, "A drilling cycle")
         if machine.plane != 17:
             raise block.refuse("a drilling cycle is read in the plane G17 alone.")
+        if machine.scale is not None and machine.scale.factors[2] != 1.0:
+            raise block.refuse("a drilling cycle while Z is scaled or mirrored is not read; end that before.")
         if machine.feed == 0.0 and hole.feed == 0.0 and hole.pitch == 0.0:
             raise block.refuse("a drilling cycle needs a feed rate; give an F word above 0 first.")
         down = hole.feed * machine.factor / MINUTE if hole.feed else None

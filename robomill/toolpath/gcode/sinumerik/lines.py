@@ -3,8 +3,8 @@
 import re
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.frames import frame_of
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.offsets import frame_of
 from robomill.toolpath.gcode.rules.motion_rules import MINUTE
 from robomill.toolpath.gcode.standing import note_step
 from robomill.toolpath.gcode.tilted import tilt, turned_by, upright

@@ -10,7 +10,7 @@ from robomill.toolpath.gcode import Program, interpret
 
 DRILLS = (200, 201, 202, 203, 205, 206, 207, 209, 240)
 OLD = (1, 2)
-SET_AND_LEFT_OUT = (7, 8, 9, 10, 11, 13, 19, 32, 247, 332, 392)
+SET_AND_LEFT_OUT = (7, 8, 9, 10, 11, 13, 19, 26, 32, 247, 332, 392)
 PATTERNS = (220, 221)
 
 

@@ -113,7 +113,6 @@ def test_corners_are_rounded_and_chamfered() -> None:
         ("TRANS X5 RPL=30\n", "Line 2: TRANS X5 RPL=30 is not read; expected shifts along X, Y, Z or a turn about Z"),
         ("ATRANS RPL=30\n", "Line 2: ATRANS RPL=30 is not read; expected shifts along X, Y, Z or a turn about Z"),
         ("ROT Z5 RPL=30\n", "Line 2: ROT Z5 RPL=30 is not read; expected shifts along X, Y, Z or a turn about Z"),
-        ("TRANS X10\nG55\n", "Line 3: G55 while coordinates are shifted or turned"),
         ("CYCLE81(50,0)\n", "Line 2: CYCLE81 needs RTP, RFP and DP or DPR"),
         ("CYCLE81(50,0,2,5)\n", "Line 2: CYCLE81: expected RTP above RFP + SDIS, and the depth below"),
         ("CYCLE84(50,0,2,-10,,0,5,7)\n", "Line 2: CYCLE84 needs PIT"),
