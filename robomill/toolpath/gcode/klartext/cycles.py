@@ -18,6 +18,7 @@ _FEEDS = ("Q206", "Q207", "Q208")
 RAPID_OUT = 99_999.0
 """Q208 from which on a tool leaves its hole at rapid; what MAX and FMAX stand for."""
 _CYCLE = re.compile(r"CYCL DEF ?(\d+)(?: ?\.(\d+))?(.*)")
+_TRANSFORM = re.compile(r"TRANS (MIRROR|ROTATION|SCALE) ?(RESET|AXIS(?: ?[XY])+|.+)")
 _AXIS = re.compile(rf"(I?)([XYZ]) ?({NUMBER})")
 _UNMOVED = re.compile(r"I?[ABCUVW] ?[-+]?0+(?:\.0*)?(?= |$)")
 _SETTING = re.compile(r" ?(?:Q[LR]?\d+ ?=|~)")
@@ -59,6 +60,9 @@ class KlartextCycles(KlartextScaling):
             reset = said.startswith("RESET")
             self._shift({} if reset else self._axes_of(said.removeprefix("AXIS"), "TRANS DATUM", line), line, reset)
             return None
+        if (transform := _TRANSFORM.fullmatch(code)) is not None:
+            self._transform(transform[1], transform[2], line)
+            return None
         found = _CYCLE.match(code)
         if found is None:
             raise GCodeError.at(line, f"{code[:30]} is not read; expected CYCL DEF and its number.")
@@ -83,6 +87,16 @@ class KlartextCycles(KlartextScaling):
                 self.pattern(number, line)
             return None
         return self._other_cycle(number, part, rest.strip(), line)
+
+    def _transform(self, name: str, said: str, line: int) -> None:
+        """TRANS MIRROR, ROTATION and SCALE (TNC7), which say what CYCL DEF 8, 10 and 11 do."""
+        ends = said == "RESET"
+        if name == "MIRROR":
+            self.mirror("" if ends else said.removeprefix("AXIS").strip(), line)
+        elif name == "SCALE":
+            self.scale("SCL 1" if ends else said, line)
+        else:
+            self._other_cycle(10, "1", "ROT 0" if ends else said, line)
 
     def _other_cycle(self, number: int, part: str | None, rest: str, line: int) -> str | None:
         if number == 7 and part != "0":

@@ -81,6 +81,20 @@ def test_a_factor_of_one_a_preset_and_a_datum_that_ends_are_taken_in_any_order()
         assert ends(f"CYCL DEF 7.1 X+100\nCYCL DEF 11.1 SCL 2\nL X+1\n{end}L X+1\n")[:, 0] == pytest.approx([102, 1])
 
 
+@pytest.mark.parametrize(
+    ("said", "cycle", "ends"),
+    [
+        ("TRANS MIRROR AXIS X", "CYCL DEF 8.1 X", "TRANS MIRROR RESET"),
+        ("TRANS ROTATION ROT+30", "CYCL DEF 10.1 ROT+30", "TRANS ROTATION RESET"),
+        ("TRANS SCALE SCL1.5", "CYCL DEF 11.1 SCL 1.5", "TRANS SCALE RESET"),
+    ],
+)
+def test_trans_says_what_the_cycles_say(said: str, cycle: str, ends: str) -> None:
+    body = "L X+3 Y+4 Z+5\n"
+    np.testing.assert_array_equal(read(f"{said}\n{body}").end, read(f"{cycle}\n{body}").end)
+    assert read(f"{said}\n{body}{ends}\n{body}").end[-1] * 1e3 == pytest.approx([3, 4, 5])
+
+
 def test_in_din_iso() -> None:
     """G72 F is cycle 11, G73 H is 10."""
     program = interpret(
@@ -103,6 +117,7 @@ def test_a_datum_ends_within_a_rotation_axis_by_axis() -> None:
 @pytest.mark.parametrize(
     ("body", "says"),
     [
+        ("TRANS MIRROR AXIS Z\n", "CYCL DEF 8.1 Z is not read; expected X, Y or both"),
         ("CYCL DEF 11.1 SCL\n", "CYCL DEF 11.1 SCL is not read; expected SCL and a factor"),
         ("CYCL DEF 11.1 SCL 0\n", "CYCL DEF 11 has a factor of 0; expected 0.000001 to 99.999999"),
         ("CYCL DEF 26.1 CCX+5\n", "CYCL DEF 26.1 CCX.5 is not read; expected factors"),

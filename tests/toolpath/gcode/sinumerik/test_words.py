@@ -162,6 +162,38 @@ def test_what_moves_nothing_is_left_out() -> None:
     }
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        "CUT2DF",
+        "SPCON",
+        "SPCOF",
+        "TCOABS",
+        "PAROTOF",
+        "TRAILOF(A,X)",
+        "DISC=0",
+        "H1=5",
+        "H5=-2.5 M8",
+        "M=QU(7)",
+        "h2=qu(3)",
+    ],
+)
+def test_words_of_headers_move_nothing(words: str) -> None:
+    """Couplings that end, speeds, blocks for other parts of the control: 840D, list of instructions."""
+    program = interpret(f"G71 G90 G1 F100 X0\n{words}\nX5 {words}\nM30\n", dialect="sinumerik")
+    assert (program.end[:, 0] * 1e3).tolist() == pytest.approx([0, 5])
+    assert {f.code for f in program.findings if f.line == 2} == {"harmless-word"}
+
+
+def test_a_radius_that_feeds_of_turning_axes_count_by_is_said() -> None:
+    program = interpret("G71 G90 G1 F100 X0\nFGREF[A]=10 FGREF[C]=20\nX5\nM30\n", dialect="sinumerik")
+    said = [f.message for f in program.findings if f.code == "turning-feed"]
+    assert [each.split()[0] for each in said] == ["FGREF[A]", "FGREF[C]"]
+    for words in ("DISC=50", "DISC=0.5", "FGREF[A]=R1"):
+        with pytest.raises(GCodeError):
+            interpret(f"G71 G90 G1 F100 X0\n{words}\nM30\n", dialect="sinumerik")
+
+
 def test_lines_too_long_to_be_looked_through_are_refused() -> None:
     with pytest.raises(GCodeError, match="Line 1: 9000 characters long; at most 3000"):
         interpret("X=AC(" * 1800 + "\nM30\n", dialect="sinumerik")
