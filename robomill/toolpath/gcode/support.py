@@ -274,7 +274,7 @@ SUPPORT: tuple[Support, ...] = (
     _row("CYCL DEF 7, 10", "shifts and turns", "CYCL DEF 7.1 X+5\nL X+1 F99", (6, 0, 0), 1, dialect=_TNC),
     _row(
         "CYCL DEF 200 to 209, 240, CYCL CALL, M99",
-        "drilling",
+        "drilling, bore milling",
         "L Z+9 FMAX M3\nCYCL DEF 200 ~\nQ200=2 ~\nQ201=-5 ~\nQ206=99\nL X+1 FMAX M99",
         (1, 0, 2),
         5,

@@ -22,6 +22,8 @@ _TRANSFORM = re.compile(r"TRANS (MIRROR|ROTATION|SCALE) ?(RESET|AXIS(?: ?[XY])+|
 _AXIS = re.compile(rf"(I?)([XYZ]) ?({NUMBER})")
 _UNMOVED = re.compile(r"I?[ABCUVW] ?[-+]?0+(?:\.0*)?(?= |$)")
 _SETTING = re.compile(r" ?(?:Q[LR]?\d+ ?=|~)")
+_ASSIGNED = re.compile(r"Q\d+ ?= ?\S+")
+_OTHER_BLOCK = re.compile(r"(?:L|LN|LP|C|CR|CP|CT|CC|TOOL CALL|CYCL|CALL|LBL)(?= |\d|$)")
 _FROM_TABLE = "takes its shift from a table, which is not read; write X, Y, Z."
 _DRILLS = {
     200: "drilling",
@@ -31,10 +33,12 @@ _DRILLS = {
     205: "drilling",
     206: "tapping",
     207: "tapping",
+    208: "bore milling",
     209: "tapping",
     240: "centring",
 }
 _PATTERNS = (220, 221)
+BORE_MILLING = 208
 
 
 class KlartextCycles(KlartextScaling):
@@ -73,6 +77,10 @@ class KlartextCycles(KlartextScaling):
                 if number == 202:
                     text = "CYCL DEF 202 is read as boring; its step aside in the hole (Q214) is left out"
                     self.machine.findings.add("fine-boring", "info", line, text)
+            behind = _ASSIGNED.sub("", rest[rest.find("Q") :]).strip() if _ASSIGNED.search(rest) else ""
+            if (other := _OTHER_BLOCK.match(behind)) is not None:
+                text = f"found {other[0]!r} among the values of CYCL DEF {number}; end the line before it without ~."
+                raise GCodeError.at(line, text)
             for name, value in re.findall(r"(Q\d+) ?= ?(\S+)", rest):
                 if name == "Q208" and value in ("MAX", "FMAX"):
                     self.set_q(name, RAPID_OUT, line)
