@@ -29,7 +29,7 @@ def keep_d(machine: Machine, block: Block) -> None:
     if beside is None:
         machine.kept_d = block.words.pop("d")
         held = machine.compensation
-        if held is not None and not isclose(abs(_size(machine, block, "D")[0]), held.radius, abs_tol=1e-9):
+        if held is not None and not isclose(abs(size_of(machine, block, "D")[0]), held.radius, abs_tol=1e-9):
             raise block.refuse(f"D{machine.kept_d:g} changes the cutter while G41 or G42 is on; use G40 first.")
     elif machine.is_fanuc and beside in (410, 420):
         machine.kept_d = block.words["d"]
@@ -52,7 +52,7 @@ def compensation_on(machine: Machine, block: Block) -> None:
         radius = block.words["d"] / 2.0
         orientation = round(block.words.get("l", 0.0))
     else:
-        radius, orientation = _size(machine, block, name)
+        radius, orientation = size_of(machine, block, name)
         if machine.plane != 18 and orientation not in (0, 9):
             raise block.refuse(f"{name} with a lathe tool works in the plane G18 only.")
     u, v, _ = axes(machine.plane)
@@ -68,7 +68,7 @@ def compensation_on(machine: Machine, block: Block) -> None:
     machine.compensation = Compensation(left, abs(radius), orientation, machine.plane)
 
 
-def _size(machine: Machine, block: Block, name: str) -> tuple[float, int]:
+def size_of(machine: Machine, block: Block, name: str) -> tuple[float, int]:
     """Radius (program units) and lathe orientation by D, of this line or before; none is the tool in the spindle.
 
     D0 of a Fanuc control always means 0, whatever tool is in the spindle (15i, Operator's Manual: cutter compensation).

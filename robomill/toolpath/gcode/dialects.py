@@ -12,10 +12,12 @@ from robomill.toolpath.gcode.codes import g_name
 from robomill.toolpath.gcode.corners import LEGS, ROUND, Corner
 from robomill.toolpath.gcode.fanuc.cycles import FANUC_WORDS
 from robomill.toolpath.gcode.foreign import meant_elsewhere
+from robomill.toolpath.gcode.frames import turn_about, turn_back
 from robomill.toolpath.gcode.grbl import for_controller
 from robomill.toolpath.gcode.machine import UNITS, Machine
 from robomill.toolpath.gcode.not_read import not_read
-from robomill.toolpath.gcode.offsets import select_extended, turn_about, turn_back
+from robomill.toolpath.gcode.offsets import select_extended
+from robomill.toolpath.gcode.once import holds_once
 from robomill.toolpath.gcode.rules.motion_rules import LINE, is_arc
 from robomill.toolpath.gcode.scan import COMMENT
 from robomill.toolpath.gcode.sinumerik.lines import translated
@@ -218,6 +220,8 @@ class Dialect:
                 continue
             if self.name == "sinumerik" and 5050 <= code <= 5990 and code % 10 == 0:
                 select_extended(machine, block, code / 10 - 500)
+                continue
+            if holds_once(machine, block, code, self.name, self.has_macros):
                 continue
             if self.name == "sinumerik" and code in (4500, 4510):
                 machine.sharp = code == 4510

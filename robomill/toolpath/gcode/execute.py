@@ -203,10 +203,11 @@ def _probe(machine: Machine, block: Block) -> None:
         raise block.refuse(f"{g_name(block.motion)} starts where it should end; move away first.")
     machine.go(PROBE, block.line, end)
     machine.note("probing", "warning", "probing: the probe is taken to travel its whole way")
-    machine.store.put(5061, end)
+    if not machine.is_fanuc:
+        machine.store.put(5061, end)
     machine.store.numbered[5070] = 0.0
     machine.p = end
-    machine.motion = block.motion
+    machine.motion = block.motion if block.once < 0 else block.once
 
 
 def _stop(machine: Machine, block: Block) -> bool:

@@ -87,7 +87,11 @@ _TOLD = (
     ("Mitsubishi's MELFA", r"\d+[ \t]+M(?:OV|VS)[ \t]+P"),
     ("a robot's PDL2 or KAREL", r"PROGRAM[ \t]+\w+[ \t]*$"),
     ("URScript or VAL3", r"def[ \t]+\w+\([^\n]*\):|[ \t]*(?:movel|movej|movep|set_tcp)[ \t]*\("),
-    ("Okuma's OSP", r"\$[\w-]+\.(?:MIN|SSB|SUB|LIB)\b|[^(;\n]*\bG15[ \t]*H[ \t]*\d"),
+    (
+        "Okuma's OSP",
+        r"\$[\w-]+\.(?:MIN|SSB|SUB|LIB)\b|[^(;\n]*\bG15[ \t]*H[ \t]*\d|[^(;\n]*\bG8[1-9]\b[^(;\n]*\bM5[345]\b|"
+        r"(?![^\n]*G43)[^(;\n]*\bG56\b[^(;\n]*\bH[ \t]*\d",
+    ),
     ("a 3D printer's G-code", r"[ \t]*(?:N\d+[ \t]*)?(?:G92[ \t]*E[ \t]*-?[\d.]|M1(?:04|09)[ \t]+S\d)"),
     ("Fagor's language", r"%[^\n,]*,M[XYZ]*,"),
     ("HPGL (a plotter's language)", r"(?:IN|PU|PD|SP\d?);"),

@@ -1,5 +1,6 @@
 """From program text to canonical moves: runs the lines, follows O words, and keeps the budgets."""
 
+import re
 from time import thread_time
 
 from robomill.errors import GCodeError
@@ -34,6 +35,7 @@ LOOPING = 1.3
 """s of computing: longer no loop is followed, once as many lines were executed as the program has."""
 
 _CHECK_EVERY = 256
+_SKIP = re.compile(r"(?<=[\d.\]])/[1-9]?(?=[a-z](?![a-z]))")
 _LOOK_BEYOND = 20
 
 
@@ -100,6 +102,8 @@ class Interpreter(Klartext):
         if text[0] == "%":
             self._percent(index, text)
             return
+        if macro and "/" in text[1:]:
+            text = self._without_skips(text, line)
         reader = Reader(text, line, machine.store, raw)
         if text[0] in "/n":
             skip_number(reader)
@@ -112,6 +116,16 @@ class Interpreter(Klartext):
             return
         block = read_words(reader, machine.diameter_mode)
         self.execute(block)
+
+    def _without_skips(self, text: str, line: int) -> str:
+        """The line (no blanks) without a / that stands in its midst, before a word: what follows it may be skipped."""
+        parts = _SKIP.split(text)
+        if len(parts) > 1 and "(" not in text and ";" not in text:
+            self.machine.findings.add(
+                "block-delete", "info", line, "block delete (/) is off: what follows it is executed"
+            )
+            return "".join(parts)
+        return text
 
     def execute(self, block: Block) -> None:
         """Check and execute a block."""

@@ -76,7 +76,7 @@ class Machine:
     ``feeds_follow`` says that feeds count in the unit of lengths (a Sinumerik's G70 and G71 change lengths alone,
     unless ``feeds_unsure``: nothing else shows such a control), ``feed_in_block`` that F beside a word of units counts
     in the new ones; ``sharp`` that compensation goes around outside corners without an arc (G451), ``moved`` which axes
-    a frame has moved under the tool.
+    a frame has moved under the tool, ``keeps_frame`` that TRANS and its kin go on in another of G54 and on.
 
     ``t_changes`` says that T changes the tool at once, without M6; ``kept_d`` is the D that a G41 without one means,
     None for the tool in the spindle. ``leaving`` is how far aside of the
@@ -98,7 +98,7 @@ class Machine:
     kept_d: float | None = None
     zero_ended: bool | None = None
     leaving: list[float] | None = None
-    feeds_unsure, moved = False, frozenset[int]()
+    feeds_unsure, keeps_frame, moved = False, False, frozenset[int]()
 
     def __init__(self, tools: Tools | None) -> None:
         asked = WeakMethod(self.provided)  # no ring that only the garbage collector would undo

@@ -168,6 +168,9 @@ def move(machine: Machine, block: Block) -> None:
     row, aside = Move(block.line), None if is_arc else _aside(machine, block)
     there = end if aside is None else [p + step for p, step in zip(end, aside)]
     demand(machine, block, rules.make_move(machine, words, block.motion, there, row))
+    if block.once >= 0:
+        row.thread = True
+        rules.keep_motion(machine, block.once)
     if aside is not None:
         machine.p, machine.arc_not_allowed = end, True
     else:

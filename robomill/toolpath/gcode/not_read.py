@@ -10,14 +10,14 @@ _NAMED = {
     1500: f"G150 mills a pocket (Haas), which is not read; {_OUT}.",
     **{n: f"{g_name(n)} wraps a path about a cylinder, which is not read; {_OUT}." for n in (71, 1070)},
     **{n: f"{g_name(n)} is of polar interpolation, which is not read; {_OUT}." for n in (121, 131)},
-    310: f"G31 goes until a probe or another signal stops it, which is not known before; {_OUT}.",
+    310: f"G31 goes until a probe or another signal stops it, {_READ} Fanuc-like controls, without P and Q; {_OUT}.",
     370: "G37 measures a tool, which ends where the machine finds it; remove the line.",
     2540: "G254 lets the part's place follow the rotary table (Haas), which is not read; let the CAM system follow it.",
     **{
         code: f"G{code // 10} makes holes on {places} (Haas) or is a lathe's cycle, which is not read; {_OUT}."
         for code, places in ((700, "a circle"), (710, "an arc"), (720, "a line"))
     },
-    630: "G63 taps with a compensating chuck (Sinumerik), which is not read; write G1 down, and G1 up with M4.",
+    630: f"G63 taps with a compensating chuck (Sinumerik), {_READ} that alone; {_CHOOSE}.",
     470: f"G47 engraves text (Haas), which is not read; {_OUT}.",
     510: f"G51 scales coordinates, {_READ} Fanuc-like controls alone; {_CHOOSE}.",
     511: f"G51.1 mirrors coordinates, {_READ} Fanuc-like controls alone; {_CHOOSE}.",

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from robomill.toolpath.gcode import codes as modal
 from robomill.toolpath.gcode.codes import g_name
+from robomill.toolpath.gcode.frames import frame_of, see_frame, turn_back, without_offsets
 from robomill.toolpath.gcode.machine import XYZABC, Machine
 from robomill.toolpath.gcode.rules.mode_rules import system_code
 from robomill.toolpath.gcode.rules.motion_rules import rotate
@@ -35,13 +35,6 @@ def _store_axis(machine: Machine, system: int, axis: int, value: float) -> None:
     machine.store.numbered[5201 + 20 * system + axis] = machine.to_user(value) if axis < 3 else value
 
 
-def _absolute(machine: Machine) -> list[float]:
-    """The current point without offsets (tool length left in)."""
-    point = [p + o for p, o in zip(machine.p, machine.g92)]
-    point[0], point[1] = rotate(point[0], point[1], machine.rotation)
-    return [p + o for p, o in zip(point, machine.g5x)]
-
-
 def _in_system(machine: Machine, absolute: list[float], origin: list[float], rotation: float) -> list[float]:
     point = [p - o for p, o in zip(absolute, origin)]
     point[0], point[1] = rotate(point[0], point[1], -rotation)
@@ -62,16 +55,20 @@ def select_system(machine: Machine, block: Block, system: int) -> None:
     machine.need_compensation_off(block, name)
     if system == machine.system:
         return
-    if machine.before_turn is not None:
+    turned, frame = machine.before_turn is not None, frame_of(machine)
+    if turned and not machine.keeps_frame:
         raise block.refuse(f"{name} while coordinates are shifted or turned (G68, TRANS, ROT); end that first.")
     if machine.scale is not None and (machine.is_fanuc or not machine.other_control):
         raise block.refuse(f"{name} while coordinates are scaled or mirrored (G51, G51.1); end that first.")
-    absolute = _absolute(machine)
+    turn_back(machine)
+    at = without_offsets(machine)
     origin, rotation = stored_system(machine, system)
-    machine.p = _in_system(machine, absolute, origin, rotation)
+    machine.p = _in_system(machine, at, origin, rotation)
     machine.g5x, machine.rotation, machine.system = origin, rotation, system
     machine.systems.append((len(machine.recorder), system))
     machine.store.numbered[5220] = float(system)
+    if turned:
+        see_frame(machine, *frame)
 
 
 def select_extended(machine: Machine, block: Block, number: float) -> None:
@@ -79,64 +76,6 @@ def select_extended(machine: Machine, block: Block, number: float) -> None:
     if abs(number - round(number)) > 1e-4 or not 1 <= round(number) <= MOST_EXTENDED:
         raise block.refuse(f"P{number:g} is no coordinate system; expected P1 to P{MOST_EXTENDED}.")
     select_system(machine, block, LAST_SYSTEM + round(number))
-
-
-def turn_about(machine: Machine, block: Block) -> None:
-    """G68: coordinates are turned by R degrees about X, Y (where they are not given: about where the tool is).
-
-    The centre is a place in G91, too (Fanuc, Mitsubishi); whether R is one there is a setting of the control.
-    """
-    machine.need_compensation_off(block, "G68")
-    words = block.words
-    if machine.scale is not None:
-        raise block.refuse("G68 while coordinates are scaled (G51) is not read; end that first (G50).")
-    if block.g.get(modal.PLANE, 10 * machine.plane) != 170 or "r" not in words:
-        raise block.refuse("G68 is read in G17, with R, its angle; write the moves out.")
-    if machine.before_turn is not None and not machine.is_absolute(block):
-        raise block.refuse("G68 in G91 inside of G68 turns to R or by R, as the control is set; write it in G90.")
-    if words.keys() & set("zijk"):
-        raise block.refuse("G68 with Z, I, J or K turns coordinates in space, which is not read; write the moves out.")
-    turn_back(machine)
-    if words.keys() & {"a", "b"}:  # Mach3's names of the centre
-        words["x"], words["y"] = words.pop("a", 0.0), words.pop("b", 0.0)
-    centre = [words.pop(letter, at) + o for letter, at, o in zip("xy", machine.p, machine.g92)]
-    machine.before_turn = machine.g5x, machine.rotation
-    rotation = machine.rotation + words.pop("r")
-    was, now = (rotate(centre[0], centre[1], angle) for angle in (machine.rotation, rotation))
-    origin = [machine.g5x[0] + was[0] - now[0], machine.g5x[1] + was[1] - now[1], *machine.g5x[2:]]
-    _see(machine, origin, rotation)
-
-
-def turn_back(machine: Machine) -> None:
-    """G69: coordinates are as they were before G68."""
-    if machine.before_turn is not None:
-        (origin, rotation), machine.before_turn = machine.before_turn, None
-        _see(machine, origin, rotation)
-
-
-def _see(machine: Machine, origin: list[float], rotation: float) -> None:
-    """The machine stays where it is; its place counts from another origin and direction."""
-    point = [p - o for p, o in zip(_absolute(machine), origin)]
-    point[0], point[1] = rotate(point[0], point[1], -rotation)
-    machine.p = [p - o for p, o in zip(point, machine.g92)]
-    machine.g5x, machine.rotation = origin, rotation
-
-
-def frame_of(machine: Machine) -> tuple[list[float], float]:
-    """How far coordinates are shifted (x, y, z) and turned (degrees) on top of their coordinate system."""
-    if machine.before_turn is None:
-        return [0.0] * 3, 0.0
-    origin, rotation = machine.before_turn
-    return [now - was for now, was in zip(machine.g5x[:3], origin)], machine.rotation - rotation
-
-
-def see_frame(machine: Machine, shift: list[float], angle: float) -> None:
-    """Coordinates are shifted and turned so far on top of their coordinate system, and no further (TRANS, ROT)."""
-    turn_back(machine)
-    machine.before_turn = machine.g5x, machine.rotation
-    x, y = rotate(shift[0], shift[1], machine.rotation)
-    origin = [machine.g5x[0] + x, machine.g5x[1] + y, machine.g5x[2] + shift[2], *machine.g5x[3:]]
-    _see(machine, origin, machine.rotation + angle)
 
 
 def axis_offsets(machine: Machine, block: Block, code: int) -> None:
@@ -243,7 +182,7 @@ def _set_as_fanuc(machine: Machine, block: Block, kind: int, number: int) -> Non
 def _set_system(machine: Machine, block: Block, kind: int, system: int) -> None:
     words = block.words
     origin, rotation = stored_system(machine, system)
-    absolute = _absolute(machine)
+    absolute = without_offsets(machine)
     here = _in_system(machine, absolute, origin, rotation)
     new_rotation = words.get("r", rotation)
     new = list(origin)
@@ -319,7 +258,7 @@ def _set_tool(machine: Machine, block: Block, kind: int, number: int) -> None:
         sign = 1.0
     else:
         system = 9 if kind == 11 else machine.system
-        absolute = [a + (machine.length_offset[i] if i < 3 else 0.0) for i, a in enumerate(_absolute(machine))]
+        absolute = [a + (machine.length_offset[i] if i < 3 else 0.0) for i, a in enumerate(without_offsets(machine))]
         here = _in_system(machine, absolute, *stored_system(machine, system))[:3]
         if kind == 11 and machine.store.numbered[5210]:
             here = [h + machine.from_user(v) for h, v in zip(here, machine.store.values(5211, 3))]

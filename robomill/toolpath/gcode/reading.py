@@ -153,7 +153,7 @@ def _machine(tools: Tools | None, dialect: Dialect, lines: Lines) -> Machine:
     if machine.other_control:
         machine.store.cut_towards_zero()
     if dialect.name == "sinumerik":
-        machine.further, machine.feeds_unsure = "G5{:02}", not dialect.marked
+        machine.further, machine.feeds_unsure, machine.keeps_frame = "G5{:02}", not dialect.marked, True
         machine.zero_ended = False if chooses_zeros(lines.data) else None
         machine.t_changes = never_changes(lines.data)
     if dialect.name == "fanuc":

@@ -27,7 +27,7 @@ DIGITS, ANGLE_DIGITS = {"mm": 4, "in": 5}, 4
 BY_RADIUS = math.radians(170.0)  # an arc of more is told by its centre: R is too rough there
 STOPS, MOTIONS = {"M0", "M1", "M2", "M30", "M60"}, {"G0", "G1", "G2", "G3"}
 CYCLES = {f"G{n}" for n in (73, 81, 82, 83, 85, 86, 89)}
-ELSEWHERE = {"G28", "G30", "G53", "G5", "G5.1", "G5.2", "G33", "G33.1", "G76", "G74", "G84", "G87", "G88"}
+ELSEWHERE = {"G28", "G30", "G53", "G5", "G5.1", "G5.2", "G33", "G33.1", "G76", "G74", "G84", "G87", "G88", "G31", "G63"}
 TURNED_INTO_PLACES = {"G40", "G41", "G42", "G41.1", "G42.1", "G15", "G16", "G7", "G8"}
 SCALES, AS_BEFORE = {"G50", "G51", "G50.1", "G51.1"}, ""
 CORNERS = ("R=", "C=", "RND=", "RNDM=", "CHF=", "CHR=")

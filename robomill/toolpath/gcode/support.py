@@ -132,6 +132,7 @@ SUPPORT: tuple[Support, ...] = (
     Support("G70 to G72", "lathe roughing", "refused", "G71 Q100 X5 Z5 D1"),
     Support("U V W, G17.1", "axes that the machine lacks", "refused", "G0 U1"),
     _row("G68 G69", "rotation in the plane G17", "G68 X0 Y0 R90\nG0 X5\nG69", (0, 5, 0), 1, dialect="fanuc"),
+    _row("G31", "probing, as G38.2", "F100\nG31 Z-5.", (0, 0, -5), 1, dialect="fanuc"),
     _row("G15 G16", "X and Y as radius and angle", "G16\nG0 X5 Y90\nG15", (0, 5, 0), 1, dialect="fanuc"),
     _row(
         "G70 G71 with a cycle",
@@ -206,6 +207,7 @@ SUPPORT: tuple[Support, ...] = (
     _row("R1= X=R1*2", "R parameters and expressions", "R1=2\nG0 X=R1*2+1", (5, 0, 0), 1, dialect="sinumerik"),
     _row("GOTOF GOTOB IF", "jumps", "IF 1<2 GOTOF L_A\nG0 X9\nL_A: G0 X1", (1, 0, 0), 1, dialect="sinumerik"),
     _row("TRANS ATRANS ROT AROT", "shifts and turns", "TRANS X5\nG0 X1", (6, 0, 0), 1, dialect="sinumerik"),
+    _row("G63", "tapping in a chuck that gives", "S60 M3 F60 G0 Z9\nG63 Z-5", (0, 0, -5), 2, dialect="sinumerik"),
     _row("RND= CHF= CHR=", "corners", "G1 X9 RND=2 F9\nY9", (9, 9, 0), 3, dialect="sinumerik"),
     _row("CYCLE81 to 86, MCALL", "drilling", "F9 G0 Z9\nCYCLE81(9,0,1,-5)", (0, 0, 9), 4, dialect="sinumerik"),
     _row(
@@ -272,7 +274,7 @@ SUPPORT: tuple[Support, ...] = (
     _row("CYCL DEF 7, 10", "shifts and turns", "CYCL DEF 7.1 X+5\nL X+1 F99", (6, 0, 0), 1, dialect=_TNC),
     _row(
         "CYCL DEF 200 to 209, 240, CYCL CALL, M99",
-        "drilling",
+        "drilling, bore milling",
         "L Z+9 FMAX M3\nCYCL DEF 200 ~\nQ200=2 ~\nQ201=-5 ~\nQ206=99\nL X+1 FMAX M99",
         (1, 0, 2),
         5,
@@ -302,6 +304,7 @@ SUPPORT: tuple[Support, ...] = (
         1,
         dialect=_TNC,
     ),
+    _row("CYCL DEF 11, 26", "scales", "CYCL DEF 11.1 SCL 0.5\nL X+4 F99", (2, 0, 0), 1, dialect=_TNC),
     _row(
         "PLANE SPATIAL EULER VECTOR RELATIV RESET, CYCL DEF 19",
         "tilted planes",

@@ -23,7 +23,8 @@ class Block:
     motion that the line makes, -1 for none. ``twice`` is the refusal that LinuxCNC has for words that other controls
     take together (G0 G0, M7 M8). ``falls`` says that I, J and K are the first, the fall and the least of Haas's pecks;
     ``then`` is the tool that Mazak's T1 T2 M6 makes ready for the next change, ``bolts`` are places around a circle
-    where the cycle of the line drills.
+    where the cycle of the line drills. ``once`` is the motion that is in force again behind a line whose
+    own motion holds for it alone (Sinumerik's G63, Fanuc's G31), -1 for none.
     """
 
     line: int
@@ -39,6 +40,7 @@ class Block:
     falls: bool = False
     then: int = -1
     bolts: list[tuple[float, float]] = field(default_factory=list)
+    once: int = -1
 
     def refuse(self, message: str) -> GCodeError:
         """The error to raise: ``message`` with the line in front."""

@@ -173,7 +173,6 @@ def test_the_direction_of_a_tool_is_a_direction_in_g91_too() -> None:
         # Haas, M96: a jump to line P where input Q is off
         ("M96 P5 Q8", "fanuc", "M96 jumps by an input of the machine"),
         ("G90 G65 P9 X1.", "fanuc", "G65 stands first on its line"),
-        ("G63 Z-5", "sinumerik", "G63 taps with a compensating chuck"),
     ],
 )
 def test_what_no_reading_follows_is_refused_by_what_it_does(line: str, dialect: str, says: str) -> None:

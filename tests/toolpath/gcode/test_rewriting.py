@@ -73,6 +73,10 @@ UNROLLED = {
         "G71 G90 G17\nG0 X0 Y0 Z5\nTRANS X5\nG1 Z-2 F500\nN7 MIRROR X0\nG1 X20 Y3\nG3 X10 Y13 CR=10\nMIRROR\nG1 X0 Y0\n"
         "TRANS Y9\nASCALE X2\nX3\nSCALE\nX0\nG0 Z20\nM30\n",
     ),
+    "scaled along Z": (
+        "sinumerik",
+        "G71 G90 G17\nG0 X0 Y0 Z5\nSCALE X2 Y2 Z3\nG1 Z-2 F500\nX20\nG3 X20 Y10 CR=5\nSCALE\nG1 X1\nG0 Z20\nM30\n",
+    ),
     "polar": (
         "fanuc",
         "O1\nG21 G90\nG0 X20 Y0 Z5\nG1 Z-2 F500\nG16\nG1 X20 Y30\nX20 Y60\nG15\nG1 X0 Y0\nG0 Z20\nM30\n",

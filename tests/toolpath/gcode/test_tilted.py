@@ -313,7 +313,7 @@ PLANE = "PLANE SPATIAL SPA+30 SPB+0 SPC+0"
     [
         (f"{PLANE} STAY\nL X1 F9\n", "Line 5: the plane leaves the tool as it stands"),
         (f"{PLANE} TURN FMAX\nCYCL DEF 7.1 X5\n", "Line 5: a datum shift or rotation in a tilted plane"),
-        (f"{PLANE} TURN FMAX\nCYCL DEF 8.1 X\n", "Line 5: a mirror image in a tilted plane"),
+        (f"{PLANE} TURN FMAX\nCYCL DEF 8.1 X\n", "Line 5: a mirror image or scale in a tilted plane"),
         (f"CYCL DEF 7.1 X5\n{PLANE} TURN FMAX\nCYCL DEF 7.1 X0\nL Z3 F9\n", "Line 7: the datum shift has ended in"),
         (f"CYCL DEF 10.1 ROT5\n{PLANE} TURN FMAX\n", "Line 5: PLANE inside of a rotation"),
         (f"{PLANE} TURN FMAX\nPLANE RESET STAY\nL X0 Y0 Z1 F9\n", "Line 6: the tool still leans"),

@@ -16,7 +16,7 @@ from robomill.toolpath.gcode.scan import COMMENT
 from robomill.toolpath.gcode.subprograms import LOCALS
 from robomill.toolpath.gcode.words import Block
 
-SYSTEM = range(1000, 5061)
+SYSTEM = range(1000, 5070)
 EMPTY = (range(1, LOCALS + 1), range(100, 200), range(500, 1000))
 """Variables that a program sets; those of ``SYSTEM`` are the control's own."""
 _ARGUMENTS = dict(
@@ -153,6 +153,8 @@ def system_variable(machine: Machine, number: int) -> float:
         4119: machine.speed,
         4120: float(machine.in_spindle),
     }
+    if 5061 <= number < 5070:
+        raise GCodeError(f"#{number} is where a probe has met something, which is not known here; write its value.")
     if number not in known:
         raise GCodeError(f"#{number} is the control's own, and is not known here; write its value instead.")
     return known[number]

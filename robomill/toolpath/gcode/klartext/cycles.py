@@ -1,13 +1,13 @@
-"""Datum shifts and drilling cycles of Heidenhain's dialogue."""
+"""Datum shifts, rotations and drilling cycles of Heidenhain's dialogue."""
 
 import math
 import re
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.frames import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.klartext.pecks import OLD, old_hole, pecks_of
-from robomill.toolpath.gcode.klartext.values import NUMBER, KlartextValues
-from robomill.toolpath.gcode.machine import Scale
-from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
+from robomill.toolpath.gcode.klartext.scaling import KlartextScaling
+from robomill.toolpath.gcode.klartext.values import NUMBER
 from robomill.toolpath.gcode.program import TRAVERSE
 from robomill.toolpath.gcode.sinumerik.holes import Hole
 from robomill.toolpath.gcode.words import Block
@@ -18,9 +18,12 @@ _FEEDS = ("Q206", "Q207", "Q208")
 RAPID_OUT = 99_999.0
 """Q208 from which on a tool leaves its hole at rapid; what MAX and FMAX stand for."""
 _CYCLE = re.compile(r"CYCL DEF ?(\d+)(?: ?\.(\d+))?(.*)")
+_TRANSFORM = re.compile(r"TRANS (MIRROR|ROTATION|SCALE) ?(RESET|AXIS(?: ?[XY])+|.+)")
 _AXIS = re.compile(rf"(I?)([XYZ]) ?({NUMBER})")
 _UNMOVED = re.compile(r"I?[ABCUVW] ?[-+]?0+(?:\.0*)?(?= |$)")
 _SETTING = re.compile(r" ?(?:Q[LR]?\d+ ?=|~)")
+_ASSIGNED = re.compile(r"Q\d+ ?= ?\S+")
+_OTHER_BLOCK = re.compile(r"(?:L|LN|LP|C|CR|CP|CT|CC|TOOL CALL|CYCL|CALL|LBL)(?= |\d|$)")
 _FROM_TABLE = "takes its shift from a table, which is not read; write X, Y, Z."
 _DRILLS = {
     200: "drilling",
@@ -30,13 +33,15 @@ _DRILLS = {
     205: "drilling",
     206: "tapping",
     207: "tapping",
+    208: "bore milling",
     209: "tapping",
     240: "centring",
 }
 _PATTERNS = (220, 221)
+BORE_MILLING = 208
 
 
-class KlartextCycles(KlartextValues):
+class KlartextCycles(KlartextScaling):
     """Reads what shifts and drills; moves are those of ``klartext``."""
 
     drill: int = 0
@@ -44,7 +49,6 @@ class KlartextCycles(KlartextValues):
     says_out = False
     due = per_turn = False
     raised = 0.0
-    pole: tuple[int, float, float] | None = None
     preset: float | None = None
     tool_feed: float | None = None
     """Program units a minute, as the last TOOL CALL says."""
@@ -60,6 +64,9 @@ class KlartextCycles(KlartextValues):
             reset = said.startswith("RESET")
             self._shift({} if reset else self._axes_of(said.removeprefix("AXIS"), "TRANS DATUM", line), line, reset)
             return None
+        if (transform := _TRANSFORM.fullmatch(code)) is not None:
+            self._transform(transform[1], transform[2], line)
+            return None
         found = _CYCLE.match(code)
         if found is None:
             raise GCodeError.at(line, f"{code[:30]} is not read; expected CYCL DEF and its number.")
@@ -70,6 +77,10 @@ class KlartextCycles(KlartextValues):
                 if number == 202:
                     text = "CYCL DEF 202 is read as boring; its step aside in the hole (Q214) is left out"
                     self.machine.findings.add("fine-boring", "info", line, text)
+            behind = _ASSIGNED.sub("", rest[rest.find("Q") :]).strip() if _ASSIGNED.search(rest) else ""
+            if (other := _OTHER_BLOCK.match(behind)) is not None:
+                text = f"found {other[0]!r} among the values of CYCL DEF {number}; end the line before it without ~."
+                raise GCodeError.at(line, text)
             for name, value in re.findall(r"(Q\d+) ?= ?(\S+)", rest):
                 if name == "Q208" and value in ("MAX", "FMAX"):
                     self.set_q(name, RAPID_OUT, line)
@@ -84,6 +95,16 @@ class KlartextCycles(KlartextValues):
                 self.pattern(number, line)
             return None
         return self._other_cycle(number, part, rest.strip(), line)
+
+    def _transform(self, name: str, said: str, line: int) -> None:
+        """TRANS MIRROR, ROTATION and SCALE (TNC7), which say what CYCL DEF 8, 10 and 11 do."""
+        ends = said == "RESET"
+        if name == "MIRROR":
+            self.mirror("" if ends else said.removeprefix("AXIS").strip(), line)
+        elif name == "SCALE":
+            self.scale("SCL 1" if ends else said, line)
+        else:
+            self._other_cycle(10, "1", "ROT 0" if ends else said, line)
 
     def _other_cycle(self, number: int, part: str | None, rest: str, line: int) -> str | None:
         if number == 7 and part != "0":
@@ -102,13 +123,14 @@ class KlartextCycles(KlartextValues):
         elif number == 247:
             self._choose_preset(float(next(iter(re.findall(r"Q339 ?= ?\+?(\d+)", rest)), "0")), line)
         elif number == 8 and part != "0":
-            self._mirror(rest, line)
+            self.mirror(rest, line)
         elif number == 11 and part != "0":
-            if any(float(v) != 1.0 for v in re.findall(r"[-+]?(?:\d+\.?\d*|\.\d+)", rest)):
-                raise GCodeError.at(line, f"CYCL DEF 11.{part} {rest[:20]} scales: not read.")
+            self.scale(rest, line)
+        elif number == 26 and part != "0":
+            self.stretch(rest, line)
         elif number in OLD:
             self._old_cycle(number, part, rest, line)
-        elif number not in (7, 8, 9, 10, 11, 13, 19, 32, 247, *_TUNING):
+        elif number not in (7, 8, 9, 10, 11, 13, 19, 26, 32, 247, *_TUNING):
             name = f"{number} {_SETTING.split(rest, maxsplit=1)[0]}".strip()
             raise GCodeError.at(line, f"CYCL DEF {name:.60} is a cycle that is not read; {_LET}.")
         return None
@@ -133,12 +155,11 @@ class KlartextCycles(KlartextValues):
         return old_hole(self.drill, self.old, self.here()[2], mm, line)
 
     def _choose_preset(self, preset: float, line: int) -> None:
-        """CYCL DEF 247, which also ends a datum shift, a rotation and a mirror image."""
+        """CYCL DEF 247, which also ends a datum shift, a rotation, a mirror image and a scale."""
         if self.preset is not None and self.preset != preset:
             raise GCodeError.at(line, "CYCL DEF 247 chooses a second preset; split the program there.")
         self.preset = preset
-        if self.machine.scale is not None:
-            self._mirror("", line)
+        self.unscale(line)
         if frame_of(self.machine) != ([0.0] * 3, 0.0):
             self._see([0.0] * 3, 0.0, line)
 
@@ -152,30 +173,29 @@ class KlartextCycles(KlartextValues):
     def _shift(self, said: dict[str, tuple[bool, float]], line: int, every: bool = False) -> None:
         """A datum shift: an axis that is not given stays as it is, ``every`` ends them all."""
         shift, angle = frame_of(self.machine)
+        before = shift[:2]
         for axis, letter in enumerate("xyz"):
             step, value = said.get(letter, (True, 0.0))
             shift[axis] = 0.0 if every else value + (shift[axis] if step else 0.0)
-        if any(shift) and angle != 0.0:
-            raise GCodeError.at(line, "a datum shift inside of a rotation is not read; shift first, then turn.")
+        if angle != 0.0 and shift[:2] != before:
+            self.machine.stuck = _SHIFTED_TURNED if any(shift[:2]) else ""
         self._see(shift, angle, line)
 
     def _turn(self, angle: float, step: bool, line: int) -> None:
         shift, before = frame_of(self.machine)
         self._see(shift, angle + (before if step else 0.0), line)
 
-    def _mirror(self, letters: str, line: int) -> None:
-        """CYCL DEF 8.1: X and Y are mirrored about the datum; without letters they are as they were."""
-        if not re.fullmatch(r"(?:[XY]\b ?)*", letters):
-            raise GCodeError.at(line, f"CYCL DEF 8.1 {letters[:20]} is not read; expected X, Y or both.")
-        self.machine.need_compensation_off(Block(line), "CYCL DEF 8")
-        factors = (-1.0 if "X" in letters else 1.0, -1.0 if "Y" in letters else 1.0, 1.0)
-        self.machine.set_scale(Scale(factors) if letters else None)
-        self.pole = None
-
     def _see(self, shift: list[float], angle: float, line: int) -> None:
-        if self.machine.scale is not None and frame_of(self.machine) != (shift, angle):
-            raise GCodeError.at(line, "a datum shift or rotation inside of a mirror image is not read; end that first.")
+        before = frame_of(self.machine)
+        if self.machine.scale is not None and before != (shift, angle):
+            ends = not any(shift) and angle == 0.0 and self.stretched is None
+            turns = shift == before[0] and self.stretched is None and self.mirrored == (1.0, 1.0)
+            if not (ends or turns):  # which of them comes first makes a difference
+                text = "a datum shift or rotation inside of a mirror image or scale is not read; end that first."
+                raise GCodeError.at(line, text)
         self.machine.need_compensation_off(Block(line), "A datum shift or rotation")
+        if self.machine.stuck == _SHIFTED_TURNED and angle == 0.0:
+            self.machine.stuck = ""
         if not any(shift) and angle == 0.0:
             turn_back(self.machine)
         else:
@@ -274,6 +294,7 @@ class KlartextCycles(KlartextValues):
         return 0.0 if self.q(208) >= RAPID_OUT else self.q(208) / self.tenth or down or math.inf
 
 
+_SHIFTED_TURNED = "a datum shift inside of a rotation is not read, as controls differ; shift first, then turn."
 _TUNING = (332, 392)
 """Cycles of machine makers that suit the control to the weight of the part and move nothing."""
 _LET = "let the CAM system write its moves out"

@@ -26,7 +26,7 @@ _TWO = {1: "+", 2: "-", 3: "*", 4: "DIV", 8: "LEN", 13: "ANG"}
 _COMPARES = {9: "EQU", 10: "NE", 11: "GT", 12: "LT"}
 _MOVES = {0: "L", 1: "L", 2: "C", 3: "C", 6: "CT", 10: "LP", 11: "LP", 12: "CP", 13: "CP", 16: "CTP"}
 _SIDES = {40: "R0", 41: "RL", 42: "RR"}
-_ALONE = {4: "F", 29: "", 30: "XYZ", 31: "XYZ", 38: "", 54: "XYZ", 73: "H", 79: "F", 80: "ABC", 99: "TLR"}
+_ALONE = {4: "F", 29: "", 30: "XYZ", 31: "XYZ", 38: "", 54: "XYZ", 72: "F", 73: "H", 79: "F", 80: "ABC", 99: "TLR"}
 _LET = "write it in G00 to G03, G10 to G13, G40 to G42 and cycles from G200 on"
 
 
@@ -139,6 +139,7 @@ class KlartextIso(KlartextPlanes):
             31: "BLK FORM",
             38: "STOP",
             54: f"CYCL DEF 7.1 {' '.join(said)}",
+            72: f"CYCL DEF 11.1 SCL {words.get('F', '1')}",
             73: f"CYCL DEF 10.1 {'IROT' if turn[0] == 'I' else 'ROT'}{turn.lstrip('I')}",
             80: f"CYCL DEF 19.1 {' '.join(said)}".strip(),
         }

@@ -41,7 +41,8 @@ _CALL = re.compile(r"CALL LBL (\"[^\"]+\"|\d+)(?: REP(?: ?(\d+)(?:/\d+)?)?)?")
 _REPEAT = re.compile(r"REP(\d)")
 _CORNER = re.compile(rf"(RND ?R?|CHF ?L?) ?({NUMBER})(?: ?F ?(?:({NUMBER})|.*))?")
 _SILENT = re.compile(
-    r"BLK FORM|TOOL DEF|FUNCTION (?:RESET )?TCPM|FUNCTION MODE MILL|M1(?:07|08|16|17|20|24|26|27|38)\b|"
+    r"BLK FORM|TOOL DEF|FUNCTION (?:RESET )?TCPM|FUNCTION MODE MILL|FUNCTION (?:SPINDLE-PULSE|PARAXCOMP DISPLAY)|"
+    r"M1(?:07|08|16|17|20|24|26|27|38)\b|"
     r"DECLARE STRING|QS\d+ ?=|FN ?(?:16|20|29|37|38) ?:"
 )
 MAX_CODE, MAX_LINES = 1000, 100
@@ -98,7 +99,7 @@ class Klartext(KlartextTools):
         if code.startswith("CALL LBL"):
             self._call_label(code, index)
             return None
-        if code.startswith(("CYCL", "TRANS DATUM")):
+        if code.startswith(("CYCL", "TRANS ")):
             return self.cycle_words(code, line)
         if code.startswith("BEGIN PGM"):
             return f"G17 G90 G94 {'G20' if code.endswith('INCH') else 'G21'}"
@@ -355,7 +356,8 @@ class Klartext(KlartextTools):
             if kind != "L" and code[0] == "C":
                 raise GCodeError.at(line, "CHF is read between two straight cuts (L) alone.")
             feed = self.number(found[3], line) / self.tenth if found[3] else 0.0
-            self.machine.corner = Corner(ROUND if code[0] == "R" else LEGS, self.number(found[2], line), feed)
+            size = self.number(found[2], line) * self.similar("RND or CHF", line)
+            self.machine.corner = Corner(ROUND if code[0] == "R" else LEGS, size, feed)
             self.pc = after
 
     # --- labels

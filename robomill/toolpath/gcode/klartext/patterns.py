@@ -10,7 +10,7 @@ from dataclasses import replace
 from itertools import groupby
 
 from robomill.errors import GCodeError
-from robomill.toolpath.gcode.klartext.cycles import KlartextCycles
+from robomill.toolpath.gcode.klartext.boring import KlartextBoring
 from robomill.toolpath.gcode.klartext.values import NUMBER
 from robomill.toolpath.gcode.program import TRAVERSE
 from robomill.toolpath.gcode.words import Block
@@ -34,8 +34,8 @@ Place = tuple[float, float, float]
 """X and Y of a hole, and how much higher than Q203 its surface lies."""
 
 
-class KlartextPatterns(KlartextCycles):
-    """Drills patterns; ``KlartextCycles`` says what a hole is."""
+class KlartextPatterns(KlartextBoring):
+    """Drills patterns; ``KlartextBoring`` and its kin say what a hole is."""
 
     pattern_places: tuple[Place, ...] = ()
     visits = False

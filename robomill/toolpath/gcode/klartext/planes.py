@@ -14,9 +14,10 @@ import numpy as np
 
 from robomill.arrays import FloatArray
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.frames import frame_of
 from robomill.toolpath.gcode.klartext.approach import KlartextApproach
 from robomill.toolpath.gcode.klartext.values import NUMBER
-from robomill.toolpath.gcode.offsets import frame_of
+from robomill.toolpath.gcode.machine import Scale
 from robomill.toolpath.gcode.tilted import tilt, turned_by, upright
 
 _SPATIAL = re.compile(rf"PLANE SPATIAL SPA ?({NUMBER}) SPB ?({NUMBER}) SPC ?({NUMBER})(.*)")
@@ -161,10 +162,11 @@ class KlartextPlanes(KlartextApproach):
             self.machine.stuck = "the datum shift has ended in a tilted plane; end that, too (PLANE RESET)."
         super()._see(shift, angle, line)
 
-    def _mirror(self, letters: str, line: int) -> None:
-        if self.machine.tilted is not None:
-            raise GCodeError.at(line, "a mirror image in a tilted plane is not read; end that before (PLANE RESET).")
-        super()._mirror(letters, line)
+    def rescale(self, mirrored: tuple[float, float], size: float, stretched: Scale | None, line: int) -> None:
+        if self.machine.tilted is not None and (mirrored, size, stretched) != ((1.0, 1.0), 1.0, None):
+            text = "a mirror image or scale in a tilted plane is not read; end that before (PLANE RESET)."
+            raise GCodeError.at(line, text)
+        super().rescale(mirrored, size, stretched, line)
 
 
 def _by_vectors(b: FloatArray, n: FloatArray, line: int) -> FloatArray:

@@ -8,8 +8,11 @@ from robomill.toolpath.gcode.fanuc.macro_calls import MacroCalls
 from robomill.toolpath.gcode.program import FEED, TRAVERSE
 from robomill.toolpath.gcode.rules.motion_rules import MINUTE, dwell, feed_speed
 from robomill.toolpath.gcode.words import Block
+from robomill.toolpath.plane import polar
 
 MAX_PECKS = 10_000
+A_TURN = 1e-6
+"""A share of a turn that is none."""
 _OF_OLDER = 17
 """Values of CYCLE83 before SINUMERIK Operate."""
 
@@ -26,13 +29,22 @@ class Peck:
 
 
 @dataclass(frozen=True)
+class Round:
+    """How a hole is milled: its centre line (a ``radius``), how deep a turn leads, 1 counter-clockwise or -1."""
+
+    radius: float
+    step: float
+    turn: int
+
+
+@dataclass(frozen=True)
 class Hole:
     """A drilling cycle: heights along Z in program units, dwells in s, feeds.
 
     A ``feed`` of 0 is the one in force, so is an ``out`` of infinity; an ``out`` of 0 is a rapid. A tap goes by its
     ``pitch`` at its own ``turns`` in and out (1/min; 0: S), or ``taps`` by a feed, in a chuck that gives. ``first`` is
     by how much the first depth is gone to slower. The tool waits for ``dwell`` at the bottom, for ``between`` at each
-    depth before it and for ``above`` when it has come out of the hole in between.
+    depth before it and for ``above`` when it has come out of the hole in between; one that is ``round`` is milled.
     """
 
     retract: float
@@ -48,6 +60,7 @@ class Hole:
     first: float = 1.0
     between: float = 0.0
     above: float = 0.0
+    round: Round | None = None
 
 
 class Holes(MacroCalls):
@@ -57,11 +70,10 @@ class Holes(MacroCalls):
         """Drill where the tool stands."""
         machine = self.machine
         block = Block(line)
-        machine.need_compensation_off(block, "A drilling cycle")
-        if machine.plane != 17:
-            raise block.refuse("a drilling cycle is read in the plane G17 alone.")
-        if machine.feed == 0.0 and hole.feed == 0.0 and hole.pitch == 0.0:
-            raise block.refuse("a drilling cycle needs a feed rate; give an F word above 0 first.")
+        self.check_hole(hole, block)
+        if hole.round is not None:
+            self._mill(hole, hole.round, line)
+            return
         down = hole.feed * machine.factor / MINUTE if hole.feed else None
         out = hole.out * machine.factor / MINUTE if 0.0 < hole.out < math.inf else None
         before, speed_out = (machine.motion, machine.speed), machine.speed
@@ -89,6 +101,44 @@ class Holes(MacroCalls):
             self._to(FEED, line, hole.clear, out)
         self._to(TRAVERSE, line, hole.retract)
         machine.motion, machine.speed = before
+
+    def check_hole(self, hole: Hole, block: Block) -> None:
+        """Raise GCodeError where a cycle cannot be drilled."""
+        machine = self.machine
+        machine.need_compensation_off(block, "A drilling cycle")
+        if machine.plane != 17:
+            raise block.refuse("a drilling cycle is read in the plane G17 alone.")
+        if machine.scale is not None and machine.scale.factors[2] != 1.0:
+            raise block.refuse("a drilling cycle while Z is scaled or mirrored is not read; end that before.")
+        if machine.feed == 0.0 and hole.feed == 0.0 and hole.pitch == 0.0:
+            raise block.refuse("a drilling cycle needs a feed rate; give an F word above 0 first.")
+
+    def _mill(self, hole: Hole, circle: Round, line: int) -> None:
+        """Down in a helix about where the tool stands, from its height on, once around at the bottom, to the middle and
+        up."""
+        machine = self.machine
+        x, y = machine.p[:2]
+        v_f = hole.feed * machine.factor / MINUTE if hole.feed else feed_speed(machine)
+        turns = (hole.clear - hole.bottom) / circle.step
+        place = polar(circle.radius, circle.turn * math.tau * (turns % 1.0), x, y)
+        self._to(TRAVERSE, line, hole.clear)
+        self._cut_to(line, (x + circle.radius, y, hole.clear), v_f)
+        for (u, v), top, count in (
+            (place, hole.clear, max(math.ceil(turns - A_TURN), 1)),
+            (place, hole.bottom, 1),
+        ):
+            end = [u, v, hole.bottom, *machine.p[3:]]
+            machine.go_arc(line, end, 17, [x, y, top], circle.turn * count, v_f)
+            machine.p = end
+        self._cut_to(line, (x, y, hole.bottom), v_f)
+        self._to(TRAVERSE, line, hole.clear)
+        self._to(TRAVERSE, line, hole.retract)
+
+    def _cut_to(self, line: int, place: tuple[float, float, float], v_f: float) -> None:
+        machine = self.machine
+        end = [*place, *machine.p[3:]]
+        machine.go(FEED, line, end, v_f)
+        machine.p = end
 
     def _wait(self, seconds: float) -> None:
         if seconds:

@@ -3,8 +3,8 @@
 import re
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.frames import frame_of
 from robomill.toolpath.gcode.machine import Machine
-from robomill.toolpath.gcode.offsets import frame_of
 from robomill.toolpath.gcode.rules.motion_rules import MINUTE
 from robomill.toolpath.gcode.standing import note_step
 from robomill.toolpath.gcode.tilted import tilt, turned_by, upright
@@ -14,15 +14,18 @@ from robomill.units import to_si
 _SILENT = re.compile(
     r"\b(?:TRAORI|TRAFOOF|FFWON|FFWOF|SOFT|BRISK|COMPCAD|COMPON|COMPOF|COMPCURV|COMPSURF|STOPRE|CFTCP|CFIN|CFC|ORIWKS|"
     r"ORIAXES|ORIVECT|ORIMKS|UPATH|SPATH|NORM|DIAMOF|FNORM|FLIN|FGROUP|SETMS|CUT2D|CDOF|WALIMOF|WALIMON|"
-    r"DYN(?:NORM|ROUGH|SEMIFIN|FINISH|POS|PREC)|RTLIO(?:N|F)|"
+    r"CUT2DF|SPCO[NF]|TCO(?:ABS|FR)|PAROTOF|TOROTOF|TRAILOF|DYN(?:NORM|ROUGH|SEMIFIN|FINISH|POS|PREC)|RTLIO(?:N|F)|"
     r"STOPFIFO|STARTFIFO|FIFOCTRL|CPRECON|CPRECOF|ORISON|ORISOF|SBLON|SBLOF|DISPLON|DISPLOF)\b(?:[ \t]*\([^()]*\))?|"
     r"\bOFFN[ \t]*=[ \t]*0+(?:\.0*)?(?![.\d])|"
+    r"\b(?:DISC|SF)[ \t]*=[ \t]*0+(?:\.0*)?(?![.\d])|\b[HM]\d*[ \t]*=[ \t]*QU[ \t]*\([ \t]*\d+[ \t]*\)|"
+    r"\bH\d*[ \t]*=[ \t]*[-+.\d]+|"
     r"\b(?:ADIS|ADISPOS|CTOL|OTOL|ATOL|(?:ACC|JERKLIM|VELOLIM)\[\w+\])[ \t]*=[ \t]*[.\d]+|"
     r"\bLIMS(?:\[\d\])?[ \t]*=[ \t]*[.\d]+|"
     r"\bG2[56][ \t]+(?:S\d*[ \t]*=?[ \t]*[\d.]+[ \t]*)+|\bGROUP_(?:BEGIN|END)[ \t]*\([^()]*\)|"
     r"\bSPOS(?:\[\d\])?[ \t]*=[ \t]*[-+.\d]+|\b(?:CYCLE832|WORKPIECE)[ \t]*\([^()]*\)",
     re.IGNORECASE,
 )
+_FEED_RADIUS = re.compile(r"\bFGREF[ \t]*\[(\w+)\][ \t]*=[ \t]*[.\d]+", re.IGNORECASE)
 _ROUND_CORNERS = re.compile(r"\bKONT[CT]?\b", re.IGNORECASE)
 _UNITS = {"G70": "G20", "G700": "G20", "G71": "G21", "G710": "G21", "G500": "G54", "G153": "G53", "SUPA": "G53"}
 _WORDS = re.compile(r"\b(?:G70|G700|G71|G710|G500|G153|SUPA)\b", re.IGNORECASE)
@@ -88,6 +91,13 @@ def translated(raw: str, number: int, machine: Machine) -> str:
     for found in _ROUND_CORNERS.findall(code):
         text = f"{found} is read as NORM; from behind the contour a control goes round its corner"
         machine.findings.add("approach", "warning", number, text)
+    for axis in _FEED_RADIUS.findall(code.upper()):
+        text = (
+            f"FGREF[{axis}] is left out: the feed of a move that turns {axis} alone counts in degrees a minute, where "
+            "a control counts it along a circle of that radius"
+        )
+        machine.findings.add("turning-feed", "warning", number, text)
+    code = _FEED_RADIUS.sub("", code)
     code = _SWIVEL.sub(
         lambda found: _unswivelled(found, number, machine), _ROUND_CORNERS.sub("", _SILENT.sub("", code))
     )

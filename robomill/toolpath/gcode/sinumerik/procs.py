@@ -11,8 +11,8 @@ from typing import Any
 from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.execute import restore_modes
+from robomill.toolpath.gcode.frames import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.machine import Scale
-from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.sinumerik.flow import SinumerikFlow
 from robomill.toolpath.gcode.sinumerik.words import parts
 from robomill.toolpath.gcode.words import Block

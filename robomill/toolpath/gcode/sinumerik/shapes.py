@@ -8,8 +8,8 @@ import math
 import re
 
 from robomill.errors import GCodeError
+from robomill.toolpath.gcode.frames import turn_back
 from robomill.toolpath.gcode.machine import Scale
-from robomill.toolpath.gcode.offsets import turn_back
 from robomill.toolpath.gcode.program import ARC, TRAVERSE
 from robomill.toolpath.gcode.rules.motion_rules import rotate
 from robomill.toolpath.gcode.sinumerik.words import Hole, SinumerikWords, parts
@@ -90,8 +90,9 @@ class SinumerikShapes(SinumerikWords):
         factors = [1.0, 1.0, 1.0] if not adds or machine.scale is None else list(machine.scale.factors)
         for letter, value in said.items():
             factor = -1.0 if name.endswith("MIRROR") else self.value(value, line)
-            if not 1e-6 <= abs(factor) <= 1e3 or (letter == "Z" and factor != 1.0):
-                raise GCodeError.at(line, f"{name} {letter}{value} is not read; expected X and Y, by 0.000001 to 1000.")
+            if not 1e-6 <= abs(factor) <= 1e3 or (letter == "Z" and factor < 0.0):
+                text = "expected X and Y, or SCALE along Z, too, by 0.000001 to 1000"
+                raise GCodeError.at(line, f"{name} {letter}{value} is not read; {text}.")
             factors["XYZ".index(letter)] *= factor
         if machine.tilted is not None:
             raise GCodeError.at(line, f"{name} in a swivelled plane is not read; end that before: CYCLE800().")

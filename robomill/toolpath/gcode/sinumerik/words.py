@@ -13,7 +13,7 @@ from robomill.errors import GCodeError
 from robomill.lazy import cached_property
 from robomill.toolpath.gcode.corners import BEVEL, LEGS, ROUND, Corner
 from robomill.toolpath.gcode.expressions import Reader
-from robomill.toolpath.gcode.offsets import frame_of, see_frame, turn_back
+from robomill.toolpath.gcode.frames import frame_of, see_frame, turn_back
 from robomill.toolpath.gcode.rules.motion_rules import PER_TURN
 from robomill.toolpath.gcode.sinumerik.holes import Hole, Holes, drilling_cycle, of_percentages
 from robomill.toolpath.gcode.standing import note_moved

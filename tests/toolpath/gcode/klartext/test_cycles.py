@@ -8,9 +8,9 @@ import pytest
 from robomill.errors import GCodeError
 from robomill.toolpath.gcode import Program, interpret
 
-DRILLS = (200, 201, 202, 203, 205, 206, 207, 209, 240)
+DRILLS = (200, 201, 202, 203, 205, 206, 207, 208, 209, 240)
 OLD = (1, 2)
-SET_AND_LEFT_OUT = (7, 8, 9, 10, 11, 13, 19, 32, 247, 332, 392)
+SET_AND_LEFT_OUT = (7, 8, 9, 10, 11, 13, 19, 26, 32, 247, 332, 392)
 PATTERNS = (220, 221)
 
 
@@ -27,6 +27,14 @@ def test_no_cycle_is_passed_over_that_may_move() -> None:
         elif number not in PATTERNS:
             with pytest.raises(GCodeError, match=f"CYCL DEF {number} NAME is a cycle that is not read"):
                 read(body)
+
+
+@pytest.mark.parametrize("line", ["L X+5 FMAX", "CC X+0 Y+0", "CALL LBL 1", "TOOL CALL 2 Z"])
+def test_a_line_that_a_tilde_joins_to_a_cycle_is_not_swallowed(line: str) -> None:
+    with pytest.raises(
+        GCodeError, match=f"found '{line.split(' X')[0].split(' LBL')[0].split(' 2')[0]}' among the values"
+    ):
+        read(f"CYCL DEF 200 DRILLING ~\nQ200=2 ~\nQ201=-5 ~\nQ206=99 ~\n{line}\nL X+9 FMAX\n")
 
 
 PECKING = "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP 2\nCYCL DEF 1.2 DEPTH -12\nCYCL DEF 1.3 PECKG 12\n"

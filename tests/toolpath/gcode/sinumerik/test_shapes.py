@@ -192,7 +192,7 @@ def test_case_chooses_its_label(value: int, places: list[list[float]]) -> None:
         ("MIRROR X0 RPL=5\n", "MIRROR X0 RPL=5 is not read"),
         ("SCALE X2 3\n", "SCALE X2 3 is not read"),
         ("SCALE X1001\n", "SCALE X1001 is not read"),
-        ("SCALE Z2\n", "SCALE Z2 is not read"),
+        ("SCALE Z-2\n", "SCALE Z-2 is not read"),
         ("AMIRROR\n", "AMIRROR  is not read"),
         ("CYCLE801(0,0,0,1,1,2,2)\n", "CYCLE801 has nothing to repeat"),
         ("MCALL CYCLE81(20,0,2,-10)\nCYCLE801(0,0,0,1,1,0,2)\n", "CYCLE801 has 0 by 2 holes"),

@@ -113,7 +113,6 @@ def test_corners_are_rounded_and_chamfered() -> None:
         ("TRANS X5 RPL=30\n", "Line 2: TRANS X5 RPL=30 is not read; expected shifts along X, Y, Z or a turn about Z"),
         ("ATRANS RPL=30\n", "Line 2: ATRANS RPL=30 is not read; expected shifts along X, Y, Z or a turn about Z"),
         ("ROT Z5 RPL=30\n", "Line 2: ROT Z5 RPL=30 is not read; expected shifts along X, Y, Z or a turn about Z"),
-        ("TRANS X10\nG55\n", "Line 3: G55 while coordinates are shifted or turned"),
         ("CYCLE81(50,0)\n", "Line 2: CYCLE81 needs RTP, RFP and DP or DPR"),
         ("CYCLE81(50,0,2,5)\n", "Line 2: CYCLE81: expected RTP above RFP + SDIS, and the depth below"),
         ("CYCLE84(50,0,2,-10,,0,5,7)\n", "Line 2: CYCLE84 needs PIT"),
@@ -161,6 +160,38 @@ def test_what_moves_nothing_is_left_out() -> None:
         "GROUP_END",
         "CYCLE800",
     }
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "CUT2DF",
+        "SPCON",
+        "SPCOF",
+        "TCOABS",
+        "PAROTOF",
+        "TRAILOF(A,X)",
+        "DISC=0",
+        "H1=5",
+        "H5=-2.5 M8",
+        "M=QU(7)",
+        "h2=qu(3)",
+    ],
+)
+def test_words_of_headers_move_nothing(words: str) -> None:
+    """Couplings that end, speeds, blocks for other parts of the control: 840D, list of instructions."""
+    program = interpret(f"G71 G90 G1 F100 X0\n{words}\nX5 {words}\nM30\n", dialect="sinumerik")
+    assert (program.end[:, 0] * 1e3).tolist() == pytest.approx([0, 5])
+    assert {f.code for f in program.findings if f.line == 2} == {"harmless-word"}
+
+
+def test_a_radius_that_feeds_of_turning_axes_count_by_is_said() -> None:
+    program = interpret("G71 G90 G1 F100 X0\nFGREF[A]=10 FGREF[C]=20\nX5\nM30\n", dialect="sinumerik")
+    said = [f.message for f in program.findings if f.code == "turning-feed"]
+    assert [each.split()[0] for each in said] == ["FGREF[A]", "FGREF[C]"]
+    for words in ("DISC=50", "DISC=0.5", "FGREF[A]=R1"):
+        with pytest.raises(GCodeError):
+            interpret(f"G71 G90 G1 F100 X0\n{words}\nM30\n", dialect="sinumerik")
 
 
 def test_lines_too_long_to_be_looked_through_are_refused() -> None:
