@@ -87,7 +87,7 @@ def stretches(which: BoolArray) -> IntArray:
 
 
 def is_unreal(value: Any) -> bool:
-    """Whether NumPy would take for numbers what is none: True and False alone or in lists, complex and masked ones, dates."""
+    """Whether NumPy would take for numbers what is none: True and False alone or in lists, complex, masked, dates."""
     if isinstance(value, np.ndarray):
         return value.dtype.kind in "cmM" or bool(np.ma.is_masked(value))
     if isinstance(value, list | tuple):
