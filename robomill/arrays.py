@@ -58,7 +58,7 @@ def as_floats(
     """
     try:
         found = np.asarray(value)
-        if value is None or found.dtype.kind == "c" or np.ma.is_masked(value):
+        if value is None or found.dtype.kind in "cmM" or np.ma.is_masked(value):
             raise TypeError
         array = found.astype(np.float64, copy=False)
     except NO_NUMBERS as exc:
@@ -87,9 +87,9 @@ def stretches(which: BoolArray) -> IntArray:
 
 
 def is_unreal(value: Any) -> bool:
-    """Whether NumPy would take for numbers what is none: True and False alone or in lists, complex and masked ones."""
+    """Whether NumPy would take for numbers what is none: True and False alone or in lists, complex, masked, dates."""
     if isinstance(value, np.ndarray):
-        return value.dtype.kind == "c" or bool(np.ma.is_masked(value))
+        return value.dtype.kind in "cmM" or bool(np.ma.is_masked(value))
     if isinstance(value, list | tuple):
         return any(map(is_unreal, value))
     return isinstance(value, bool | np.bool_ | complex | np.complexfloating)

@@ -21,6 +21,7 @@ from robomill.units import format_count, format_si
 from robomill.vectors import nearest_on
 
 LOOKS = 8  # at a link
+MOST = 50  # times as many along the whole of a line that is a link in part
 WORDS = {
     "link": ("corner", "goes from one correction to the next by a short link, on which the tip is off by up to"),
     "touch": ("plunge", "touches first, and the tip springs sideways onto its path, by up to"),
@@ -74,18 +75,25 @@ def springs(led: SimulationResult) -> tuple[Springs, ...]:
 
 
 def _finely(setup: SimulationSetup, path: Toolpath, links: IntArray) -> tuple[Toolpath, IntArray]:
-    """The program of ``setup`` with the lines of ``links`` (k,), samples of its ``path``, in ``LOOKS`` steps each: the
-    tip is furthest off anywhere on them. And (m,) at which sample of ``path`` each is that is on a link, else -1."""
-    lines = path.block[links]
-    longest = {line: float(path.step_length[path.block == line].sum()) for line in set(lines.tolist())}
+    """The program of ``setup`` with the ``links`` (k,), samples of its ``path``, in ``LOOKS`` steps each: the tip is
+    furthest off anywhere on them. And (m,) at which sample of ``path`` each is that is on a link, else -1."""
+    longest = {}
+    for line in set(path.block[links].tolist()):  # a cut that goes on beyond its corner is a link from there only
+        on_it, whole = (
+            float(path.step_length[some].sum()) for some in (links[path.block[links] == line], path.block == line)
+        )
+        longest[line] = max(on_it, whole / MOST) / LOOKS
 
     def seen(moves: Toolpath) -> FloatArray:
         near = steps_in_stock(setup, moves) if setup.engagement else np.full(len(moves), np.inf)
-        return np.minimum(near, [longest.get(line, np.inf) / LOOKS for line in moves.block.tolist()])
+        return np.minimum(near, [longest.get(line, np.inf) for line in moves.block.tolist()])
 
     finely = sampled(setup.toolpath, setup.step, seen)
-    of = {line: int(at) for line, at in zip(lines.tolist(), links.tolist(), strict=True)}
-    at = np.array([of.get(line, -1) for line in finely.block.tolist()])
+    gone, end = (np.cumsum(each.step_length) for each in (finely, path))
+    of = np.minimum(np.searchsorted(end[links], gone - SAME), len(links) - 1)
+    there = links[of]
+    on = (gone > end[there] - path.step_length[there] - SAME) & (gone < end[there] + SAME)
+    at = np.where(on & (finely.block == path.block[there]), there, -1)
     at[np.flatnonzero((at >= 0) & (np.append(finely.block[1:], -1) != finely.block))] = -1  # where the next cut begins
     return finely, np.where(finely.cutting, at, -1)
 

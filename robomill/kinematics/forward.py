@@ -26,6 +26,9 @@ def joint_angles(robot: Robot, theta: ArrayLike) -> FloatArray:
     found = as_floats(
         theta, f"theta of {robot.name!r} (one entry a free joint)", (robot.n,), error=KinematicsError, finite=False
     )
+    if np.isinf(found).any():
+        text = "expected finite numbers, or NaN where it is not known, found inf."
+        raise KinematicsError(f"theta of {robot.name!r}: {text}")
     low, high = robot.limits.T
     turn = np.where(robot.chain.prismatic, np.maximum(high - low, 1.0), 2.0 * np.pi)
     for turns in (SLIPPED, 1.0):

@@ -104,11 +104,13 @@ def _link(q: FloatArray, k: FloatArray, ends: IntArray, s: FloatArray, where: tu
 
 def _aside(flat: FloatArray, up: FloatArray, way: FloatArray) -> FloatArray:
     """(n,) m: how far steps ``flat`` (n, 3) m across the tool, ``up`` (n,) m along it, lead aside of their ways (n, 3)
-    or against them; those that hardly lead across it cost a little on a level one."""
+    or against them; those that hardly lead across it cost a little on a level one, and no more than a link does on the
+    way down or up, along which a correction fades."""
     size, along = np.linalg.norm(flat, axis=1), np.einsum("ni,ni->n", flat, way)
     aside = np.where(along > 0.0, np.sqrt(np.maximum(size**2 - along**2, 0.0)), size)
-    level = way.any(axis=1)
-    return np.asarray(aside + np.where(level & (size < 0.1 * up), UPRIGHT * up, 0.0))
+    level, upright = way.any(axis=1), size < 0.1 * up
+    aside = np.where(upright & ~level, LINKED * size, aside)
+    return np.asarray(aside + np.where(level & upright, UPRIGHT * up, 0.0))
 
 
 def _summed(cost: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ of the mouse is left out.
 import html
 import io
 import re
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -48,7 +49,9 @@ def png(chart: Chart, captions: Sequence[str] = ()) -> bytes:
     if named:
         ax.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=len(named), frameon=False, fontsize=12 * POINTS)
     file = io.BytesIO()
-    fig.savefig(file, format="png", dpi=DPI, metadata={"Software": "robomill"})
+    with warnings.catch_warnings():  # a letter that matplotlib's font lacks is a box in the picture, no word on stderr
+        warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)
+        fig.savefig(file, format="png", dpi=DPI, metadata={"Software": "robomill"})
     return file.getvalue()
 
 

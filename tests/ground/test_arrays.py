@@ -266,3 +266,9 @@ def test_a_table_in_place_of_a_file_is_told_in_a_line() -> None:
     with pytest.raises(rm.RobomillError) as refused:
         rm.read_points(pd.DataFrame({"X_mm": [0.0, 1.0]}))
     assert "found a DataFrame" in str(refused.value)
+
+
+@pytest.mark.parametrize("unit", ["datetime64[s]", "timedelta64[ms]"])
+def test_dates_and_times_are_no_numbers(unit: str) -> None:
+    with pytest.raises(RobomillError, match="expected numbers, found"):
+        as_floats(np.zeros(3, dtype=unit), "p", (3,))

@@ -8,6 +8,7 @@ import pytest
 
 import robomill as rm
 from robomill.improve.compensation import Compensation
+from robomill.simulation.meant import LINK
 from tests.improve.corrected import SLOT, tip_of
 
 
@@ -127,3 +128,18 @@ def test_rectangles_one_in_another_are_corrected_with_a_force_that_follows_the_c
     x, y, _ = np.abs(tip[legs & (np.abs(tip[:, :2]) > [6e-3, 4e-3]).any(axis=1)].T) * 1e3
     off = np.min([np.abs(x - 7.0), np.abs(x - 12.0), np.abs(y - 4.9), np.abs(y - 8.4)], axis=0)
     assert np.median(off) < 0.002
+
+
+@pytest.mark.parametrize("stiffer", [7.0, 10.0, 15.0])
+@pytest.mark.parametrize("height", [1.2, 3.1])
+def test_a_step_up_between_two_floors_is_corrected_along_its_height(stiffer: float, height: float) -> None:
+    """Nothing pushes on the way up, and the floor on which it ends asks for less aside than a link is made for: the
+    correction fades in along the last part of the way, and the tip keeps to its lines."""
+    slot = rm.load_setup(SLOT / "setup_process.toml")
+    slot = slot.replace(robot=slot.robot.replace(C_theta=slot.robot.C_theta / stiffer), engagement=False)
+    text = f"G21 G90\nS12000 M3\nG0 X-60 Y0 Z5\nG0 Z-4\nG1 X0 F900\nZ{height - 4}\nX30\nG0 Z20\nM2\n"
+    found = rm.compensate(slot.replace(source=rm.GCodeSource(text)))
+    tip, run = tip_of(found.setup, found.text)
+    off = off_lines(tip, found.wanted.path)[run.path.cutting & run.conditions.engaged]
+    assert found.after.max < LINK
+    assert np.median(off) < 0.1 * found.before.max

@@ -101,3 +101,10 @@ def test_a_long_angle_is_doubted_from_one_turn_beyond_limits_that_somebody_has_s
                 assert np.isfinite(rm.tool_pose(arm, theta)).all()
         with pytest.raises(KinematicsError, match="joint 2 is at"):
             rm.tool_pose(arm, [0.1, side * (np.ceil(10 * (end + 2 * np.pi)) + 1) / 10])
+
+
+@pytest.mark.parametrize("far", [np.inf, -np.inf])
+def test_a_joint_at_infinity_is_no_angle_in_degrees(far: float, recwarn: pytest.WarningsRecorder) -> None:
+    with pytest.raises(KinematicsError, match=r"expected finite numbers, or NaN .* found inf"):
+        rm.tool_pose(rm.load_robot("slavkovic_5r"), [0.0, 0.0, far, 0.0, 0.0])
+    assert not recwarn.list

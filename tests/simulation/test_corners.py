@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robomill.simulation.corners import FARTHEST, STEEP, UPRIGHT, Ways, _aside, at_corners
+from robomill.simulation.corners import FARTHEST, LINKED, STEEP, UPRIGHT, Ways, _aside, at_corners
 
 
 def staircase(step: float) -> tuple[np.ndarray, np.ndarray]:
@@ -63,13 +63,14 @@ def test_a_step_costs_what_it_leads_aside_of_its_way_or_all_of_it_against_it(lea
     angle, size, to = rng.uniform(-np.pi, np.pi, n), rng.uniform(0.1e-3, 1e-3, n), rng.uniform(-np.pi, np.pi, n)
     across = size[:, None] * (np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v)
     way = np.cos(to)[:, None] * u + np.sin(to)[:, None] * v
-    way[:5] = 0.0  # straight down: whatever leads across is aside
+    way[:5] = 0.0  # straight down: whatever leads across is aside, but as little as in a link where that is little
     up = rng.uniform(0.0, 20e-3, n)
     found = _aside(across, up, way)
     for i in range(n):
         between = angle[i] - to[i]
         cost = size[i] * abs(np.sin(between)) if np.cos(between) > 0.0 and i >= 5 else size[i]
-        cost += UPRIGHT * up[i] if i >= 5 and size[i] < 0.1 * up[i] else 0.0
+        if size[i] < 0.1 * up[i]:
+            cost = cost + UPRIGHT * up[i] if i >= 5 else LINKED * size[i]
         assert found[i] == pytest.approx(cost, abs=1e-15)
 
 

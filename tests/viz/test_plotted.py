@@ -112,3 +112,10 @@ def test_without_matplotlib_its_extra_is_named(monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(MissingExtraError, match=r"robomill\[plot\]"):
         png(chart())
+
+
+def test_a_name_in_letters_that_the_font_lacks_is_drawn_without_a_word_on_standard_error(
+    recwarn: pytest.WarningsRecorder,
+) -> None:
+    assert (pixels(chart(), ("测试 Größe",)) < 128).any()
+    assert not recwarn.list
