@@ -33,10 +33,16 @@ def numbers(text: str, option: str, count: int | None, what: str) -> list[float]
 def floats(words: Sequence[str]) -> list[float]:
     """The numbers that words say; none where one of them says none."""
     try:
-        values = [float(word) for word in words]
+        values = [_float(word) for word in words]
     except ValueError:
         return []
     return values if all(map(math.isfinite, values)) else []
+
+
+def _float(word: str) -> float:
+    if "_" in word:  # 1_0 is ten to Python, and a slip to everybody else
+        raise ValueError(word)
+    return float(word)
 
 
 def wholes(text: str, option: str) -> tuple[int, ...]:
@@ -46,7 +52,7 @@ def wholes(text: str, option: str) -> tuple[int, ...]:
 def number(text: str) -> float:
     """A number, as argparse takes it; raises its refusal."""
     try:
-        return float(text)
+        return _float(text)
     except ValueError:
         point = f"; write {text.replace(',', '.')}" if floats([text.replace(",", ".")]) else ""
         raise argparse.ArgumentTypeError(f"expected a number, found {text!r:.40}{point}") from None

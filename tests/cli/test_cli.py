@@ -220,6 +220,7 @@ def test_gcode(capsys) -> None:
     [
         (("pose", "robbie", "--theta-deg", "0"), "robbie"),
         (("pose", "slavkovic_5r", "--theta-deg", "0,0"), "--theta-deg: expected 5 numbers"),
+        (("pose", "slavkovic_5r", "--theta-deg", "1_0,0,0,0,0"), "--theta-deg: expected 5 numbers"),
         (("pose", "slavkovic_5r", "--theta-deg", "0,0,0,0,x"), "--theta-deg: expected 5 numbers"),
         (("ik", "slavkovic_5r", "--pose", "0,nan,0,0,0"), "--pose: expected 5 numbers"),
         (("simulate", "nowhere.toml"), "nowhere.toml"),

@@ -135,7 +135,7 @@ def _joint(element: ElementTree.Element, where: str) -> Joint:
     def numbers(tag: str, key: str, default: str, count: int = 3) -> FloatArray:
         said = inside(tag, key, default)
         try:
-            values = np.array([float(word) for word in said.split()])
+            values = np.array([float(word.replace("_", "?")) for word in said.split()])  # 1_0 is none but to Python
         except ValueError:
             values = np.array([np.nan])
         if len(values) != count or not np.isfinite(values).all():

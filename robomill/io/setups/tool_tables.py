@@ -200,7 +200,7 @@ def _from_csv(text: str, name: str, unit: str) -> tuple[list[TableTool], list[Fi
 
 def _value(cell: str) -> int | float | str:
     """A cell as TOML would hold it."""
-    for kind in (int, float):
+    for kind in (int, float) if "_" not in cell else ():
         try:
             return kind(cell)
         except ValueError:

@@ -247,6 +247,7 @@ def test_the_flange_is_the_tip_on_the_last_axis(tmp_path, way):
     ("find", "put", "words"),
     [
         ('axis xyz="0 0 1"', 'axis xyz="0 1"', "joint '1' has axis xyz='0 1'; expected 3 numbers"),
+        ('axis xyz="0 0 1"', 'axis xyz="0 0 1_0"', "joint '1' has axis xyz='0 0 1_0'; expected 3 numbers"),
         ('axis xyz="0 0 1"', 'axis xyz="0 0 up"', "joint '1' has axis xyz='0 0 up'; expected 3 numbers"),
         ('lower="-1"', 'lower="-1 2"', "joint '1' has limit lower='-1 2'; expected a number"),
         ('upper="1"', 'upper="inf"', "joint '1' has limit upper='inf'; expected a number"),

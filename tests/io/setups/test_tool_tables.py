@@ -95,6 +95,7 @@ def test_a_set_up_keeps_every_tool(tmp_path: Path) -> None:
         ("T1.5 D3\n", "line 1, number: expected a whole number"),
         ("T1 D3 Q12\n", "Orientation"),
         ("tool,diameter_mm\n1,a\n", "row 2, diameter_mm: expected a number"),
+        ("tool,diameter_mm\n1,1_0\n", "row 2, diameter_mm: expected a number"),
         ("tool,diameter_mm\n1,1,2\n", "ow 2: found 3 cells"),
         ("tool,diameter_mm,length_mm\n1,1,2\n1,1,2\n", "twice"),
         ("tool,diameter_mm,flutes\n1,-1,2\n", "Diameter: found -1 mm"),
