@@ -147,6 +147,9 @@ def _read(top: Table, beside: Beside) -> Study:
     if seed < 0:
         raise design.refuse("seed", f"expected a whole number from 0 on, found {seed}.")
     table = top.table("parameters")
+    for key, given in table.data.items():
+        if isinstance(given, list | tuple):
+            table.data[key] = {"values": list(given)}
     parameters = tuple(_parameter(table.table(key), key, kind) for key in table.data)
     if not parameters:
         raise top.refuse("parameters", 'there is none; give at least one, as [parameters."cutter.diameter_mm"].')

@@ -79,3 +79,11 @@ def test_a_study_reaches_its_own_folder_and_below(tmp_path: Path) -> None:
             rm.load_study(place)
     place.write_text(f"{head}setup = '../other.toml'\n{rest}", encoding="utf-8")
     assert rm.load_study(place, allow_outside=True).setup == rm.load_setup(tmp_path / "other.toml")
+
+
+def test_a_list_alone_is_what_a_parameter_takes():
+    given = {"setup": "paper_flute", "parameters": {"cutter.diameter_mm": [6, 8], "tolerance_mm": (0.1, 0.2)}}
+    told = {key: {"values": list(values)} for key, values in given["parameters"].items()}
+    assert rm.load_study(given).points == rm.load_study(given | {"parameters": told}).points
+    with pytest.raises(StudyError, match="do not stand in one list"):
+        rm.load_study(given | {"parameters": {"tolerance_mm": [0.1, "x"]}})
