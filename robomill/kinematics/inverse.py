@@ -14,7 +14,7 @@ from robomill.kinematics.choice import every, nearest, rules, spins, spun
 from robomill.kinematics.decoupled import Decoupled, branch_names, decoupled
 from robomill.kinematics.forward import tool_pose
 from robomill.kinematics.joining import Joined, join
-from robomill.kinematics.numeric import bent_home, solve_numerically
+from robomill.kinematics.numeric import bent_home, followed, solve_numerically
 from robomill.kinematics.result import IKResult, Mode, misfit, task_mode, within_residual
 from robomill.progress import checkpoint
 from robomill.robot.model import Robot
@@ -247,17 +247,25 @@ def _walked(
 ) -> tuple[FloatArray, BoolArray]:
     """(theta (m, n), found (m,)) of a run of poses, each from the one before; ``whole`` ends at the first not found."""
     theta, found = np.empty((len(T_MT), robot.n)), np.zeros(len(T_MT), dtype=bool)
-    begin, ahead = 0, 1
+    begin, ahead, lost = 0, 1, mode == "position"  # of a small arm's solutions the nearest is taken
     while begin < len(T_MT):
         checkpoint(begin / len(T_MT))
+        if not lost:
+            way = followed(robot, T_MT[begin : begin + ahead], near, mode)
+            some = slice(begin, begin + len(way))
+            theta[some], found[some] = way, True
+            begin, ahead = some.stop, min(2 * ahead, AHEAD) if len(way) == ahead else 1
+            if len(way):
+                near = way[-1:]
+                continue
         some = slice(begin, begin + ahead)  # several where none was found: the same one comes before all of them
         theta[some], found[some] = solve_numerically(robot, T_MT[some], near, mode)
         hits = np.flatnonzero(found[some])
         if hits.size:
-            begin, ahead = begin + int(hits[0]) + 1, 1
+            begin, ahead, lost = begin + int(hits[0]) + 1, 1, mode == "position"
             near = theta[begin - 1 : begin]
         elif whole:
             break
         else:
-            begin, ahead = begin + ahead, min(2 * ahead, AHEAD)
+            begin, ahead, lost = begin + ahead, min(2 * ahead, AHEAD), True
     return theta, found

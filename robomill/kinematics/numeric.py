@@ -26,6 +26,8 @@ COMPARED = 8  # starts of which small arms take the solution nearest to the refe
 NEAREST = 32  # starts of which any arm takes it where the nearest solution is asked for
 TOGETHER = 512  # descents at once where poses are few: starts beside each other cost hardly more than one
 STEPS = 40
+TASKS = {"position": 3, "axis": 5, "pose": 6}  # what is asked of a pose
+SAME = 1e-7  # rad (or m): two descents that differ by no more have found one solution
 TIGHT = 1e-11  # m and rad: where iteration stops, well inside the residual that counts
 PATIENCE = 6  # steps in which the error must have halved
 OTHER_SIDE = 1e3  # rad^2: far above any joint motion
@@ -49,6 +51,22 @@ def solve_numerically(
         reference = near if len(near) == 1 else near[block]
         theta[block], found[block] = _solve_block(robot, T_MT[block], reference, mode, nearest)
     return theta, found
+
+
+def followed(robot: Robot, T_MT: FloatArray, near: FloatArray, mode: Mode) -> FloatArray:
+    """(k, n) the joints of the first k of the poses T_MT (m, 4, 4): each as it is found from the one before, the first
+    from ``near`` (1, n), as far as that leads.
+
+    Where a pose has no other solution nearby they are all sought at once, from ``near``, and then each from what was
+    found before it: what stays is what one after the other would find. Else they are taken one by one.
+    """
+    m = len(T_MT) if robot.n == TASKS[mode] else 1
+    first, error = descend(robot, T_MT[:m], np.repeat(near, m, axis=0), mode)
+    if m == 1:
+        return first[error <= TIGHT]
+    theta, error = descend(robot, T_MT, np.concatenate([near, first[:-1]]), mode)
+    leads = np.append(True, np.abs(theta - first).max(axis=1)[:-1] <= SAME) & (error <= TIGHT)
+    return theta[: m if leads.all() else int(np.argmin(leads))]
 
 
 def bent_home(robot: Robot) -> FloatArray:
