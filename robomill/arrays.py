@@ -27,6 +27,7 @@ BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 NO_NUMBERS = (TypeError, ValueError, OverflowError)
 """What NumPy and Python raise of what is no number, or larger than any."""
+UNREAL = "cmM"  # kinds of arrays that NumPy would make numbers of: complex ones, and times
 PLAIN = (str, int, float, bytes)  # nobody writes into these
 DIGITS = 13  # of a number that tell it from another
 SMALLEST = 1e-290  # below it, no power of ten brings thirteen digits before the point
@@ -58,7 +59,7 @@ def as_floats(
     """
     try:
         found = np.asarray(value)
-        if value is None or found.dtype.kind in "cmM" or np.ma.is_masked(value):
+        if value is None or found.dtype.kind in UNREAL or np.ma.is_masked(value):
             raise TypeError
         array = found.astype(np.float64, copy=False)
     except NO_NUMBERS as exc:
@@ -89,7 +90,7 @@ def stretches(which: BoolArray) -> IntArray:
 def is_unreal(value: Any) -> bool:
     """Whether NumPy would take for numbers what is none: True and False alone or in lists, complex, masked, dates."""
     if isinstance(value, np.ndarray):
-        return value.dtype.kind in "cmM" or bool(np.ma.is_masked(value))
+        return value.dtype.kind in UNREAL or bool(np.ma.is_masked(value))
     if isinstance(value, list | tuple):
         return any(map(is_unreal, value))
     return isinstance(value, bool | np.bool_ | complex | np.complexfloating)

@@ -8,6 +8,7 @@ comma before exactly three digits is a decimal mark to some and parts thousands 
 import math
 import re
 import unicodedata
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from robomill.errors import NumberError
@@ -68,6 +69,14 @@ def read_number(text: str, unit: str = "1") -> TypedNumber:
     else:
         value = number
     return TypedNumber(value, _PLAIN.fullmatch(given) is not None, value != number or fraction is not None)
+
+
+def plain_number(text: str, kind: Callable[[str], float] = float) -> float:
+    """What ``kind`` makes of a text that a program or a file gives. Raises ValueError for what is no number, ``1_0``
+    with it: ten to Python, and a slip to everybody else."""
+    if "_" in text:
+        raise ValueError(text)
+    return kind(text)
 
 
 def either_way(number: str, text: str) -> str:

@@ -32,17 +32,13 @@ def numbers(text: str, option: str, count: int | None, what: str) -> list[float]
 
 def floats(words: Sequence[str]) -> list[float]:
     """The numbers that words say; none where one of them says none."""
+    from robomill.typed_numbers import plain_number
+
     try:
-        values = [_float(word) for word in words]
+        values = [plain_number(word) for word in words]
     except ValueError:
         return []
     return values if all(map(math.isfinite, values)) else []
-
-
-def _float(word: str) -> float:
-    if "_" in word:  # 1_0 is ten to Python, and a slip to everybody else
-        raise ValueError(word)
-    return float(word)
 
 
 def wholes(text: str, option: str) -> tuple[int, ...]:
@@ -51,8 +47,10 @@ def wholes(text: str, option: str) -> tuple[int, ...]:
 
 def number(text: str) -> float:
     """A number, as argparse takes it; raises its refusal."""
+    from robomill.typed_numbers import plain_number
+
     try:
-        return _float(text)
+        return plain_number(text)
     except ValueError:
         point = f"; write {text.replace(',', '.')}" if floats([text.replace(",", ".")]) else ""
         raise argparse.ArgumentTypeError(f"expected a number, found {text!r:.40}{point}") from None

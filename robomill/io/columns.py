@@ -23,7 +23,7 @@ from robomill.errors import RobomillError
 from robomill.files import TABLE
 from robomill.io.texts import read_text
 from robomill.quantities import GREATEST
-from robomill.typed_numbers import either_way
+from robomill.typed_numbers import either_way, plain_number
 from robomill.units import format_count, to_si
 
 if TYPE_CHECKING:
@@ -388,6 +388,6 @@ def _cell(body: _Body, k: int, column: Column, text: str, is_open: bool) -> floa
 def _number(text: str) -> float | None:
     """The number that a cell holds, not finite perhaps; None for anything else."""
     try:
-        return None if "_" in text else float(text)
+        return plain_number(text)
     except ValueError:
         return None

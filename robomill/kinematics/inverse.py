@@ -23,7 +23,7 @@ Spin = float | Literal["least_motion", "fixed"]
 LEAST_MOTION: Literal["least_motion"] = "least_motion"
 SPINS = (LEAST_MOTION, "fixed")
 THINNED = 200  # poses of a path by which its spins are compared
-AHEAD = 256  # poses at most that are tried at once behind one that was not found
+AHEAD = 256  # poses at most that are tried at once
 
 
 @dataclass(frozen=True, eq=False)

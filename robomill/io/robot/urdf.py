@@ -20,6 +20,7 @@ from robomill.robot.joints import ASSUMED_COMPLIANCE
 from robomill.robot.model import Robot
 from robomill.robot.table import doubtful_limit
 from robomill.spelled import to_give
+from robomill.typed_numbers import plain_number
 
 MOVING = ("revolute", "continuous", "prismatic")
 TIP = ("tip", "say which is the tip")
@@ -135,7 +136,7 @@ def _joint(element: ElementTree.Element, where: str) -> Joint:
     def numbers(tag: str, key: str, default: str, count: int = 3) -> FloatArray:
         said = inside(tag, key, default)
         try:
-            values = np.array([float(word.replace("_", "?")) for word in said.split()])  # 1_0 is none but to Python
+            values = np.array([plain_number(word) for word in said.split()])
         except ValueError:
             values = np.array([np.nan])
         if len(values) != count or not np.isfinite(values).all():

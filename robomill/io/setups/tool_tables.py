@@ -26,6 +26,7 @@ from robomill.io.tables import Table, parse_toml
 from robomill.io.texts import read_text
 from robomill.provenance import Finding
 from robomill.quantities import quantities
+from robomill.typed_numbers import plain_number
 from robomill.units import format_count, format_si, from_si, to_si
 
 UNITS = ("mm", "in")
@@ -200,9 +201,9 @@ def _from_csv(text: str, name: str, unit: str) -> tuple[list[TableTool], list[Fi
 
 def _value(cell: str) -> int | float | str:
     """A cell as TOML would hold it."""
-    for kind in (int, float) if "_" not in cell else ():
+    for kind in (int, float):
         try:
-            return kind(cell)
+            return plain_number(cell, kind)
         except ValueError:
             continue
     return cell.lower()
